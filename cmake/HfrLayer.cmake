@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# A layer is one folder below src/. Layers depend on those before them in this list and on no other, so each
+# is an object library of its own that tests can link without what stands above it.
+set(HFR_LAYERS Parallel HalfFace Quality IO Operators Surface Scheduler Device Remesh)
+
+# Flags that every target of the project is compiled with; never exported.
+add_library(hfr_flags INTERFACE)
+target_compile_features(hfr_flags INTERFACE cxx_std_20)
+# Bit-identical results need every rounding to be the one written: no contraction into fused multiply-add.
+target_compile_options(hfr_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  $<$<BOOL:${HFR_WERROR}>:-Werror>)
+if(HFR_COVERAGE)
+  target_compile_options(hfr_flags INTERFACE --coverage -fprofile-update=atomic)
+  target_link_options(hfr_flags INTERFACE --coverage)
+endif()
+if(HFR_SANITIZE)
+  target_compile_options(hfr_flags INTERFACE -fsanitize=${HFR_SANITIZE} -fno-omit-frame-pointer
+    -fno-sanitize-recover=all)
+  target_link_options(hfr_flags INTERFACE -fsanitize=${HFR_SANITIZE})
+endif()
+
+# hfr_layer(NAME [SOURCES ...] [HEADERS ...] [PRIVATE_LIBRARIES ...])
+# Headers are public, verified to compile alone, and installed below include/hfremesh/NAME.
+function(hfr_layer NAME)
+  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PRIVATE_LIBRARIES" ${ARGN})
+  set(target hfr_${NAME})
+  set(below "")
+  foreach(layer IN LISTS HFR_LAYERS)
+    if(layer STREQUAL NAME)
+      break()
+    endif()
+    list(APPEND below hfr_${layer}_headers)
+  endforeach()
+  add_library(${target}_headers INTERFACE)
+  target_include_directories(${target}_headers INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/include)
+  target_link_libraries(${target}_headers INTERFACE hfr_kernels ${below})
+  set_property(GLOBAL APPEND PROPERTY HFR_PUBLIC_HEADERS_${NAME} ${ARG_HEADERS})
+  if(ARG_SOURCES)
+    add_library(${target} OBJECT ${ARG_SOURCES})
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_link_libraries(${target} PRIVATE hfr_flags ${ARG_PRIVATE_LIBRARIES} PUBLIC ${target}_headers)
+    set_property(GLOBAL APPEND PROPERTY HFR_OBJECT_LAYERS ${target})
+    set_property(GLOBAL APPEND PROPERTY HFR_PRIVATE_LIBRARIES ${ARG_PRIVATE_LIBRARIES})
+  endif()
+  if(ARG_HEADERS)
+    target_sources(${target}_headers INTERFACE FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src
+      FILES ${ARG_HEADERS})
+    set_target_properties(${target}_headers PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
+  endif()
+endfunction()
+
+# hfr_test(FOLDER SOURCES ...): one executable test_FOLDER of unittests/FOLDER, linked with the layers up to
+# and including FOLDER.
+function(hfr_test FOLDER)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(test_${FOLDER} ${ARG_SOURCES})
+  target_link_libraries(test_${FOLDER} PRIVATE hfr_flags hfr_${FOLDER}_headers GTest::gmock GTest::gtest_main
+    ${ARG_LIBRARIES})
+  get_property(private_libraries GLOBAL PROPERTY HFR_PRIVATE_LIBRARIES)
+  foreach(layer IN LISTS HFR_LAYERS)
+    if(TARGET hfr_${layer})
+      target_link_libraries(test_${FOLDER} PRIVATE hfr_${layer})
+    endif()
+    if(layer STREQUAL FOLDER)
+      break()
+    endif()
+  endforeach()
+  target_link_libraries(test_${FOLDER} PRIVATE ${private_libraries})
+  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/unittests)
+  target_compile_definitions(test_${FOLDER} PRIVATE
+    HFR_TEST_MESHES="${PROJECT_SOURCE_DIR}/../shared/meshes")
+  gtest_discover_tests(test_${FOLDER} TEST_PREFIX ${FOLDER}. DISCOVERY_TIMEOUT 60)
+endfunction()

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_PARALLEL_PARALLEL_HH
+#define HFR_PARALLEL_PARALLEL_HH
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+/// The ground floor: the only folder that knows the thread library.
+/// Every function gives the same result for any number of threads.
+namespace hfr::par {
+
+/// How a parallel loop runs; passed by value, there is no global state.
+struct Policy {
+  int threads = 1;                ///< ≥ 1; Policy::all() for every core that the process may use
+  std::size_t serial_below = 2048;  ///< loops shorter than this stay on the calling thread
+
+  static Policy all();
+};
+
+/// Number of threads that a loop of n items would use under the policy.
+int thread_count(Policy policy, std::size_t n);
+
+namespace detail {
+/// Calls body(context, part) for part = 0 … parts-1, one thread a part. An exception of a part is rethrown
+/// (that of the smallest part when there are several).
+void run_parts(int parts, void (*body)(void*, int), void* context);
+}  // namespace detail
+
+/// Calls body(part) for part = 0 … parts-1 concurrently.
+template <class Body>
+void parts(int n_parts, Body&& body) {
+  if (n_parts <= 1) {
+    if (n_parts == 1) body(0);
+    return;
+  }
+  using Plain = std::remove_reference_t<Body>;
+  detail::run_parts(
+      n_parts, [](void* context, int part) { (*static_cast<Plain*>(context))(part); },
+      const_cast<void*>(static_cast<const void*>(&body)));
+}
+
+/// First item of part `part` when n items are cut into n_parts even parts.
+inline std::size_t part_begin(std::size_t n, int n_parts, int part) {
+  return n / static_cast<std::size_t>(n_parts) * static_cast<std::size_t>(part) +
+         std::min<std::size_t>(n % static_cast<std::size_t>(n_parts), static_cast<std::size_t>(part));
+}
+
+/// Calls body(begin, end) on even, contiguous parts of [0, n).
+template <class Body>
+void for_ranges(Policy policy, std::size_t n, Body&& body) {
+  const int n_parts = thread_count(policy, n);
+  parts(n_parts, [&](int part) { body(part_begin(n, n_parts, part), part_begin(n, n_parts, part + 1)); });
+}
+
+/// Calls body(i) for each i in [0, n); even, contiguous parts.
+template <class Body>
+void for_each(Policy policy, std::size_t n, Body&& body) {
+  for_ranges(policy, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Calls body(i) for each i in [0, n) in blocks that free threads take as they come: for items of uneven cost.
+/// The order of calls is not fixed; what body(i) writes must depend on i alone.
+template <class Body>
+void for_each_dynamic(Policy policy, std::size_t n, std::size_t block, Body&& body);
+
+/// In-place exclusive prefix sum; returns the total.
+template <class T>
+T exclusive_scan(std::span<T> values) {
+  T sum{};
+  for (T& value : values) {
+    const T next = sum + value;
+    value = sum;
+    sum = next;
+  }
+  return sum;
+}
+
+/// Indices i in [0, n) with keep(i), ascending.
+template <class Out = std::uint32_t, class Keep>
+std::vector<Out> compact(Policy policy, std::size_t n, Keep&& keep) {
+  const int n_parts = thread_count(policy, n);
+  std::vector<std::vector<Out>> found(static_cast<std::size_t>(n_parts));
+  parts(n_parts, [&](int part) {
+    auto& mine = found[static_cast<std::size_t>(part)];
+    const std::size_t end = part_begin(n, n_parts, part + 1);
+    for (std::size_t i = part_begin(n, n_parts, part); i < end; ++i)
+      if (keep(i)) mine.push_back(static_cast<Out>(i));
+  });
+  if (n_parts == 1) return std::move(found[0]);
+  std::size_t total = 0;
+  for (const auto& part : found) total += part.size();
+  std::vector<Out> all;
+  all.reserve(total);
+  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+/// combine(identity, value(0), …, value(n-1)) for a combine that is associative, commutative and exact
+/// (minimum, maximum, integer sum), so that the result does not depend on the cut into parts.
+template <class T, class Value, class Combine>
+T reduce(Policy policy, std::size_t n, T identity, Value&& value, Combine&& combine) {
+  const int n_parts = thread_count(policy, n);
+  std::vector<T> partial(static_cast<std::size_t>(n_parts), identity);
+  parts(n_parts, [&](int part) {
+    T mine = identity;
+    const std::size_t end = part_begin(n, n_parts, part + 1);
+    for (std::size_t i = part_begin(n, n_parts, part); i < end; ++i) mine = combine(mine, value(i));
+    partial[static_cast<std::size_t>(part)] = mine;
+  });
+  T all = identity;
+  for (const T& part : partial) all = combine(all, part);
+  return all;
+}
+
+namespace detail {
+/// Hands out block numbers 0, 1, … to n_threads threads until n_blocks are gone.
+void run_blocks(int n_threads, std::size_t n_blocks, void (*body)(void*, std::size_t), void* context);
+}  // namespace detail
+
+template <class Body>
+void for_each_dynamic(Policy policy, std::size_t n, std::size_t block, Body&& body) {
+  const int n_threads = thread_count(policy, n);
+  auto run_block = [&](std::size_t b) {
+    const std::size_t end = std::min(n, (b + 1) * block);
+    for (std::size_t i = b * block; i < end; ++i) body(i);
+  };
+  const std::size_t n_blocks = (n + block - 1) / block;
+  if (n_threads <= 1) {
+    for (std::size_t b = 0; b < n_blocks; ++b) run_block(b);
+    return;
+  }
+  using Run = decltype(run_block);
+  detail::run_blocks(
+      n_threads, n_blocks, [](void* context, std::size_t b) { (*static_cast<Run*>(context))(b); },
+      &run_block);
+}
+
+}  // namespace hfr::par
+
+#endif
