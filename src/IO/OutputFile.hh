@@ -10,8 +10,10 @@
 
 namespace hfr::io {
 
-/// Buffered output to a temporary file beside the target, which replaces the target on commit(). Destroyed
-/// without commit(), it leaves nothing behind. Every failure throws IoError, "PATH: cannot be written: REASON".
+/// Buffered output to a temporary file beside the target, which replaces the target on commit() and takes over
+/// its permissions. Destroyed without commit(), it leaves nothing behind. A symbolic link stays one: the file it
+/// points at is replaced. What is no regular file (/dev/stdout, a pipe) is written to directly.
+/// Every failure throws IoError, "PATH: cannot be written: REASON".
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& target);
@@ -28,9 +30,11 @@ class OutputFile {
 
  private:
   void flush();
+  [[noreturn]] void fail(int error);
 
-  std::filesystem::path target_;
-  std::filesystem::path temporary_;
+  std::filesystem::path target_;      ///< as the caller named it
+  std::filesystem::path replaced_;    ///< the same with symbolic links followed
+  std::filesystem::path temporary_;   ///< empty when the target is written to directly
   std::FILE* file_ = nullptr;
   std::string buffer_;
   bool committed_ = false;

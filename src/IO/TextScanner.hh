@@ -2,6 +2,7 @@
 #ifndef HFR_IO_TEXT_SCANNER_HH
 #define HFR_IO_TEXT_SCANNER_HH
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -20,8 +21,12 @@ class TextScanner {
   std::string_view peek_word();         ///< next word without taking it; empty at the end
   std::string_view rest_of_line();      ///< up to the line's end, trimmed; takes the line break
   double real();                        ///< finite double ("nan" and "inf" throw); Fortran's 1.0D+3 is read too
+  double field_value();                 ///< as real(), but "nan" and "inf" pass: a field may hold them
   std::int64_t integer();               ///< decimal integer
   std::int64_t integer_in(std::int64_t low, std::int64_t high, std::string_view what);
+  /// A number of items that follow, each of `words_per_item` words: fails when the rest of the text is too
+  /// short to hold them, so that a broken count never makes a reader allocate more than the file's own size.
+  std::size_t count(std::size_t words_per_item, std::string_view what);
   bool skip_to_line_starting(std::string_view prefix);  ///< false when there is none
 
   std::size_t offset() const { return static_cast<std::size_t>(at_ - begin_); }
@@ -33,6 +38,9 @@ class TextScanner {
 
  private:
   void skip_space();
+  double parse_real(bool finite);
+  double parse_real_slowly(bool finite);
+  [[noreturn]] void fail_expecting(std::string_view what);
 
   const char* begin_;
   const char* at_;
