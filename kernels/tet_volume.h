@@ -31,6 +31,15 @@ HFR_FN double hfr_orient6_bound(hfr_real3 a, hfr_real3 b, hfr_real3 c, hfr_real3
   return HFR_ORIENT6_ERROR * ((px + py) + pz) + HFR_DOUBLE_MIN * (length + 1.0);
 }
 
+/* True only if |det| exceeds hfr_orient6_bound, whatever the shape: a cheap first test. `sum2` is the sum of
+ * the six squared edges. The permanent in the bound is at most sqrt(3)*(sum2/3)^(3/2), so det^2
+ * > 8.8e-32*sum2^3 is enough; the rest pays for rounding in sum2. */
+#define HFR_FAR_FROM_FLAT 9.25e-32
+HFR_FN int hfr_is_far_from_flat(double det, double sum2) {
+  const double cube = (sum2 * sum2) * sum2;
+  return (cube >= HFR_DOUBLE_MIN) & (det * det > HFR_FAR_FROM_FLAT * cube);
+}
+
 /* 1 surely positive, -1 surely inverted, 0 flat: the sign hides in rounding (or a coordinate is not finite).
  */
 HFR_FN int hfr_orient_sign(hfr_real3 a, hfr_real3 b, hfr_real3 c, hfr_real3 d) {

@@ -8,9 +8,8 @@
  * tetrahedron, 0 flat, negative inverted. Decisions use D = q|q| = 432*det|det| / S^3 with det = 6V and S the
  * sum of the six squared edges: no root, same order. Lengths from 1e-50 to 1e50. */
 
-/* Up to this |D| counts as 0: flat. A cell above it is positive beyond rounding, whatever its shape: the
- * permanent in hfr_orient6_bound is at most sqrt 3*(S/3)^(3/2), so det > bound follows from D >
- * 432*(8*2^-53)^2/9 = 3.8e-29. */
+/* Up to this |D| counts as 0: flat. A cell above it is positive beyond rounding, whatever its shape:
+ * 432*HFR_FAR_FROM_FLAT. */
 #define HFR_VOLUME_LENGTH_FLAT 4.0e-29
 
 /* Sum of the six squared edges from three of them at one corner. Since |u+v+w|^2 <= 3(u^2+v^2+w^2), nothing
