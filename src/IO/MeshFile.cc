@@ -19,6 +19,7 @@ struct Format {
 /// The formats that are built in. A new one is a row here, two declarations in Formats.hh, and its sources.
 constexpr Format kFormats[] = {
     {".mesh", read_medit, write_medit},
+    {".meshb", read_meditb, write_meditb},
 };
 
 std::string joined(const std::vector<std::string>& words) {

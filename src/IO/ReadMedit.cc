@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Medit's mesh format as its authors describe it: P. Frey, "MEDIT: an interactive mesh visualization
+// software", INRIA RT-0253 (2001), and the binary layout of libMeshb (versions 1 to 4).
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "IO/Formats.hh"
+#include "IO/Linearise.hh"
+#include "IO/MeditSource.hh"
+#include "IO/ReadMeditSolution.hh"
+
+namespace hfr::io {
+namespace {
+
+using medit::Heading;
+using medit::Keyword;
+
+template <class Source>
+class MeditReader {
+ public:
+  explicit MeditReader(const InputFile& file) : in_(file) {}
+
+  MeshData read() {
+    while (const auto heading = in_.next()) read_section(*heading);
+    if (!in_.saw_end()) mesh_.notes.emplace_back("the file has no End; it may have been cut short");
+    fix_required();
+    // References are not optional in the format; all zero means that there are none.
+    const auto is_zero = [](int label) { return label == 0; };
+    if (std::all_of(mesh_.regions.begin(), mesh_.regions.end(), is_zero)) mesh_.regions.clear();
+    if (std::all_of(mesh_.vertex_labels.begin(), mesh_.vertex_labels.end(), is_zero)) {
+      mesh_.vertex_labels.clear();
+    }
+    return std::move(mesh_);
+  }
+
+  const std::vector<Index>& midside() const { return midside_; }
+
+ private:
+  void read_section(const Heading& heading) {
+    switch (heading.keyword) {
+      case Keyword::kVertices:
+        return read_vertices();
+      case Keyword::kEdges:
+        return read_elements<0>(mesh_.edges, mesh_.edge_labels, heading);
+      case Keyword::kTriangles:
+        return read_elements<0>(mesh_.triangles, mesh_.triangle_labels, heading);
+      case Keyword::kTetrahedra:
+        return read_elements<0>(mesh_.cells, mesh_.regions, heading);
+      case Keyword::kEdgesP2:
+        return read_elements<1>(mesh_.edges, mesh_.edge_labels, heading);
+      case Keyword::kTrianglesP2:
+        return read_elements<3>(mesh_.triangles, mesh_.triangle_labels, heading);
+      case Keyword::kTetrahedraP2:
+        return read_elements<6>(mesh_.cells, mesh_.regions, heading);
+      case Keyword::kRequiredVertices:
+        return read_numbers(mesh_.fixed_vertices);
+      case Keyword::kCorners:
+        return read_numbers(corners_);
+      case Keyword::kRequiredEdges:
+        return read_numbers(required_edges_);
+      case Keyword::kRequiredTriangles:
+        return read_numbers(required_triangles_);
+      default:
+        return skip(heading);
+    }
+  }
+
+  void read_vertices() {
+    const std::size_t n = in_.count(1, 3);
+    mesh_.points.reserve(mesh_.points.size() + n);
+    mesh_.vertex_labels.reserve(mesh_.points.size() + n);
+    for (std::size_t i = 0; i < n; ++i) {
+      Vec3 p;
+      p.x = in_.coordinate();
+      p.y = in_.coordinate();
+      p.z = in_.coordinate();
+      mesh_.points.push_back(p);
+      mesh_.vertex_labels.push_back(label());
+    }
+  }
+
+  int label() {
+    using Limits = std::numeric_limits<int>;
+    return static_cast<int>(in_.integer_in(Limits::min(), Limits::max(), "reference"));
+  }
+
+  /// Numbers of vertices are checked where they stand when the vertices came first, as they always do in
+  /// practice, and by validate() otherwise.
+  Index vertex() {
+    const std::size_t known = mesh_.points.size();
+    const auto highest = static_cast<std::int64_t>(known > 0 ? known : VertexHandle::kInvalid >> 1);
+    return static_cast<Index>(in_.integer_in(1, highest, "vertex") - 1);
+  }
+
+  /// Elements of N corners, each followed by the points of its edges if it is of second order.
+  template <std::size_t kMidside, std::size_t N>
+  void read_elements(std::vector<std::array<Index, N>>& elements, std::vector<int>& labels,
+                     const Heading& heading) {
+    const std::size_t n = in_.count(N + kMidside + 1, 0);
+    elements.reserve(elements.size() + n);
+    labels.reserve(elements.size() + n);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::array<Index, N> element;
+      for (Index& corner : element) corner = vertex();
+      for (std::size_t k = 0; k < kMidside; ++k) midside_.push_back(vertex());
+      elements.push_back(element);
+      labels.push_back(label());
+    }
+    if (kMidside > 0 && n > 0) {
+      mesh_.notes.push_back(std::to_string(n) + " " + std::string(heading.name) +
+                            " were made linear: the points of their edges are left out");
+    }
+  }
+
+  void read_numbers(std::vector<Index>& numbers) {
+    const std::size_t n = in_.count(1, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      numbers.push_back(static_cast<Index>(in_.integer_in(1, VertexHandle::kInvalid >> 1, "number") - 1));
+    }
+  }
+
+  void skip(const Heading& heading) {
+    const std::size_t n = in_.skip();
+    if (n > 0 && medit::is_unsupported_cell(heading.name)) {
+      in_.fail(std::to_string(n) + " " + std::string(heading.name) +
+               ": only tetrahedra of first and second order are read");
+    }
+    const std::string name =
+        heading.name.empty() ? "section " + std::to_string(heading.code) : std::string(heading.name);
+    if (n > 0 || heading.keyword == Keyword::kUnknown) {
+      mesh_.notes.push_back(name + (n > 0 ? " (" + std::to_string(n) + ")" : "") + " is not kept");
+    }
+  }
+
+  /// Corners and the vertices of required edges and triangles are as fixed as required vertices.
+  void fix_required() {
+    std::vector<Index>& fixed = mesh_.fixed_vertices;
+    const auto fix_corners_of = [&](const auto& elements, const std::vector<Index>& numbers,
+                                    std::string what) {
+      for (const Index number : numbers) {
+        if (number >= elements.size()) {
+          in_.fail(what + " " + std::to_string(number + 1) + " is out of range (the file has " +
+                   std::to_string(elements.size()) + ")");
+        }
+        fixed.insert(fixed.end(), elements[number].begin(), elements[number].end());
+      }
+      if (!numbers.empty()) {
+        mesh_.notes.push_back(what + " (" + std::to_string(numbers.size()) +
+                              "): kept by fixing their vertices");
+      }
+    };
+    fixed.insert(fixed.end(), corners_.begin(), corners_.end());
+    if (!corners_.empty()) {
+      mesh_.notes.push_back("Corners (" + std::to_string(corners_.size()) + "): kept as fixed vertices");
+    }
+    fix_corners_of(mesh_.edges, required_edges_, "RequiredEdges");
+    fix_corners_of(mesh_.triangles, required_triangles_, "RequiredTriangles");
+    std::sort(fixed.begin(), fixed.end());
+    fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  }
+
+  Source in_;
+  MeshData mesh_;
+  std::vector<Index> midside_;
+  std::vector<Index> corners_;
+  std::vector<Index> required_edges_;
+  std::vector<Index> required_triangles_;
+};
+
+template <class Source>
+MeshData read(const InputFile& file) {
+  MeditReader<Source> reader(file);
+  MeshData mesh = reader.read();
+  medit::read_solution_beside(file, mesh);
+  drop_midside_points(mesh, reader.midside());
+  return mesh;
+}
+
+/// Files are called .mesh or .meshb, but the first bytes decide.
+MeshData read_either(const InputFile& file) {
+  return medit::is_binary(file) ? read<medit::BinarySource>(file) : read<medit::AsciiSource>(file);
+}
+
+}  // namespace
+
+MeshData read_medit(const InputFile& file) { return read_either(file); }
+
+MeshData read_meditb(const InputFile& file) { return read_either(file); }
+
+}  // namespace hfr::io
