@@ -20,6 +20,9 @@ struct Format {
 constexpr Format kFormats[] = {
     {".mesh", read_medit, write_medit},
     {".meshb", read_meditb, write_meditb},
+    {".node", read_tetgen, write_tetgen},
+    {".ele", read_tetgen, write_tetgen},
+    {".face", read_tetgen, write_tetgen},
 };
 
 std::string joined(const std::vector<std::string>& words) {
