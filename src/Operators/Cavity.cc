@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Operators/Cavity.hh"
+
+#include <algorithm>
+
+namespace hfr {
+namespace {
+
+/// Distinct edges and faces of a set of tetrahedra. Sorted arrays, so that a set of a few dozen cells costs a
+/// few microseconds; only plans that are about to be accepted come here.
+template <std::size_t N>
+class SimplexSet {
+ public:
+  void add(std::array<VertexHandle, N> key) {
+    std::sort(key.begin(), key.end());
+    items_.push_back(key);
+  }
+  void finish() {
+    std::sort(items_.begin(), items_.end());
+    items_.resize(static_cast<std::size_t>(std::unique(items_.begin(), items_.end()) - items_.begin()));
+  }
+  bool has(const std::array<VertexHandle, N>& key) const {
+    return std::binary_search(items_.begin(), items_.end(), key);
+  }
+  auto begin() const { return items_.begin(); }
+  auto end() const { return items_.end(); }
+
+ private:
+  FixedVector<std::array<VertexHandle, N>, 6 * Cavity::kCapacity> items_;
+};
+
+template <class Cells>
+SimplexSet<2> edges_of(const Cells& tets) {
+  SimplexSet<2> set;
+  for (const Tet& t : tets)
+    for (const auto& e : kEdgeCorners) set.add({t[e[0]], t[e[1]]});
+  set.finish();
+  return set;
+}
+
+template <class Cells>
+SimplexSet<3> faces_of(const Cells& tets) {
+  SimplexSet<3> set;
+  for (const Tet& t : tets)
+    for (const auto& f : kFaceCorners) set.add({t[f[0]], t[f[1]], t[f[2]]});
+  set.finish();
+  return set;
+}
+
+FixedVector<Tet, Cavity::kCapacity> dead_tets(const TetMesh& mesh, const Cavity& cavity) {
+  FixedVector<Tet, Cavity::kCapacity> tets;
+  for (CellHandle c : cavity.dead) tets.push_back(mesh.cell(c).v);
+  return tets;
+}
+
+bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
+  const Labels& labels = mesh.labels();
+  if (!labels.faces.empty()) {
+    for (CellHandle c : cavity.dead) {
+      for (int k = 0; k < 4; ++k) {
+        const HalfFaceHandle h = halfface_of(c, k);
+        const HalfFaceHandle m = mesh.opposite_halfface(h);
+        if (!m.is_valid() || m < h) continue;
+        const bool inside =
+            std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m)) != cavity.dead.end();
+        if (inside && labels.faces.find(mesh.halfface_vertices(h))) return false;
+      }
+    }
+  }
+  if (!labels.edges.empty()) {
+    const SimplexSet<2> kept = edges_of(cavity.born);
+    for (const auto& edge : edges_of(dead_tets(mesh, cavity)))
+      if (!kept.has(edge) && labels.edges.find(edge)) return false;
+  }
+  return !cavity.removed.is_valid() || labels.vertex(cavity.removed) == 0;
+}
+
+}  // namespace
+
+bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch) {
+  if (cavity.moved.is_valid()) return true;
+  if (mesh.has_regions()) {
+    const int region = mesh.region(cavity.dead[0]);
+    for (CellHandle c : cavity.dead)
+      if (mesh.region(c) != region) return false;
+  }
+  if (!labels_survive(mesh, cavity)) return false;
+  if (!check_links) return true;
+
+  const auto before = dead_tets(mesh, cavity);
+  const SimplexSet<2> old_edges = edges_of(before);
+  const SimplexSet<3> old_faces = faces_of(before);
+  for (const auto& edge : edges_of(cavity.born)) {
+    if (old_edges.has(edge) || edge[1] == Cavity::kNewVertex) continue;
+    if (mesh.has_edge(edge[0], edge[1], scratch)) return false;
+  }
+  for (const auto& face : faces_of(cavity.born)) {
+    if (old_faces.has(face) || face[2] == Cavity::kNewVertex) continue;
+    // A face with a new edge is new with it; what is left has three old edges.
+    if (!old_edges.has({face[0], face[1]}) || !old_edges.has({face[0], face[2]}) ||
+        !old_edges.has({face[1], face[2]}))
+      continue;
+    if (mesh.has_face(face[0], face[1], face[2], scratch)) return false;
+  }
+  return true;
+}
+
+std::size_t created_simplices(const TetMesh& mesh, const Cavity& cavity, std::span<Simplex> out) {
+  if (cavity.moved.is_valid() || cavity.new_vertex) return 0;
+  const auto before = dead_tets(mesh, cavity);
+  std::size_t n = 0;
+  const auto emit = [&](const Simplex& simplex) {
+    if (n < out.size()) out[n++] = simplex;
+  };
+  const SimplexSet<2> old_edges = edges_of(before);
+  for (const auto& edge : edges_of(cavity.born))
+    if (!old_edges.has(edge)) emit({edge[0], edge[1], VertexHandle()});
+  const SimplexSet<3> old_faces = faces_of(before);
+  for (const auto& face : faces_of(cavity.born))
+    if (!old_faces.has(face) && old_edges.has({face[0], face[1]}) && old_edges.has({face[0], face[2]}) &&
+        old_edges.has({face[1], face[2]}))
+      emit(face);
+  return n;
+}
+
+}  // namespace hfr

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// G. T. Klincsek, Minimal triangulations of polygonal domains, 1980; applied to edge removal by Shewchuk, Two
+// discrete optimization algorithms for the topological improvement of tetrahedral meshes, 2002.
+#include "Operators/EdgeRemoval.hh"
+
+#include <algorithm>
+#include <limits>
+
+#include "Operators/Metrics.hh"
+
+namespace hfr {
+namespace {
+
+constexpr double kUnreachable = -std::numeric_limits<double>::infinity();
+
+/// The ring of an inner edge: vertices counter-clockwise about a→b, and the cells (i, i+1).
+struct Ring {
+  VertexHandle a, b;
+  int size = 0;
+  std::array<VertexHandle, 32> vertices;
+  std::array<CellHandle, 32> cells;
+};
+
+/// False when the edge lies on the boundary or its ring has more than 32 cells.
+bool gather_ring(const TetMesh& mesh, EdgeHandle seed, Ring& ring) {
+  const CellHandle c(seed.idx() / 6);
+  const int edge = static_cast<int>(seed.idx() % 6);
+  const auto& ends = kEdgeCorners[static_cast<std::size_t>(edge)];
+  ring.a = mesh.cell(c).v[ends[0]];
+  ring.b = mesh.cell(c).v[ends[1]];
+  ring.size = 0;
+  return mesh.walk_ring(c, edge, [&](CellHandle cell, VertexHandle p, VertexHandle) {
+    if (ring.size == 32) return false;
+    ring.cells[static_cast<std::size_t>(ring.size)] = cell;
+    ring.vertices[static_cast<std::size_t>(ring.size++)] = p;
+    return true;
+  });
+}
+
+/// Klincsek's table over the sides (i, j) of the ring polygon.
+class Triangulation {
+ public:
+  Triangulation(int n) : n_(n) {}
+
+  /// Largest worst value over all triangulations, `floor` where none is better than it. value(i, k, j, floor)
+  /// is the worst of the two cells of triangle (i, k, j), or anything ≤ floor once it is no better.
+  template <class Value>
+  double solve(double floor, Value&& value) {
+    for (int i = 0; i + 1 < n_; ++i) best(i, i + 1) = std::numeric_limits<double>::infinity();
+    for (int span = 2; span < n_; ++span) {
+      for (int i = 0; i + span < n_; ++i) {
+        const int j = i + span;
+        double top = floor;
+        for (int k = i + 1; k < j; ++k) {
+          const double sides = std::min(best(i, k), best(k, j));
+          if (!(sides > top)) continue;
+          const double worst = std::min(sides, value(i, k, j, top));
+          if (worst > top) {
+            top = worst;
+            apex_[static_cast<std::size_t>(i * 32 + j)] = static_cast<std::uint8_t>(k);
+          }
+        }
+        best(i, j) = top > floor ? top : kUnreachable;
+      }
+    }
+    return std::max(floor, best(0, n_ - 1));
+  }
+
+  /// Writes the apexes in preorder.
+  void preorder(std::uint8_t* out) const { preorder(0, n_ - 1, out); }
+
+ private:
+  double& best(int i, int j) { return best_[static_cast<std::size_t>(i * 32 + j)]; }
+  std::uint8_t* preorder(int i, int j, std::uint8_t* out) const {
+    if (j - i < 2) return out;
+    const std::uint8_t k = apex_[static_cast<std::size_t>(i * 32 + j)];
+    *out++ = k;
+    return preorder(k, j, preorder(i, k, out));
+  }
+
+  int n_;
+  std::array<double, 32 * 32> best_;
+  std::array<std::uint8_t, 32 * 32> apex_;
+};
+
+/// visit(i, k, j) for each triangle of a triangulation stored in preorder.
+template <class Visit>
+const std::uint8_t* for_triangles(int i, int j, const std::uint8_t* apex, Visit&& visit) {
+  if (j - i < 2) return apex;
+  const int k = *apex++;
+  visit(i, k, j);
+  apex = for_triangles(i, k, apex, visit);
+  return for_triangles(k, j, apex, visit);
+}
+
+}  // namespace
+
+template <class Metric>
+void EdgeRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
+  Ring ring;
+  out.clear();
+  gather_ring(mesh, seed, ring);
+  for (int i = 0; i < ring.size; ++i) out.push_back(ring.cells[static_cast<std::size_t>(i)]);
+}
+
+template <class Metric>
+std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(const TetMesh& mesh,
+                                                                               Seed seed) const {
+  Ring ring;
+  if (!gather_ring(mesh, seed, ring)) return std::nullopt;
+  const auto n = static_cast<std::size_t>(ring.size);
+  double old_worst = std::numeric_limits<double>::infinity();
+  std::array<Vec3, 32> p;
+  for (std::size_t i = 0; i < n; ++i) {
+    old_worst = std::min(old_worst, quality[ring.cells[i].idx()]);
+    p[i] = mesh.point(ring.vertices[i]);
+  }
+  const Vec3 a = mesh.point(ring.a);
+  const Vec3 b = mesh.point(ring.b);
+  // Ring triangle (i, k, j) is counter-clockwise about a→b: it is positive with b, and reversed with a.
+  const auto value = [&](int i, int k, int j, double floor) {
+    const Vec3 x = p[static_cast<std::size_t>(i)];
+    const Vec3 y = p[static_cast<std::size_t>(k)];
+    const Vec3 z = p[static_cast<std::size_t>(j)];
+    const double upper = metric(x, y, z, b);
+    return upper > floor ? std::min(upper, metric(y, x, z, a)) : upper;
+  };
+  Triangulation table(ring.size);
+  const double new_worst = table.solve(old_worst, value);
+  if (!(new_worst > old_worst)) return std::nullopt;
+  Plan plan;
+  plan.old_worst = old_worst;
+  plan.new_worst = new_worst;
+  plan.n_dead = static_cast<std::uint32_t>(n);
+  plan.n_born = static_cast<std::uint32_t>(2 * (n - 2));
+  plan.seed = seed;
+  plan.ring = static_cast<std::uint8_t>(n);
+  table.preorder(plan.apex.data());
+  return plan;
+}
+
+template <class Metric>
+void EdgeRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  Ring ring;
+  gather_ring(mesh, plan.seed, ring);
+  out.clear();
+  for (int i = 0; i < ring.size; ++i) out.dead.push_back(ring.cells[static_cast<std::size_t>(i)]);
+  for_triangles(0, ring.size - 1, plan.apex.data(), [&](int i, int k, int j) {
+    const VertexHandle x = ring.vertices[static_cast<std::size_t>(i)];
+    const VertexHandle y = ring.vertices[static_cast<std::size_t>(k)];
+    const VertexHandle z = ring.vertices[static_cast<std::size_t>(j)];
+    out.born.push_back({x, y, z, ring.b});
+    out.born.push_back({y, x, z, ring.a});
+  });
+}
+
+template <class Metric>
+Tet EdgeRemoval<Metric>::identity(const TetMesh& mesh, Seed seed) const {
+  const auto& ends = kEdgeCorners[seed.idx() % 6];
+  const Cell& cell = mesh.cell(CellHandle(seed.idx() / 6));
+  const VertexHandle a = cell.v[ends[0]];
+  const VertexHandle b = cell.v[ends[1]];
+  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+}
+
+HFR_INSTANTIATE_FOR_METRICS(EdgeRemoval)
+
+}  // namespace hfr

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// D'Amato & Venere, JPDC 73 (2013), section 3.3: "candidate positions" at radius r round the vertex.
+#include "Operators/SmoothCandidates.hh"
+
+#include <cmath>
+
+#include "Operators/Metrics.hh"
+#include "Operators/StarForm.hh"
+
+namespace hfr {
+namespace {
+
+constexpr double kDiagonal = 0.57735026918962576;  // 1/√3: all directions have length 1
+
+/// The axes, then the diagonals of the cube.
+constexpr std::array<Vec3, 14> kDirections = {{{1, 0, 0},
+                                               {-1, 0, 0},
+                                               {0, 1, 0},
+                                               {0, -1, 0},
+                                               {0, 0, 1},
+                                               {0, 0, -1},
+                                               {kDiagonal, kDiagonal, kDiagonal},
+                                               {-kDiagonal, kDiagonal, kDiagonal},
+                                               {kDiagonal, -kDiagonal, kDiagonal},
+                                               {-kDiagonal, -kDiagonal, kDiagonal},
+                                               {kDiagonal, kDiagonal, -kDiagonal},
+                                               {-kDiagonal, kDiagonal, -kDiagonal},
+                                               {kDiagonal, -kDiagonal, -kDiagonal},
+                                               {-kDiagonal, -kDiagonal, -kDiagonal}}};
+
+/// Half the mean length of the star's edges; each edge counts once a face that it bounds, which is near enough.
+double initial_radius(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
+  const Vec3 origin = mesh.point(v);
+  double sum = 0;
+  for (HalfFaceHandle h : link) {
+    const auto f = mesh.halfface_vertices(h);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 p = mesh.point(f[i]);
+      sum += std::sqrt(norm2(p - origin)) + std::sqrt(norm2(mesh.point(f[(i + 1) % 3]) - p));
+    }
+  }
+  return 0.5 * sum / (6.0 * static_cast<double>(link.size()));
+}
+
+/// The search proper. worst(x, floor): smallest decision value with the vertex moved by x.
+template <class Worst>
+Vec3 descend(double radius, int halvings, double worst_now, Worst&& worst) {
+  Vec3 place;
+  for (int level = 0; level < halvings;) {
+    double best = worst_now;
+    Vec3 best_place = place;
+    for (Vec3 direction : kDirections) {
+      const Vec3 candidate = place + radius * direction;
+      const double q = worst(candidate, best);
+      if (q > best) {
+        best = q;
+        best_place = candidate;
+      }
+    }
+    if (best > worst_now) {
+      worst_now = best;
+      place = best_place;
+    } else {
+      radius *= 0.5;
+      ++level;
+    }
+  }
+  return place;
+}
+
+}  // namespace
+
+template <class Metric>
+std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandle v,
+                                                std::span<const HalfFaceHandle> link, const Metric& metric,
+                                                std::span<const double> quality) const {
+  Move move;
+  move.old_worst = worst_of(link, quality);
+  const double radius = initial_radius(mesh, v, link);
+  const Vec3 origin = mesh.point(v);
+  Vec3 place;
+  if constexpr (std::is_same_v<Metric, VolumeLength>) {
+    StarForm star(mesh, v, link);
+    place = descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) { return star.worst(x, floor); });
+  } else {
+    place = descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) {
+      return worst_with(mesh, v, link, origin + x, metric, floor);
+    });
+  }
+  if (place == Vec3{}) return std::nullopt;
+  move.target = origin + place;
+  // What decides is the formula that the cells are judged by, on the rounded position.
+  move.new_worst = worst_with(mesh, v, link, move.target, metric, move.old_worst);
+  if (!(move.new_worst > move.old_worst)) return std::nullopt;
+  return move;
+}
+
+#define HFR_INSTANTIATE(Metric)                                                              \
+  template std::optional<Move> CandidateSearch::operator()(                                  \
+      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) const;
+HFR_INSTANTIATE(VolumeLength)
+HFR_INSTANTIATE(MinSine2)
+HFR_INSTANTIATE(MinDihedral)
+HFR_INSTANTIATE(CustomMetric)
+
+}  // namespace hfr

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Stage.hh"
+
+#include <algorithm>
+
+namespace hfr {
+namespace {
+
+constexpr int kMaxRounds = 12;         // of one operator in one pass
+constexpr std::size_t kLittle = 200;   // stop when a round commits less than 1/kLittle of the first one
+
+}  // namespace
+
+template <class Metric>
+template <class MakeOp, class MakeSeeds>
+std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op,
+                                  MakeSeeds&& make_seeds) {
+  const double start = control_.seconds();
+  RoundCounts total;
+  std::size_t first = 0;
+  using Op = decltype(make_op());
+  for (int r = 0; r < kMaxRounds && !control_.stopped(); ++r) {
+    const Worklist list = worklist(kind, focus);
+    if (list.cells().empty()) break;
+    const auto seeds = make_seeds(list);
+    RoundOptions round_options{options_.policy, n_invalid_ > 0, options_.seed};
+    Round<Op> round(mesh_, work_, round_options);
+    const RoundCounts counts = round.run(make_op(), seeds);
+    total += counts;
+    if (n_invalid_ > 0) count();
+    if (r == 0) first = counts.winners;
+    if (counts.winners * kLittle <= first) break;
+  }
+  count();
+  report(kind, iteration, total, control_.seconds() - start);
+  return total.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::edge_pass(int iteration, Focus focus) {
+  return rounds(
+      kEdge, iteration, focus, [&] { return EdgeRemoval<Metric>{metric_, work_.quality}; },
+      [&](const Worklist& list) { return edge_seeds(mesh_, list, options_.policy); });
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::face_pass(int iteration, Focus focus) {
+  return rounds(
+      kFace, iteration, focus, [&] { return FaceSwap<Metric>{metric_, work_.quality}; },
+      [&](const Worklist& list) { return face_seeds(mesh_, list, options_.policy); });
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
+  return rounds(
+      kNode, iteration, focus,
+      [&] { return VertexRemoval<Metric>{metric_, work_.quality, work_.frozen}; },
+      [&](const Worklist& list) { return vertex_seeds(mesh_, list, work_.frozen, options_.policy); });
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
+  using Op = StarFromVertex<Cluster::kEdge, Metric>;
+  return rounds(
+      kInsert, iteration, focus,
+      [&] {
+        Op op{metric_, work_.quality, work_.frozen};
+        op.insert = true;
+        op.reconnect = false;
+        return op;
+      },
+      [&](const Worklist& list) {
+        std::vector<typename Op::Seed> seeds;
+        for (EdgeHandle e : edge_seeds(mesh_, list, options_.policy))
+          seeds.push_back({CellHandle(e.idx() / 6), static_cast<std::uint8_t>(e.idx() % 6)});
+        return seeds;
+      });
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
+  if (control_.stopped()) return 0;
+  const double start = control_.seconds();
+  const Worklist list = worklist(kSmooth, focus);
+  const auto vertices = vertex_seeds(mesh_, list, work_.frozen, options_.policy);
+  RoundCounts counts;
+  const auto run = [&](const auto& search) {
+    counts += hfr::smooth_pass(mesh_, work_, search, metric_, vertices, options_.policy);
+  };
+  if (!vertices.empty()) {
+    switch (options_.smoother) {
+      case Smoother::kNewton: run(NewtonSearch{}); break;
+      case Smoother::kCandidates: run(CandidateSearch{}); break;
+      case Smoother::kLaplacian: run(LaplacianSearch{}); break;
+      case Smoother::kTaubin:
+        run(kTaubinForth);
+        run(kTaubinBack);
+        break;
+    }
+  }
+  count();
+  report(kSmooth, iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
+  std::size_t changes = 0;
+  if (has(options_.ops, Ops::kEdge)) changes += edge_pass(iteration, focus);
+  if (has(options_.ops, Ops::kFace)) changes += face_pass(iteration, focus);
+  if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
+  if (has(options_.ops, Ops::kInsert)) changes += insert_pass(iteration, focus);
+  if (has(options_.ops, Ops::kSmooth)) changes += smooth_pass(iteration, focus);
+  return changes;
+}
+
+template <class Metric>
+void Stage<Metric>::report(Kind kind, int iteration, const RoundCounts& counts, double seconds) {
+  PassReport pass;
+  pass.stage = name_;
+  pass.op = kNames[kind];
+  pass.iteration = iteration;
+  pass.rounds = counts.rounds;
+  pass.seeds = counts.seeds;
+  pass.candidates = counts.candidates;
+  pass.winners = counts.winners;
+  pass.n_inverted = n_invalid_;
+  pass.worst = worst_;
+  pass.seconds = seconds;
+  pass.seconds_evaluate = counts.seconds_evaluate;
+  pass.seconds_select = counts.seconds_select;
+  pass.seconds_commit = counts.seconds_commit;
+  control_.add(std::move(pass));
+  control_.tell({name_, iteration, 0.0, n_invalid_, 0.0});
+}
+
+template class Stage<VolumeLength>;
+template class Stage<MinSine2>;
+template class Stage<MinDihedral>;
+template class Stage<CustomMetric>;
+
+}  // namespace hfr

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_STAGE_HH
+#define HFR_REMESH_STAGE_HH
+
+#include <array>
+#include <chrono>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Operators/EdgeRemoval.hh"
+#include "Operators/FaceSwap.hh"
+#include "Operators/SmoothCandidates.hh"
+#include "Operators/SmoothLaplacian.hh"
+#include "Operators/SmoothNewton.hh"
+#include "Operators/StarFromVertex.hh"
+#include "Operators/VertexRemoval.hh"
+#include "Remesh/Improve.hh"
+#include "Remesh/RunControl.hh"
+#include "Scheduler/Round.hh"
+#include "Scheduler/Seeds.hh"
+#include "Scheduler/SmoothPass.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+/// Which cells a pass works on.
+struct Focus {
+  /// Cells whose decision value is below this; infinity: all.
+  double below = std::numeric_limits<double>::infinity();
+  bool everything() const { return below == std::numeric_limits<double>::infinity(); }
+};
+
+/// The passes of a run in one metric. Work follows damage: a pass looks at cells that are in focus and that, or
+/// whose surroundings, have changed since the same operator last looked at them in this stage.
+template <class Metric>
+class Stage {
+ public:
+  Stage(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, Metric metric,
+        std::string name)
+      : mesh_(mesh), work_(work), options_(options), control_(control), metric_(metric), name_(std::move(name)) {
+    work_.set_qualities(mesh_, metric_, options_.policy);
+    std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
+    count();
+  }
+
+  std::size_t n_invalid() const { return n_invalid_; }
+  /// Smallest decision value of the mesh.
+  double worst() const { return worst_; }
+  std::size_t n_below(double value) const {
+    return par::reduce(
+        options_.policy, work_.quality.size(), std::size_t{0},
+        [&](std::size_t i) -> std::size_t { return work_.quality[i] < value ? 1 : 0; }, std::plus<>{});
+  }
+
+  /// Forgets what was looked at, so that a pass with a wider focus or other operators sees every cell again.
+  void look_again() {
+    looked_.fill(0);
+    std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
+  }
+
+  /// One iteration of the operators that options allow, in the paper's order: edge, face, node, smooth.
+  /// Returns the number of committed changes.
+  std::size_t iterate(int iteration, Focus focus, bool with_node);
+
+  std::size_t edge_pass(int iteration, Focus focus);
+  std::size_t face_pass(int iteration, Focus focus);
+  std::size_t node_pass(int iteration, Focus focus);
+  std::size_t insert_pass(int iteration, Focus focus);
+  std::size_t smooth_pass(int iteration, Focus focus);
+
+ private:
+  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kKinds };
+  static constexpr std::array<const char*, kKinds> kNames = {"edge", "face", "node", "insert", "smooth"};
+
+  /// Cells that operator `kind` has to look at; they count as looked at from now on.
+  Worklist worklist(Kind kind, Focus focus) {
+    const auto bit = static_cast<std::uint8_t>(1U << kind);
+    if (focus.everything()) {
+      return Worklist(mesh_, options_.policy, [&](CellHandle c) {
+        if (!(work_.pending[c.idx()] & bit)) return false;
+        work_.pending[c.idx()] = static_cast<std::uint8_t>(work_.pending[c.idx()] & ~bit);
+        return true;
+      });
+    }
+    const std::uint32_t since = looked_[kind];
+    looked_[kind] = work_.clock;
+    return Worklist(mesh_, options_.policy, [&](CellHandle c) {
+      if (!(work_.quality[c.idx()] < focus.below)) return false;
+      for (VertexHandle v : mesh_.cell(c).v)
+        if (work_.changed[v.idx()] > since) return true;
+      return false;
+    });
+  }
+
+  /// Rounds of one operator until they bring little, then a line in the report.
+  template <class MakeOp, class MakeSeeds>
+  std::size_t rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op, MakeSeeds&& make_seeds);
+
+  void count() {
+    struct Sum {
+      std::size_t invalid = 0;
+      double worst = std::numeric_limits<double>::infinity();
+    };
+    const Sum sum = par::reduce(
+        options_.policy, work_.quality.size(), Sum{},
+        [&](std::size_t i) {
+          const double q = work_.quality[i];
+          return Sum{static_cast<std::size_t>(q > 0 ? 0 : 1), q};
+        },
+        [](Sum a, Sum b) { return Sum{a.invalid + b.invalid, std::min(a.worst, b.worst)}; });
+    n_invalid_ = sum.invalid;
+    worst_ = sum.worst;
+  }
+
+  void report(Kind kind, int iteration, const RoundCounts& counts, double seconds);
+
+  TetMesh& mesh_;
+  Workspace& work_;
+  const ImproveOptions& options_;
+  RunControl& control_;
+  Metric metric_;
+  std::string name_;
+  std::size_t n_invalid_ = 0;
+  double worst_ = 0;
+  std::array<std::uint32_t, kKinds> looked_{};
+};
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SCHEDULER_RANK_HH
+#define HFR_SCHEDULER_RANK_HH
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "HalfFace/TupleMap.hh"
+#include "Operators/Cavity.hh"
+#include "Parallel/Sort.hh"
+
+namespace hfr {
+
+/// Worse clusters first: 0 for what is inverted or flat, then one level a power of two of the decision value.
+constexpr std::uint64_t quality_bucket(double old_worst) {
+  if (!(old_worst > 0)) return 0;
+  const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(old_worst) >> 52) - 1023;
+  return static_cast<std::uint64_t>(exponent < -13 ? 1 : exponent > 0 ? 15 : 15 + exponent);
+}
+
+/// Priority of a candidate: smaller wins. Equal buckets are in the order of a hash of the vertices that name the
+/// seed, salted by the round, so that neighbours in storage are no neighbours in rank.
+constexpr std::uint64_t priority(double old_worst, const Tet& identity, std::uint64_t salt) {
+  std::uint64_t h = mix64(salt + 0x9e3779b97f4a7c15ULL);
+  for (VertexHandle v : identity) h = mix64(h ^ v.idx());
+  return quality_bucket(old_worst) << 60 | h >> 4;
+}
+
+/// Sorts by key; equal keys, which a 60-bit hash all but excludes, by identity.
+void rank(par::Policy policy, std::vector<par::KeyIndex>& keys, std::vector<par::KeyIndex>& scratch,
+          std::span<const Tet> identities);
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SCHEDULER_ROUND_HH
+#define HFR_SCHEDULER_ROUND_HH
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Operators/Operator.hh"
+#include "Operators/Replace.hh"
+#include "Parallel/Parallel.hh"
+#include "Scheduler/Rank.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+struct RoundOptions {
+  par::Policy policy;
+  /// Hold the full link condition, also among the winners of the round. Needed while any cell is inverted or
+  /// flat; elsewhere a cluster whose cells stay positive cannot break it.
+  bool check_links = true;
+  std::uint64_t seed = 1;
+};
+
+/// One round of one operator kind: evaluate the seeds in parallel, rank what improves, select the first
+/// independent set in rank order, hand out slots, commit in bulk, refresh. The result depends on mesh, seeds (as
+/// a set) and options, not on the number of threads. What lost is not remembered: it shared a cell with a winner,
+/// so its evaluation is void; the winner's new cells are pending instead.
+template <LocalOperator Op>
+class Round {
+ public:
+  Round(TetMesh& mesh, Workspace& work, RoundOptions options) : mesh_(mesh), work_(work), options_(options) {}
+
+  RoundCounts run(const Op& op, std::span<const typename Op::Seed> seeds) {
+    using Clock = std::chrono::steady_clock;
+    const auto since = [](Clock::time_point t) {
+      return std::chrono::duration<double>(Clock::now() - t).count();
+    };
+    RoundCounts counts;
+    counts.rounds = 1;
+    counts.seeds = seeds.size();
+    auto start = Clock::now();
+    evaluate(op, seeds);
+    counts.candidates = candidates_.size();
+    counts.seconds_evaluate = since(start);
+    start = Clock::now();
+    rank_all(op);
+    select(op);
+    counts.winners = winners_.size();
+    counts.seconds_select = since(start);
+    start = Clock::now();
+    ++work_.clock;
+    if (!winners_.empty()) commit(op);
+    counts.seconds_commit = since(start);
+    return counts;
+  }
+
+ private:
+  using Plan = typename Op::Plan;
+  struct Winner {
+    std::uint32_t candidate = 0;
+    VertexHandle new_vertex, removed;
+    std::size_t first_slot = 0;
+    std::span<OuterFace> notes;
+  };
+
+  void evaluate(const Op& op, std::span<const typename Op::Seed> seeds) {
+    const int n_parts = par::thread_count(options_.policy, seeds.size());
+    std::vector<std::vector<Plan>> found(static_cast<std::size_t>(n_parts));
+    par::parts(n_parts, [&](int part) {
+      Cavity cavity;
+      Star scratch;
+      auto& mine = found[static_cast<std::size_t>(part)];
+      const std::size_t end = par::part_begin(seeds.size(), n_parts, part + 1);
+      for (std::size_t i = par::part_begin(seeds.size(), n_parts, part); i < end; ++i) {
+        const std::optional<Plan> plan = op.evaluate(mesh_, seeds[i]);
+        if (!plan) continue;
+        if (needs_admission()) {
+          op.commit(mesh_, *plan, cavity);
+          if (!admissible(mesh_, cavity, options_.check_links, scratch)) continue;
+        }
+        mine.push_back(*plan);
+      }
+    });
+    candidates_ = std::move(found[0]);
+    for (std::size_t p = 1; p < found.size(); ++p)
+      candidates_.insert(candidates_.end(), found[p].begin(), found[p].end());
+  }
+
+  bool needs_admission() const {
+    const Labels& labels = mesh_.labels();
+    return options_.check_links || mesh_.has_regions() || !labels.faces.empty() || !labels.edges.empty() ||
+           !labels.vertices.empty();
+  }
+
+  void rank_all(const Op& op) {
+    identities_.resize(candidates_.size());
+    keys_.resize(candidates_.size());
+    par::for_each(options_.policy, candidates_.size(), [&](std::size_t i) {
+      identities_[i] = op.identity(mesh_, candidates_[i].seed);
+      keys_[i] = {priority(candidates_[i].old_worst, identities_[i], options_.seed + work_.clock),
+                  static_cast<std::uint32_t>(i)};
+    });
+    rank(options_.policy, keys_, scratch_, identities_);
+  }
+
+  /// The paper's ASSIGNMENT: in rank order, a candidate wins when no cell of its scope is taken.
+  void select(const Op& op) {
+    winners_.clear();
+    Scope scope;
+    Cavity cavity;
+    std::unordered_set<std::uint64_t> created;
+    for (const par::KeyIndex& key : keys_) {
+      const Plan& plan = candidates_[key.index];
+      op.scope(mesh_, plan.seed, scope);
+      bool free = true;
+      for (CellHandle c : scope) free = free && work_.claim[c.idx()] == Workspace::kUnclaimed;
+      if (!free || !creates_nothing_twice(op, plan, cavity, created)) continue;
+      const auto winner = static_cast<std::uint32_t>(winners_.size());
+      for (CellHandle c : scope) work_.claim[c.idx()] = winner;
+      winners_.push_back({key.index, {}, {}, 0, {}});
+    }
+  }
+
+  /// Two winners that share no cell could still make the same edge in a folded mesh; the later one is refused.
+  /// Hashes of 64 bits stand for the simplices: a chance collision only refuses a candidate for this round.
+  bool creates_nothing_twice(const Op& op, const Plan& plan, Cavity& cavity,
+                             std::unordered_set<std::uint64_t>& created) const {
+    if (!options_.check_links) return true;
+    op.commit(mesh_, plan, cavity);
+    std::array<Simplex, 512> simplices;
+    const std::size_t n = created_simplices(mesh_, cavity, simplices);
+    std::array<std::uint64_t, 512> hashes;
+    for (std::size_t i = 0; i < n; ++i) {
+      std::uint64_t h = 0;
+      for (VertexHandle v : simplices[i]) h = mix64(h ^ v.idx()) + 0x9e3779b97f4a7c15ULL;
+      if (created.contains(h)) return false;
+      hashes[i] = h;
+    }
+    created.insert(hashes.begin(), hashes.begin() + static_cast<std::ptrdiff_t>(n));
+    return true;
+  }
+
+  void commit(const Op& op) {
+    assign_slots(op);
+    const std::size_t n = winners_.size();
+    const int n_parts = par::thread_count(options_.policy, n);
+    std::vector<std::vector<OuterFace>> notes(static_cast<std::size_t>(n_parts));
+    const auto for_winners = [&](auto&& body) {
+      par::parts(n_parts, [&](int part) {
+        const std::size_t end = par::part_begin(n, n_parts, part + 1);
+        for (std::size_t w = par::part_begin(n, n_parts, part); w < end; ++w)
+          body(static_cast<std::size_t>(part), w);
+      });
+    };
+    par::parts(n_parts, [&](int part) {  // commit A
+      Cavity cavity;
+      auto& mine = notes[static_cast<std::size_t>(part)];
+      std::vector<std::size_t> first;
+      const std::size_t begin = par::part_begin(n, n_parts, part);
+      const std::size_t end = par::part_begin(n, n_parts, part + 1);
+      for (std::size_t w = begin; w < end; ++w) {
+        first.push_back(mine.size());
+        const Plan& plan = candidates_[winners_[w].candidate];
+        op.commit(mesh_, plan, cavity);
+        if (cavity.moved.is_valid())
+          mesh_.set_point(cavity.moved, cavity.target);
+        else
+          write_cells(mesh_, cavity, slots_of(w), winners_[w].new_vertex, mine);
+        winners_[w].removed = cavity.removed;
+      }
+      first.push_back(mine.size());
+      for (std::size_t w = begin; w < end; ++w)
+        winners_[w].notes = {mine.data() + first[w - begin], mine.data() + first[w - begin + 1]};
+    });
+    for_winners([&](std::size_t, std::size_t w) { mend_mates(w); });
+    refresh(op, for_winners);
+  }
+
+  std::span<const CellHandle> slots_of(std::size_t w) const {
+    return {slots_.data() + winners_[w].first_slot, candidates_[winners_[w].candidate].n_born};
+  }
+
+  /// Dead cells' slots first, then the free list from its back, then new ones; freed slots go to its back. All in
+  /// rank order, so slots do not depend on threads.
+  void assign_slots(const Op& op) {
+    slots_.clear();
+    std::vector<CellHandle>& free = mesh_.free_cells();
+    freed_.clear();
+    std::size_t n_cells = mesh_.n_cells();
+    std::vector<std::pair<CellHandle, CellHandle>> fresh;  // a dead cell of the cavity, a slot that it extends to
+    Scope scope;
+    Cavity cavity;
+    for (Winner& winner : winners_) {
+      const Plan& plan = candidates_[winner.candidate];
+      winner.first_slot = slots_.size();
+      if (plan.n_dead == 0) continue;
+      op.scope(mesh_, plan.seed, scope);
+      HFR_ASSERT(scope.size() == plan.n_dead);
+      for (std::uint32_t i = 0; i < plan.n_dead; ++i) {
+        if (i < plan.n_born)
+          slots_.push_back(scope[i]);
+        else
+          freed_.push_back(scope[i]);
+      }
+      for (std::uint32_t i = plan.n_dead; i < plan.n_born; ++i) {
+        if (free.empty()) {
+          slots_.push_back(CellHandle(n_cells++));
+        } else {
+          slots_.push_back(free.back());
+          free.pop_back();
+        }
+        fresh.emplace_back(scope[0], slots_.back());
+      }
+      if (plan.adds_vertex) {
+        op.commit(mesh_, plan, cavity);
+        winner.new_vertex = mesh_.add_vertex(*cavity.new_vertex);
+      }
+    }
+    mesh_.resize_cells(n_cells);
+    work_.grow(mesh_);
+    for (const auto& [from, to] : fresh) mesh_.copy_cell_data(from, to);
+    for (std::size_t i = freed_.size(); i-- > 0;) free.push_back(freed_[i]);
+  }
+
+  /// Commit B: what lies behind an outer face learns of the new half-face; a neighbour that was itself replaced
+  /// in this round is looked up in its winner's notes.
+  void mend_mates(std::size_t w) {
+    for (const OuterFace& note : winners_[w].notes) {
+      if (!note.behind.is_valid()) continue;
+      const std::uint32_t other = work_.claim[cell_of(note.behind).idx()];
+      if (other == Workspace::kUnclaimed || winners_[other].notes.empty()) {
+        mesh_.set_mate(note.behind, note.after);
+        continue;
+      }
+      for (const OuterFace& theirs : winners_[other].notes)
+        if (theirs.before == note.behind) mesh_.set_mate(note.after, theirs.after);
+    }
+  }
+
+  /// Qualities, pending bits, change stamps and hooks (the smallest cell made in this round) of what was written.
+  template <class ForWinners>
+  void refresh(const Op& op, ForWinners&& for_winners) {
+    const auto store = [](auto& place, auto value) {  // several winners may write the same value
+      std::atomic_ref(place).store(value, std::memory_order_relaxed);
+    };
+    for_winners([&](std::size_t, std::size_t w) {
+      const Winner& winner = winners_[w];
+      Scope moved_star;
+      std::span<const CellHandle> cells = slots_of(w);
+      if (candidates_[winner.candidate].n_dead == 0) {
+        op.scope(mesh_, candidates_[winner.candidate].seed, moved_star);
+        cells = moved_star;
+      }
+      for (CellHandle c : cells) {
+        const auto& v = mesh_.cell(c).v;
+        work_.quality[c.idx()] =
+            op.metric(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
+        work_.pending[c.idx()] = 0xff;
+        work_.claim[c.idx()] = Workspace::kUnclaimed;
+        for (VertexHandle u : v) {
+          store(work_.changed[u.idx()], work_.clock);
+          if (candidates_[winner.candidate].n_dead != 0) store(mesh_.mutable_hook(u), CellHandle());
+        }
+      }
+    });
+    for_winners([&](std::size_t, std::size_t w) {
+      if (candidates_[winners_[w].candidate].n_dead == 0) return;
+      for (CellHandle c : slots_of(w))
+        for (VertexHandle u : mesh_.cell(c).v) lower_hook(u, c);
+    });
+    for (CellHandle c : freed_) {
+      work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
+      work_.claim[c.idx()] = Workspace::kUnclaimed;
+    }
+    for (const Winner& winner : winners_)
+      if (winner.removed.is_valid()) mesh_.mark_deleted(winner.removed);
+  }
+
+  void lower_hook(VertexHandle v, CellHandle c) {
+    std::atomic_ref hook(mesh_.mutable_hook(v));
+    CellHandle now = hook.load(std::memory_order_relaxed);
+    while (c < now && !hook.compare_exchange_weak(now, c, std::memory_order_relaxed)) {
+    }
+  }
+
+  TetMesh& mesh_;
+  Workspace& work_;
+  RoundOptions options_;
+  std::vector<Plan> candidates_;
+  std::vector<Tet> identities_;
+  std::vector<par::KeyIndex> keys_, scratch_;
+  std::vector<Winner> winners_;
+  std::vector<CellHandle> slots_, freed_;
+};
+
+}  // namespace hfr
+
+#endif

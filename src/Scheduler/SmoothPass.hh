@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SCHEDULER_SMOOTH_PASS_HH
+#define HFR_SCHEDULER_SMOOTH_PASS_HH
+
+#include <atomic>
+#include <chrono>
+#include <span>
+
+#include "Operators/Smooth.hh"
+#include "Scheduler/StarTable.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+/// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and moves
+/// by itself; a later colour sees the moves of the earlier ones.
+template <class Search, class Metric>
+RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, const Metric& metric,
+                        std::span<const VertexHandle> vertices, par::Policy policy) {
+  using Clock = std::chrono::steady_clock;
+  const auto since = [](Clock::time_point t) {
+    return std::chrono::duration<double>(Clock::now() - t).count();
+  };
+  RoundCounts counts;
+  counts.rounds = 1;
+  counts.seeds = vertices.size();
+  ++work.clock;
+  auto start = Clock::now();
+  const StarTable stars(mesh, vertices, policy);
+  const auto groups = colour_vertices(mesh, vertices, stars);
+  counts.seconds_select = since(start);
+  start = Clock::now();
+  for (const auto& group : groups) {
+    counts.winners += par::reduce(
+        policy, group.size(), std::size_t{0},
+        [&](std::size_t k) -> std::size_t {
+          const std::uint32_t i = group[k];
+          const auto link = stars.link(i);
+          if (link.empty()) return 0;
+          const VertexHandle v = vertices[i];
+          const std::optional<Move> move = search(mesh, v, link, metric, std::span<const double>(work.quality));
+          if (!move) return 0;
+          mesh.set_point(v, move->target);
+          for (HalfFaceHandle h : link) {
+            const CellHandle c = cell_of(h);
+            work.quality[c.idx()] = quality_with(mesh, c, v, move->target, metric);
+            work.pending[c.idx()] = 0xff;
+            for (VertexHandle u : mesh.cell(c).v)  // neighbours may share u: all write the same value
+              std::atomic_ref(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
+          }
+          return 1;
+        },
+        [](std::size_t a, std::size_t b) { return a + b; });
+  }
+  counts.candidates = counts.winners;
+  counts.seconds_evaluate = since(start);
+  return counts;
+}
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SCHEDULER_STAR_TABLE_HH
+#define HFR_SCHEDULER_STAR_TABLE_HH
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Parallel/Parallel.hh"
+
+namespace hfr {
+
+/// Stars of some vertices in one array, for passes that leave the topology alone: built where it is used and
+/// thrown away after (the paper's "generated at the time of use").
+class StarTable {
+ public:
+  /// `vertices` ascending. A star is left empty when it has more than Star::kCapacity cells.
+  StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
+
+  std::size_t size() const { return begin_.size() - 1; }
+  /// Half-faces opposite vertex number i, one a cell of its star, ascending.
+  std::span<const HalfFaceHandle> link(std::size_t i) const {
+    return {links_.data() + begin_[i], links_.data() + begin_[i + 1]};
+  }
+
+ private:
+  std::vector<std::size_t> begin_;
+  std::vector<HalfFaceHandle> links_;
+};
+
+/// Numbers 0 … size-1 grouped by colour: two vertices of one cell never share a colour, so all of a group may
+/// move at the same time. First-fit in the order of `vertices`.
+std::vector<std::vector<std::uint32_t>> colour_vertices(const TetMesh& mesh,
+                                                        std::span<const VertexHandle> vertices,
+                                                        const StarTable& stars);
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SCHEDULER_WORKSPACE_HH
+#define HFR_SCHEDULER_WORKSPACE_HH
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Operators/Operator.hh"
+#include "Parallel/Parallel.hh"
+
+namespace hfr {
+
+/// What rounds keep about the mesh between them: 13 bytes a cell, 5 a vertex.
+struct Workspace {
+  static constexpr std::uint32_t kUnclaimed = 0xffffffffU;
+
+  std::vector<double> quality;         ///< per cell slot: decision value in the metric of the stage
+  std::vector<std::uint32_t> claim;    ///< per cell slot: the winner that holds it in this round
+  std::vector<std::uint8_t> pending;   ///< per cell slot: one bit an operator that has not looked at it yet
+  std::vector<std::uint8_t> frozen;    ///< per vertex
+  std::vector<std::uint32_t> changed;  ///< per vertex: clock of the last change of its star
+  std::uint32_t clock = 1;             ///< counts rounds
+
+  /// Sizes everything for the mesh, all cells pending. Qualities are left to set_qualities().
+  void attach(const TetMesh& mesh, par::Policy policy) {
+    quality.assign(mesh.n_cells(), 0.0);
+    claim.assign(mesh.n_cells(), kUnclaimed);
+    pending.assign(mesh.n_cells(), 0xff);
+    frozen = frozen_vertices(mesh, policy);
+    changed.assign(mesh.n_vertices(), clock);
+  }
+
+  /// Follows the mesh after it has grown.
+  void grow(const TetMesh& mesh) {
+    quality.resize(mesh.n_cells(), 0.0);
+    claim.resize(mesh.n_cells(), kUnclaimed);
+    pending.resize(mesh.n_cells(), 0);
+    frozen.resize(mesh.n_vertices(), 0);
+    changed.resize(mesh.n_vertices(), clock);
+  }
+
+  /// Decision value of every live cell; +infinity in deleted slots.
+  template <class Metric>
+  void set_qualities(const TetMesh& mesh, const Metric& metric, par::Policy policy) {
+    par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
+      const CellHandle c(i);
+      if (mesh.is_deleted(c)) {
+        quality[i] = std::numeric_limits<double>::infinity();
+        return;
+      }
+      const auto& v = mesh.cell(c).v;
+      quality[i] = metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+    });
+  }
+};
+
+/// What a round or a pass did.
+struct RoundCounts {
+  std::size_t rounds = 0;
+  std::size_t seeds = 0;       ///< looked at
+  std::size_t candidates = 0;  ///< that would improve their cluster
+  std::size_t winners = 0;     ///< committed
+  double seconds_evaluate = 0;
+  double seconds_select = 0;
+  double seconds_commit = 0;
+
+  RoundCounts& operator+=(const RoundCounts& o) {
+    rounds += o.rounds;
+    seeds += o.seeds;
+    candidates += o.candidates;
+    winners += o.winners;
+    seconds_evaluate += o.seconds_evaluate;
+    seconds_select += o.seconds_select;
+    seconds_commit += o.seconds_commit;
+    return *this;
+  }
+};
+
+}  // namespace hfr
+
+#endif
