@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything comes from the system; nothing is downloaded at configure time.
+# Everything comes from the system; nothing is downloaded at configure time. scripts/install-deps.sh installs
+# the Debian packages of all of it.
+if(HFR_OPENCL)
+  message(FATAL_ERROR "hfremesh ${PROJECT_VERSION} has no OpenCL passes: configure with -DHFR_OPENCL=OFF")
+endif()
+
 find_package(ZLIB REQUIRED)
 find_package(tinyxml2 REQUIRED)
 find_package(fmt REQUIRED)
 if(HFR_OPENMP)
   find_package(OpenMP REQUIRED COMPONENTS CXX)
 endif()
+# Needed by the OpenMesh bridge, and by tests of points seen as Eigen vectors.
+find_package(Eigen3 3.3 QUIET NO_MODULE)
 if(HFR_SURFACE)
   find_package(OpenMesh REQUIRED)
   find_package(Eigen3 3.3 REQUIRED NO_MODULE)
@@ -16,7 +23,6 @@ if(HFR_TOOL)
 endif()
 if(HFR_TESTS)
   find_package(GTest REQUIRED)
-  find_package(Eigen3 3.3 NO_MODULE)
   include(GoogleTest)
 endif()
 if(HFR_BENCH)

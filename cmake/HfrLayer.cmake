@@ -3,26 +3,36 @@
 # is an object library of its own that tests can link without what stands above it.
 set(HFR_LAYERS Parallel HalfFace Quality IO Operators Surface Scheduler Device Remesh)
 
+# What our headers need from whoever compiles them, users included. Bit-identical results need every rounding
+# to be the one written: no contraction into fused multiply-add.
+set(HFR_PUBLIC_OPTIONS -ffp-contract=off)
+
 # Flags that every target of the project is compiled with; never exported.
 add_library(hfr_flags INTERFACE)
 target_compile_features(hfr_flags INTERFACE cxx_std_20)
-# Bit-identical results need every rounding to be the one written: no contraction into fused multiply-add.
-target_compile_options(hfr_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
-  $<$<BOOL:${HFR_WERROR}>:-Werror>)
+target_compile_options(hfr_flags INTERFACE ${HFR_PUBLIC_OPTIONS} -Wall -Wextra -Wpedantic -Wshadow
+  -Wnon-virtual-dtor $<$<BOOL:${HFR_WERROR}>:-Werror>)
+set(HFR_INSTRUMENT_FLAGS "")
 if(HFR_COVERAGE)
-  target_compile_options(hfr_flags INTERFACE --coverage -fprofile-update=atomic)
-  target_link_options(hfr_flags INTERFACE --coverage)
+  list(APPEND HFR_INSTRUMENT_FLAGS --coverage)
+  target_compile_options(hfr_flags INTERFACE -fprofile-update=atomic)
 endif()
 if(HFR_SANITIZE)
-  target_compile_options(hfr_flags INTERFACE -fsanitize=${HFR_SANITIZE} -fno-omit-frame-pointer
-    -fno-sanitize-recover=all)
-  target_link_options(hfr_flags INTERFACE -fsanitize=${HFR_SANITIZE})
+  list(APPEND HFR_INSTRUMENT_FLAGS -fsanitize=${HFR_SANITIZE})
+  target_compile_options(hfr_flags INTERFACE -fno-omit-frame-pointer -fno-sanitize-recover=all)
 endif()
+target_compile_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
+target_link_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 
 # hfr_layer(NAME [SOURCES ...] [HEADERS ...] [PRIVATE_LIBRARIES ...])
-# Headers are public, verified to compile alone, and installed below include/hfremesh/NAME.
+# HEADERS are public: verified to compile alone, and installed below include/hfremesh/NAME.
+# PRIVATE_LIBRARIES appear in no public header; cmake/HfrInstall.cmake knows how users of a static library
+# find them.
 function(hfr_layer NAME)
-  cmake_parse_arguments(ARG "" "" "SOURCES;HEADERS;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;HEADERS;PRIVATE_LIBRARIES")
+  if(ARG_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "hfr_layer(${NAME}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
+  endif()
   set(target hfr_${NAME})
   set(below "")
   foreach(layer IN LISTS HFR_LAYERS)
@@ -34,7 +44,8 @@ function(hfr_layer NAME)
   add_library(${target}_headers INTERFACE)
   target_include_directories(${target}_headers INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/include)
   target_link_libraries(${target}_headers INTERFACE hfr_kernels ${below})
-  set_property(GLOBAL APPEND PROPERTY HFR_PUBLIC_HEADERS_${NAME} ${ARG_HEADERS})
+  list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY HFR_PUBLIC_HEADERS ${ARG_HEADERS})
   if(ARG_SOURCES)
     add_library(${target} OBJECT ${ARG_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -42,17 +53,15 @@ function(hfr_layer NAME)
     set_property(GLOBAL APPEND PROPERTY HFR_OBJECT_LAYERS ${target})
     set_property(GLOBAL APPEND PROPERTY HFR_PRIVATE_LIBRARIES ${ARG_PRIVATE_LIBRARIES})
   endif()
-  if(ARG_HEADERS)
-    target_sources(${target}_headers INTERFACE FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src
-      FILES ${ARG_HEADERS})
-    set_target_properties(${target}_headers PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
-  endif()
 endfunction()
 
-# hfr_test(FOLDER SOURCES ...): one executable test_FOLDER of unittests/FOLDER, linked with the layers up to
-# and including FOLDER.
+# hfr_test(FOLDER SOURCES ... [LIBRARIES ...]): one executable test_FOLDER of unittests/FOLDER, linked with the
+# layers up to and including FOLDER.
 function(hfr_test FOLDER)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LIBRARIES")
+  if(ARG_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "hfr_test(${FOLDER}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
+  endif()
   add_executable(test_${FOLDER} ${ARG_SOURCES})
   target_link_libraries(test_${FOLDER} PRIVATE hfr_flags hfr_${FOLDER}_headers GTest::gmock GTest::gtest_main
     ${ARG_LIBRARIES})
@@ -67,7 +76,6 @@ function(hfr_test FOLDER)
   endforeach()
   target_link_libraries(test_${FOLDER} PRIVATE ${private_libraries})
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/unittests)
-  target_compile_definitions(test_${FOLDER} PRIVATE
-    HFR_TEST_MESHES="${PROJECT_SOURCE_DIR}/../shared/meshes")
+  target_compile_definitions(test_${FOLDER} PRIVATE HFR_TEST_MESHES="${HFR_TEST_MESHES}")
   gtest_discover_tests(test_${FOLDER} TEST_PREFIX ${FOLDER}. DISCOVERY_TIMEOUT 60)
 endfunction()
