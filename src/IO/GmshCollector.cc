@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "HalfFace/Errors.hh"
+#include "IO/Linearise.hh"
 
 namespace hfr::io::gmsh {
 namespace {
@@ -50,15 +51,6 @@ std::vector<std::size_t> identity(std::size_t n) {
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), std::size_t{0});
   return order;
-}
-
-template <std::size_t N>
-void sort_by_tag(Elements<N>& elements) {
-  if (std::is_sorted(elements.tags.begin(), elements.tags.end())) return;
-  std::vector<std::size_t> order = identity(elements.tags.size());
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return elements.tags[a] < elements.tags[b]; });
-  pick(elements, order);
 }
 
 /// Is some entity in more than one physical group?
@@ -164,17 +156,11 @@ void Collector::add(const ElementType& type, std::int64_t tag, Membership group,
   }
 }
 
-void Collector::end_elements(bool order_by_tag) {
+void Collector::end_elements(bool drop_copies_in_groups) {
   has_elements_ = true;
-  if (order_by_tag) {
-    sort_by_tag(points_);
-    sort_by_tag(edges_);
-    sort_by_tag(triangles_);
-    sort_by_tag(cells_);
-  } else {
-    repeated_elements_ =
-        drop_copies(points_) + drop_copies(edges_) + drop_copies(triangles_) + drop_copies(cells_);
-  }
+  if (!drop_copies_in_groups) return;
+  repeated_elements_ =
+      drop_copies(points_) + drop_copies(edges_) + drop_copies(triangles_) + drop_copies(cells_);
 }
 
 void Collector::restart(PendingField& entry, int components, int step) const {
@@ -278,41 +264,14 @@ void Collector::take_fields() {
 
 void Collector::drop_unused_midside_nodes() {
   if (midside_.empty()) return;
-  std::vector<bool> dropped = midside_;
-  const auto keep = [&](const auto& items) {
-    for (const auto& item : items) {
-      for (const Index node : item) dropped[node] = false;
-    }
-  };
-  keep(points_.nodes);
-  keep(mesh_.edges);
-  keep(mesh_.triangles);
-  keep(mesh_.cells);
-  std::vector<std::size_t> kept = identity(dropped.size());
-  std::erase_if(kept, [&](std::size_t i) { return dropped[i]; });
-  dropped_nodes_ = dropped.size() - kept.size();
-  if (dropped_nodes_ == 0) return;
-
-  std::vector<Index> renamed(dropped.size(), TagIndex::kNone);
-  for (std::size_t i = 0; i < kept.size(); ++i) renamed[kept[i]] = static_cast<Index>(i);
-  const auto rename = [&](auto& items) {
-    for (auto& item : items) {
-      for (Index& node : item) node = renamed[node];
-    }
-  };
-  rename(mesh_.edges);
-  rename(mesh_.triangles);
-  rename(mesh_.cells);
-  mesh_.points = picked(mesh_.points, kept);
-  if (!mesh_.vertex_labels.empty()) mesh_.vertex_labels = picked(mesh_.vertex_labels, kept);
-  for (Field& field : mesh_.point_fields) {
-    const auto components = static_cast<std::size_t>(field.components);
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      std::copy_n(field.values.begin() + static_cast<std::ptrdiff_t>(kept[i] * components), components,
-                  field.values.begin() + static_cast<std::ptrdiff_t>(i * components));
-    }
-    field.values.resize(kept.size() * components);
+  for (const auto& [node] : points_.nodes) midside_[node] = false;  // a point element is a use, too
+  std::vector<Index> midside;
+  for (std::size_t i = 0; i < midside_.size(); ++i) {
+    if (midside_[i]) midside.push_back(static_cast<Index>(i));
   }
+  const std::size_t before = mesh_.points.size();
+  drop_midside_points(mesh_, midside);
+  dropped_nodes_ = before - mesh_.points.size();
 }
 
 void Collector::add_notes() {

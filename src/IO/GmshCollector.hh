@@ -51,9 +51,8 @@ class Collector {
   /// `nodes` holds positions of all nodes of a simplex; those after the corners are dropped.
   void add(const ElementType& type, std::int64_t tag, Membership group, const std::vector<Index>& nodes);
   void skip_quadrangle() { ++skipped_quadrangles_; }
-  /// In Gmsh 4 files elements stand by entity and their tags keep the order; in older files elements of an
-  /// entity with several physical groups stand once for each.
-  void end_elements(bool order_by_tag);
+  /// Older files hold an element once for each physical group that its entity is in: keep the first.
+  void end_elements(bool drop_copies_in_groups);
   bool has_elements() const { return has_elements_; }
 
   void add_name(int dimension, int label, std::string name) {

@@ -83,7 +83,7 @@ void read_elements2(Source& in, Collector& mesh) {
       done += static_cast<std::size_t>(following);
     }
   }
-  mesh.end_elements(/*order_by_tag=*/false);
+  mesh.end_elements(/*drop_copies_in_groups=*/true);
 }
 
 template void read_nodes2(TextSource&, Collector&, bool);

@@ -204,7 +204,7 @@ void read_elements4(Source& in, Version version, std::vector<Entity> entities, C
     done += count;
   }
   require_all(in, done, announced, "elements");
-  mesh.end_elements(/*order_by_tag=*/true);
+  mesh.end_elements(/*drop_copies_in_groups=*/false);
 }
 
 template void read_entities4(TextSource&, Version, bool, std::vector<Entity>&);

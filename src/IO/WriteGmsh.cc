@@ -4,65 +4,86 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <set>
 #include <string>
 
 #include "HalfFace/Errors.hh"
 #include "IO/Formats.hh"
+#include "IO/GmshElements.hh"
 
 namespace hfr::io {
 namespace gmsh {
 namespace {
 
-/// What Gmsh accepts in a "…": no quotes, no line breaks.
+/// What Gmsh accepts as a name: at most 127 bytes without quotes and line breaks. Longer names make it refuse
+/// the file.
 std::string quoted(const std::string& name, Notes& notes) {
+  constexpr std::size_t kLongest = 127;
   std::string text = name;
+  if (text.size() > kLongest) {
+    std::size_t end = kLongest;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
+      --end;  // whole UTF-8 characters
+    text.resize(end);
+  }
   std::replace(text.begin(), text.end(), '"', '\'');
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-  if (text != name)
-    notes.push_back("Gmsh holds no quotes or line breaks in names: '" + text + "' is written");
+  if (text != name) {
+    notes.push_back("Gmsh holds names of 127 bytes without quotes and line breaks: '" + text +
+                    "' is written");
+  }
   return '"' + text + '"';
 }
 
 /// One group a label, in the order of labels. Entities take their label as a tag where it is positive, and
 /// the smallest free tag otherwise.
-std::vector<Group> grouped(std::size_t count, const std::vector<int>& labels, bool skip_unlabelled) {
-  std::map<int, std::size_t> group_of;
-  for (const int label : labels) {
-    if (label != 0 || !skip_unlabelled) group_of.emplace(label, 0);
-  }
-  if (labels.empty() && count > 0 && !skip_unlabelled) group_of.emplace(0, 0);
+std::vector<Group> groups_of(const std::vector<int>& labels) {
+  const std::set<int> distinct(labels.begin(), labels.end());
   std::vector<Group> groups;
   int free = 1;
-  for (auto& [label, position] : group_of) {
-    position = groups.size();
-    while (label <= 0 && group_of.count(free) > 0) ++free;
-    groups.push_back({.label = label, .entity = label > 0 ? label : free++});
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const int label = labels.empty() ? 0 : labels[i];
-    if (label == 0 && skip_unlabelled) continue;
-    groups[group_of.find(label)->second].items.push_back(static_cast<Index>(i));
+  for (const int label : distinct) {
+    while (label <= 0 && distinct.count(free) > 0) ++free;
+    groups.push_back({label, label > 0 ? label : free++});
   }
   return groups;
 }
 
+/// `labels`: one an element.
+Dimension dimension_of(const std::vector<int>& labels, int type, std::size_t first_tag) {
+  Dimension elements{
+      .groups = groups_of(labels), .runs = {}, .count = labels.size(), .first_tag = first_tag, .type = type};
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (i == 0 || labels[i] != labels[i - 1]) {
+      const auto group = std::partition_point(elements.groups.begin(), elements.groups.end(),
+                                              [&](Group g) { return g.label < labels[i]; });
+      elements.runs.push_back({static_cast<std::size_t>(group - elements.groups.begin()), i, i});
+    }
+    elements.runs.back().end = i + 1;
+  }
+  return elements;
+}
+
 Layout layout_of(const MeshData& mesh) {
   Layout layout;
-  layout.groups[0] = grouped(mesh.vertex_labels.size(), mesh.vertex_labels, /*skip_unlabelled=*/true);
-  layout.groups[1] = grouped(mesh.edges.size(), mesh.edge_labels, false);
-  layout.groups[2] = grouped(mesh.triangles.size(), mesh.triangle_labels, false);
-  layout.groups[3] = grouped(mesh.cells.size(), mesh.regions, false);
+  std::array<std::vector<int>, 4> labels = {{{}, mesh.edge_labels, mesh.triangle_labels, mesh.regions}};
+  for (std::size_t i = 0; i < mesh.vertex_labels.size(); ++i) {
+    if (mesh.vertex_labels[i] == 0) continue;
+    labels[0].push_back(mesh.vertex_labels[i]);
+    layout.labelled_points.push_back(static_cast<Index>(i));
+  }
+  labels[1].resize(mesh.edges.size(), 0);
+  labels[2].resize(mesh.triangles.size(), 0);
+  labels[3].resize(mesh.cells.size(), 0);
+  constexpr std::array<int, 4> kTypes = {kPoint, kLine2, kTriangle3, kTetrahedron4};
   std::size_t tag = 1;
   for (std::size_t d = 0; d < 4; ++d) {
-    for (const Group& group : layout.groups[d]) layout.counts[d] += group.items.size();
-    layout.first_tag[d] = tag;
-    tag += layout.counts[d];
+    layout.dimensions[d] = dimension_of(labels[d], kTypes[d], tag);
+    tag += labels[d].size();
+    for (const Group group : layout.dimensions[d].groups) layout.has_labels |= group.label != 0;
   }
   // Nodes need an entity to belong to.
-  if (layout.n_elements() == 0) layout.groups[3].emplace_back();
+  if (layout.n_elements() == 0) layout.dimensions[3].groups.emplace_back();
   return layout;
 }
 
@@ -78,8 +99,12 @@ void write_names(Sink& sink, const MeshData& mesh, Notes& notes) {
   if (mesh.names.empty()) return;
   sink.line("$PhysicalNames");
   sink.line(mesh.names.size());
-  for (const auto& [key, name] : mesh.names) {
-    sink.line(std::to_string(key.first) + " " + std::to_string(key.second) + " " + quoted(name, notes));
+  // Gmsh gives a name of label 0 the next free label: it must not take one whose name follows.
+  for (const bool last : {false, true}) {
+    for (const auto& [key, name] : mesh.names) {
+      if ((key.second == 0) != last) continue;
+      sink.line(std::to_string(key.first) + " " + std::to_string(key.second) + " " + quoted(name, notes));
+    }
   }
   sink.line("$EndPhysicalNames");
 }
@@ -91,6 +116,10 @@ void write_field(Sink& sink, const Field& field, bool on_points, std::size_t cou
   if (components < 1 || components > kMostComponents) {
     notes.push_back("Gmsh holds fields of 1 to 9 components: '" + field.name + "' is left out");
     return;
+  }
+  if (components != 1 && components != 3 && components != 9) {
+    notes.push_back("Gmsh draws fields of 1, 3 or 9 components: '" + field.name + "' keeps its " +
+                    std::to_string(components));
   }
   sink.line(on_points ? "$NodeData" : "$ElementData");
   sink.line("1");
@@ -116,8 +145,8 @@ void write_header(Sink& sink, const std::string& variant) {
 }
 
 bool has_negative(const Layout& layout) {
-  return std::any_of(layout.groups.begin(), layout.groups.end(), [](const std::vector<Group>& groups) {
-    return !groups.empty() && groups.front().label < 0;
+  return std::any_of(layout.dimensions.begin(), layout.dimensions.end(), [](const Dimension& elements) {
+    return !elements.groups.empty() && elements.groups.front().label < 0;
   });
 }
 
@@ -145,9 +174,12 @@ Notes write_gmsh(const std::filesystem::path& path, const MeshData& mesh, const 
   }
   for (const Field& field : mesh.point_fields) write_field(sink, field, true, mesh.points.size(), 1, notes);
   for (const Field& field : mesh.cell_fields) {
-    write_field(sink, field, false, mesh.cells.size(), layout.first_tag[3], notes);
+    write_field(sink, field, false, mesh.cells.size(), layout.dimensions[3].first_tag, notes);
   }
   out.commit();
+  if (variant == "4.0" && options.binary) {
+    notes.push_back("Gmsh 4.2 and later read version 4.0 in ASCII only: choose 4.1 for binary");
+  }
   if (has_negative(layout)) notes.push_back("Gmsh takes a negative label for its positive one, reversed");
   if (!mesh.fixed_vertices.empty()) notes.push_back("Gmsh holds no fixed vertices: they are left out");
   return notes;

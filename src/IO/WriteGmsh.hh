@@ -69,34 +69,50 @@ class Sink {
 
 /// Elements of one dimension with one label: they make one entity, which is in one physical group.
 struct Group {
-  int label = 0;   ///< also the physical group; 0: in none
+  int label = 0;   ///< also the physical group
   int entity = 1;  ///< tag of the entity: positive, and unlike the others of its dimension
-  std::vector<Index> items = {};
 };
 
-/// The elements of a mesh by dimension and label. Element `item` of dimension d has tag first_tag[d] + item,
-/// so that tags keep the order that grouping breaks. Items of dimension 0 are points with a label.
+/// Elements begin … end-1 have one label. Blocks of 4.x are made of runs, so that elements keep their order
+/// and have ascending tags: there are readers that match values with elements by order.
+struct Run {
+  std::size_t group = 0;  ///< position in Dimension::groups
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+/// Elements of one dimension. Element i has tag first_tag + i.
+struct Dimension {
+  std::vector<Group> groups;  ///< by label
+  std::vector<Run> runs;
+  std::size_t count = 0;
+  std::size_t first_tag = 1;
+  int type = 0;  ///< Gmsh's number for the linear element
+};
+
 struct Layout {
-  std::array<std::vector<Group>, 4> groups;
-  std::array<std::size_t, 4> counts{};
-  std::array<std::size_t, 4> first_tag{};
+  std::array<Dimension, 4> dimensions;
+  std::vector<Index> labelled_points;  ///< the elements of dimension 0
+  bool has_labels = false;             ///< some label is not 0: all elements are in physical groups
 
-  std::size_t n_elements() const { return counts[0] + counts[1] + counts[2] + counts[3]; }
+  std::size_t n_elements() const {
+    std::size_t n = 0;
+    for (const Dimension& dimension : dimensions) n += dimension.count;
+    return n;
+  }
 };
 
-/// Gmsh's number for the linear element of each dimension.
-inline constexpr std::array<int, 4> kTypeOfDimension = {15, 1, 2, 4};
-
-inline std::span<const Index> element_nodes(const MeshData& mesh, int dimension, const Index& item) {
+inline std::span<const Index> element_nodes(const MeshData& mesh, const Layout& layout, int dimension,
+                                            std::size_t element) {
   switch (dimension) {
     case 0:
-      return {&item, 1};
+      return {&layout.labelled_points[element], 1};
     case 1:
-      return mesh.edges[item];
+      return mesh.edges[element];
     case 2:
-      return mesh.triangles[item];
+      return mesh.triangles[element];
     default:
-      return mesh.cells[item];
+      return mesh.cells[element];
   }
 }
 

@@ -2,9 +2,6 @@
 // "MSH file format version 2" of the Gmsh manual.
 #include "IO/WriteGmsh.hh"
 
-#include <algorithm>
-#include <utility>
-
 namespace hfr::io::gmsh {
 namespace {
 
@@ -20,34 +17,31 @@ void write_nodes(Sink& sink, const MeshData& mesh) {
   sink.line("$EndNodes");
 }
 
-/// Elements in the order of their tags. In a binary file one header serves all elements of a dimension.
+/// In a binary file one header serves all elements of a dimension.
 void write_dimension(Sink& sink, const MeshData& mesh, const Layout& layout, int dimension) {
-  const auto d = static_cast<std::size_t>(dimension);
+  const Dimension& elements = layout.dimensions[static_cast<std::size_t>(dimension)];
   constexpr int kTags = 2;
-  if (layout.counts[d] == 0) return;
-  std::vector<std::pair<Index, const Group*>> items;
-  items.reserve(layout.counts[d]);
-  for (const Group& group : layout.groups[d]) {
-    for (const Index item : group.items) items.emplace_back(item, &group);
-  }
-  std::sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (elements.count == 0) return;
   if (sink.binary()) {
-    sink.int32(kTypeOfDimension[d]);
-    sink.int32(static_cast<std::int64_t>(items.size()));
+    sink.int32(elements.type);
+    sink.int32(static_cast<std::int64_t>(elements.count));
     sink.int32(kTags);
   }
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const auto& [item, group] = items[i];
-    sink.int32(static_cast<std::int64_t>(layout.first_tag[d] + i));
-    if (!sink.binary()) {
-      sink.int32(kTypeOfDimension[d]);
-      sink.int32(kTags);
+  for (const Run& run : elements.runs) {
+    const Group group = elements.groups[run.group];
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      sink.int32(static_cast<std::int64_t>(elements.first_tag + i));
+      if (!sink.binary()) {
+        sink.int32(elements.type);
+        sink.int32(kTags);
+      }
+      sink.int32(group.label);
+      sink.int32(group.entity);
+      for (const Index node : element_nodes(mesh, layout, dimension, i)) {
+        sink.int32(static_cast<std::int64_t>(node) + 1);
+      }
+      sink.end_line();
     }
-    sink.int32(group->label);
-    sink.int32(group->entity);
-    for (const Index node : element_nodes(mesh, dimension, item))
-      sink.int32(static_cast<std::int64_t>(node) + 1);
-    sink.end_line();
   }
 }
 

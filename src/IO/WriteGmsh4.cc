@@ -15,18 +15,24 @@ struct Box {
   Vec3 high;
 };
 
-Box box_of(const MeshData& mesh, int dimension, const Group& group) {
+/// What the elements of each group fill.
+std::vector<Box> boxes_of(const MeshData& mesh, const Layout& layout, int dimension) {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  Box box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
-  for (const Index& item : group.items) {
-    for (const Index node : element_nodes(mesh, dimension, item)) {
-      for (int k = 0; k < 3; ++k) {
-        box.low[k] = std::min(box.low[k], mesh.points[node][k]);
-        box.high[k] = std::max(box.high[k], mesh.points[node][k]);
+  const Dimension& elements = layout.dimensions[static_cast<std::size_t>(dimension)];
+  std::vector<Box> boxes(elements.groups.size(),
+                         elements.count > 0 ? Box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}} : Box{});
+  for (const Run& run : elements.runs) {
+    Box& box = boxes[run.group];
+    for (std::size_t i = run.begin; i < run.end; ++i) {
+      for (const Index node : element_nodes(mesh, layout, dimension, i)) {
+        for (int k = 0; k < 3; ++k) {
+          box.low[k] = std::min(box.low[k], mesh.points[node][k]);
+          box.high[k] = std::max(box.high[k], mesh.points[node][k]);
+        }
       }
     }
   }
-  return group.items.empty() ? Box{} : box;
+  return boxes;
 }
 
 /// Tags of nodes and elements: 32-bit in 4.0, 64-bit in 4.1.
@@ -59,16 +65,17 @@ void put_totals(Sink& sink, std::size_t blocks, std::size_t count, bool wide_tag
 
 void write_entities(Sink& sink, const MeshData& mesh, const Layout& layout, bool wide_tags) {
   sink.line("$Entities");
-  for (const auto& groups : layout.groups) sink.wide(groups.size());
+  for (const Dimension& elements : layout.dimensions) sink.wide(elements.groups.size());
   sink.end_line();
   for (int dimension = 0; dimension < 4; ++dimension) {
-    for (const Group& group : layout.groups[static_cast<std::size_t>(dimension)]) {
-      const Box box = box_of(mesh, dimension, group);
-      sink.int32(group.entity);
-      for (int k = 0; k < 3; ++k) sink.real(box.low[k]);
-      for (int k = 0; k < 3 && (dimension > 0 || !wide_tags); ++k) sink.real(box.high[k]);
-      sink.wide(group.label != 0 ? 1 : 0);
-      if (group.label != 0) sink.int32(group.label);
+    const std::vector<Group>& groups = layout.dimensions[static_cast<std::size_t>(dimension)].groups;
+    const std::vector<Box> boxes = boxes_of(mesh, layout, dimension);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      sink.int32(groups[g].entity);
+      for (int k = 0; k < 3; ++k) sink.real(boxes[g].low[k]);
+      for (int k = 0; k < 3 && (dimension > 0 || !wide_tags); ++k) sink.real(boxes[g].high[k]);
+      sink.wide(layout.has_labels ? 1 : 0);
+      if (layout.has_labels) sink.int32(groups[g].label);
       if (dimension > 0) sink.wide(0);  // bounding entities
       sink.end_line();
     }
@@ -79,12 +86,12 @@ void write_entities(Sink& sink, const MeshData& mesh, const Layout& layout, bool
 
 void write_nodes(Sink& sink, const MeshData& mesh, const Layout& layout, bool wide_tags) {
   int dimension = 3;
-  while (dimension > 0 && layout.groups[static_cast<std::size_t>(dimension)].empty()) --dimension;
+  while (dimension > 0 && layout.dimensions[static_cast<std::size_t>(dimension)].groups.empty()) --dimension;
   const std::size_t count = mesh.points.size();
   sink.line("$Nodes");
   put_totals(sink, count > 0 ? 1 : 0, count, wide_tags);
   if (count > 0) {
-    const int entity = layout.groups[static_cast<std::size_t>(dimension)].front().entity;
+    const int entity = layout.dimensions[static_cast<std::size_t>(dimension)].groups.front().entity;
     put_block(sink, dimension, entity, /*kind=*/0, count, wide_tags);
   }
   for (std::size_t i = 0; wide_tags && i < count; ++i) {
@@ -102,21 +109,19 @@ void write_nodes(Sink& sink, const MeshData& mesh, const Layout& layout, bool wi
 
 void write_elements(Sink& sink, const MeshData& mesh, const Layout& layout, bool wide_tags) {
   std::size_t blocks = 0;
-  for (const auto& groups : layout.groups) {
-    for (const Group& group : groups) blocks += group.items.empty() ? 0 : 1;
-  }
+  for (const Dimension& elements : layout.dimensions) blocks += elements.runs.size();
   sink.line("$Elements");
   put_totals(sink, blocks, layout.n_elements(), wide_tags);
   for (int dimension = 0; dimension < 4; ++dimension) {
-    const auto d = static_cast<std::size_t>(dimension);
-    std::size_t point_tag = layout.first_tag[0];
-    for (const Group& group : layout.groups[d]) {
-      if (group.items.empty()) continue;
-      put_block(sink, dimension, group.entity, kTypeOfDimension[d], group.items.size(), wide_tags);
-      for (const Index& item : group.items) {
-        put_tag(sink, dimension == 0 ? point_tag++ : layout.first_tag[d] + item, wide_tags);
-        for (const Index node : element_nodes(mesh, dimension, item))
+    const Dimension& elements = layout.dimensions[static_cast<std::size_t>(dimension)];
+    for (const Run& run : elements.runs) {
+      put_block(sink, dimension, elements.groups[run.group].entity, elements.type, run.end - run.begin,
+                wide_tags);
+      for (std::size_t i = run.begin; i < run.end; ++i) {
+        put_tag(sink, elements.first_tag + i, wide_tags);
+        for (const Index node : element_nodes(mesh, layout, dimension, i)) {
           put_tag(sink, node + std::size_t{1}, wide_tags);
+        }
         sink.end_line();
       }
     }
