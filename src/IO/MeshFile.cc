@@ -23,6 +23,9 @@ constexpr Format kFormats[] = {
     {".node", read_tetgen, write_tetgen},
     {".ele", read_tetgen, write_tetgen},
     {".face", read_tetgen, write_tetgen},
+    {".ovm", read_ovm, write_ovm},
+    {".vtk", read_vtk, write_vtk},
+    {".vtu", read_vtu, write_vtu},
 };
 
 std::string joined(const std::vector<std::string>& words) {
