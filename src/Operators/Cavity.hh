@@ -45,18 +45,18 @@ using Scope = FixedVector<CellHandle, Star::kCapacity>;
 /// Four vertices in positive order.
 using Tet = std::array<VertexHandle, 4>;
 
-/// What a plan does to the mesh, in full: the cells that go, the cells that come into the same place, a vertex
-/// that goes, comes or moves. A new vertex is named kNewVertex in `born`.
+/// What a plan does to the mesh, in full: the cells that go, the cells that come into the same place, a
+/// vertex that goes, comes or moves. A new vertex is named kNewVertex in `born`.
 struct Cavity {
   static constexpr VertexHandle kNewVertex{VertexHandle::kInvalid - 1};
   static constexpr std::size_t kCapacity = 2 * Star::kCapacity;
 
   FixedVector<CellHandle, kCapacity> dead;
   FixedVector<Tet, kCapacity> born;
-  VertexHandle removed;                ///< has no cell afterwards
-  std::optional<Vec3> new_vertex;      ///< position of kNewVertex
-  VertexHandle moved;                  ///< no cell changes, only this vertex's place
-  Vec3 target;                         ///< of `moved`
+  VertexHandle removed;            ///< has no cell afterwards
+  std::optional<Vec3> new_vertex;  ///< position of kNewVertex
+  VertexHandle moved;              ///< no cell changes, only this vertex's place
+  Vec3 target;                     ///< of `moved`
 
   void clear() {
     dead.clear();
@@ -67,18 +67,20 @@ struct Cavity {
   }
 };
 
-/// True when the cavity may be committed as far as labels, regions and, if `check_links`, the link condition go:
+/// True when the cavity may be committed as far as labels, regions and, if `check_links`, the link condition
+/// go:
 ///  - all dead cells lie in one region,
 ///  - no face between dead cells is labelled, and no labelled edge is lost,
-///  - no edge or face would exist twice (the full link condition; it can only fail where cells are inverted or
+///  - no edge or face would exist twice (the full link condition; it can only fail where cells are inverted
+///  or
 ///    the boundary meets itself, so callers leave it out elsewhere).
 bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch);
 
 /// An edge or a face (third vertex invalid for an edge), vertices ascending.
 using Simplex = std::array<VertexHandle, 3>;
 
-/// What the cavity creates that none of its dead cells has: edges, or, when it creates none, faces. Two cavities
-/// that create the same simplex must not be committed together.
+/// What the cavity creates that none of its dead cells has: edges, or, when it creates none, faces. Two
+/// cavities that create the same simplex must not be committed together.
 std::size_t created_simplices(const TetMesh& mesh, const Cavity& cavity, std::span<Simplex> out);
 
 }  // namespace hfr

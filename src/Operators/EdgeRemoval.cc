@@ -105,7 +105,7 @@ void EdgeRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) cons
 
 template <class Metric>
 std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(const TetMesh& mesh,
-                                                                               Seed seed) const {
+                                                                                Seed seed) const {
   Ring ring;
   if (!gather_ring(mesh, seed, ring)) return std::nullopt;
   const auto n = static_cast<std::size_t>(ring.size);

@@ -11,9 +11,9 @@
 
 namespace hfr {
 
-/// Edge removal: replaces the n cells round an inner edge (a, b) by the 2(n-2) cells that a triangulation of the
-/// ring makes with a and with b. All triangulations are searched (Klincsek's programme), so that the result is
-/// the best there is; it contains the paper's EDGE operator, whose star forms are the fans.
+/// Edge removal: replaces the n cells round an inner edge (a, b) by the 2(n-2) cells that a triangulation of
+/// the ring makes with a and with b. All triangulations are searched (Klincsek's programme), so that the
+/// result is the best there is; it contains the paper's EDGE operator, whose star forms are the fans.
 template <class Metric>
 struct EdgeRemoval {
   static constexpr int kMaxRing = 32;  ///< larger rings are left alone

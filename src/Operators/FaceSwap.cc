@@ -17,7 +17,7 @@ void FaceSwap<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
 
 template <class Metric>
 std::optional<typename FaceSwap<Metric>::Plan> FaceSwap<Metric>::evaluate(const TetMesh& mesh,
-                                                                         Seed seed) const {
+                                                                          Seed seed) const {
   const HalfFaceHandle m = mesh.opposite_halfface(seed);
   if (!m.is_valid()) return std::nullopt;
   const VertexHandle above = mesh.halfface_opposite_vertex(seed);

@@ -14,8 +14,8 @@ namespace hfr {
 
 /// First members of every plan: what ranking and slot assignment need.
 struct PlanBase {
-  double old_worst = 0;  ///< smallest decision value among the cells of the cluster as it is
-  double new_worst = 0;  ///< and as it would be; always > old_worst
+  double old_worst = 0;      ///< smallest decision value among the cells of the cluster as it is
+  double new_worst = 0;      ///< and as it would be; always > old_worst
   std::uint32_t n_dead = 0;  ///< cells that go
   std::uint32_t n_born = 0;  ///< cells that come; both 0 when a vertex only moves
   bool removes_vertex = false;
@@ -24,28 +24,30 @@ struct PlanBase {
 
 /// What the scheduler needs of a local operator.
 ///  - scope: every cell that the operator may write for this seed.
-///  - evaluate: pure; nothing when the cluster would not get better. Reads cells of the scope, points, and what
+///  - evaluate: pure; nothing when the cluster would not get better. Reads cells of the scope, points, and
+///  what
 ///    the operator itself was given. No allocation.
-///  - commit: says in full what the plan does; cannot fail. Its dead cells are the scope, in the scope's order.
-///    The writing is the scheduler's, because the mates of a cavity's outer faces depend on the other cavities of
-///    the same round.
+///  - commit: says in full what the plan does; cannot fail. Its dead cells are the scope, in the scope's
+///  order.
+///    The writing is the scheduler's, because the mates of a cavity's outer faces depend on the other
+///    cavities of the same round.
 ///  - identity: vertices that name the seed whatever the storage order, for priorities among equals.
 ///  - metric: gives the decision value of a cell.
 template <class Op>
 concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
-                        std::is_trivially_copyable_v<typename Op::Plan> &&
-                        requires(const Op op, const TetMesh& mesh, typename Op::Seed seed,
-                                 const typename Op::Plan& plan, Scope& scope, Cavity& cavity) {
-                          { op.scope(mesh, seed, scope) } -> std::same_as<void>;
-                          { op.evaluate(mesh, seed) } -> std::same_as<std::optional<typename Op::Plan>>;
-                          { op.commit(mesh, plan, cavity) } -> std::same_as<void>;
-                          { op.identity(mesh, seed) } -> std::same_as<Tet>;
-                          { plan.seed } -> std::convertible_to<typename Op::Seed>;
-                          op.metric;
-                        };
+    std::is_trivially_copyable_v<typename Op::Plan> &&
+    requires(const Op op, const TetMesh& mesh, typename Op::Seed seed, const typename Op::Plan& plan,
+             Scope& scope, Cavity& cavity) {
+  { op.scope(mesh, seed, scope) } -> std::same_as<void>;
+  { op.evaluate(mesh, seed) } -> std::same_as<std::optional<typename Op::Plan>>;
+  { op.commit(mesh, plan, cavity) } -> std::same_as<void>;
+  { op.identity(mesh, seed) } -> std::same_as<Tet>;
+  { plan.seed } -> std::convertible_to<typename Op::Seed>;
+  op.metric;
+};
 
-/// Per-vertex byte: 1 where the vertex must stay: boundary, interface between regions, on a labelled face inside
-/// or a labelled edge, fixed, or a vertex whose cells do not connect through faces.
+/// Per-vertex byte: 1 where the vertex must stay: boundary, interface between regions, on a labelled face
+/// inside or a labelled edge, fixed, or a vertex whose cells do not connect through faces.
 std::vector<std::uint8_t> frozen_vertices(const TetMesh& mesh, par::Policy policy = {});
 
 }  // namespace hfr

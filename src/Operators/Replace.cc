@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's CONFORM for one cavity. Faces are matched by their vertices; a cavity has a dozen cells as a rule,
-// a few hundred at most, so an open-addressing table on the stack serves.
+// The paper's CONFORM for one cavity. Faces are matched by their vertices; a cavity has a dozen cells as a
+// rule, a few hundred at most, so an open-addressing table on the stack serves.
 #include "Operators/Replace.hh"
 
 #include <algorithm>
@@ -20,7 +20,8 @@ class OpenFaces {
     std::fill_n(value_.begin(), size, -1);
   }
 
-  /// Returns what stands under the face's vertices and takes it out; else stores `value` there and returns -1.
+  /// Returns what stands under the face's vertices and takes it out; else stores `value` there and returns
+  /// -1.
   std::int32_t exchange(std::array<VertexHandle, 3> face, std::int32_t value) {
     std::sort(face.begin(), face.end());
     std::uint64_t h = face[0].idx();
@@ -84,8 +85,8 @@ void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle
       if (v == Cavity::kNewVertex) v = new_vertex;
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(slots[i], k);
-      const std::int32_t partner = open.exchange(mesh.halfface_vertices(h),
-                                                 n_notes + static_cast<std::int32_t>(4 * i) + k);
+      const std::int32_t partner =
+          open.exchange(mesh.halfface_vertices(h), n_notes + static_cast<std::int32_t>(4 * i) + k);
       if (partner < 0) continue;
       if (partner < n_notes) {
         OuterFace& note = notes[first_note + static_cast<std::size_t>(partner)];

@@ -20,17 +20,18 @@ struct OuterFace {
 };
 
 /// Commit A. Writes the born cells into `slots` (as many as there are born cells; dead cells first) and links
-/// them with each other; appends the outer faces to `notes`. Dead cells beyond the slots are marked deleted. Touches no
-/// cell outside the cavity and its slots, so cavities that share no cell may be written concurrently.
-/// `new_vertex` stands in for Cavity::kNewVertex. Outside mates are left to the caller (commit B).
+/// them with each other; appends the outer faces to `notes`. Dead cells beyond the slots are marked deleted.
+/// Touches no cell outside the cavity and its slots, so cavities that share no cell may be written
+/// concurrently. `new_vertex` stands in for Cavity::kNewVertex. Outside mates are left to the caller (commit
+/// B).
 void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> slots,
                  VertexHandle new_vertex, std::vector<OuterFace>& notes);
 
 /// Writes one cavity by itself, hooks included: taking slots from the free list, appending where it is empty.
 void replace(TetMesh& mesh, const Cavity& cavity);
 
-/// Evaluates one seed and, if its cluster gets better and nothing forbids it, commits: for tests, examples and
-/// scripts that work on one cluster at a time.
+/// Evaluates one seed and, if its cluster gets better and nothing forbids it, commits: for tests, examples
+/// and scripts that work on one cluster at a time.
 template <LocalOperator Op>
 bool apply(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
   const auto plan = op.evaluate(mesh, seed);

@@ -20,8 +20,8 @@ struct Move {
 };
 
 /// What all smoothing operators share: seed, scope, commit. `Search` finds the place:
-/// std::optional<Move> search(mesh, v, link, metric, quality), where `link` holds the half-face opposite v of each
-/// cell of the star and `quality` the decision value per cell.
+/// std::optional<Move> search(mesh, v, link, metric, quality), where `link` holds the half-face opposite v of
+/// each cell of the star and `quality` the decision value per cell.
 template <class Search, class Metric>
 struct Smooth {
   using Seed = VertexHandle;

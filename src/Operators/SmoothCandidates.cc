@@ -28,7 +28,8 @@ constexpr std::array<Vec3, 14> kDirections = {{{1, 0, 0},
                                                {kDiagonal, -kDiagonal, -kDiagonal},
                                                {-kDiagonal, -kDiagonal, -kDiagonal}}};
 
-/// Half the mean length of the star's edges; each edge counts once a face that it bounds, which is near enough.
+/// Half the mean length of the star's edges; each edge counts once a face that it bounds, which is near
+/// enough.
 double initial_radius(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
   const Vec3 origin = mesh.point(v);
   double sum = 0;
@@ -81,7 +82,8 @@ std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandl
   Vec3 place;
   if constexpr (std::is_same_v<Metric, VolumeLength>) {
     StarForm star(mesh, v, link);
-    place = descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) { return star.worst(x, floor); });
+    place =
+        descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) { return star.worst(x, floor); });
   } else {
     place = descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) {
       return worst_with(mesh, v, link, origin + x, metric, floor);
@@ -95,9 +97,10 @@ std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandl
   return move;
 }
 
-#define HFR_INSTANTIATE(Metric)                                                              \
-  template std::optional<Move> CandidateSearch::operator()(                                  \
-      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) const;
+#define HFR_INSTANTIATE(Metric)                                                                              \
+  template std::optional<Move> CandidateSearch::operator()(                                                  \
+      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
+      const;
 HFR_INSTANTIATE(VolumeLength)
 HFR_INSTANTIATE(MinSine2)
 HFR_INSTANTIATE(MinDihedral)

@@ -6,8 +6,9 @@
 
 namespace hfr {
 
-/// The paper's SMOOTH: candidate positions at distance r in 14 directions; the best one that raises the star's
-/// worst cell is taken; when none does, r is halved. Works from inverted stars too, and with any metric.
+/// The paper's SMOOTH: candidate positions at distance r in 14 directions; the best one that raises the
+/// star's worst cell is taken; when none does, r is halved. Works from inverted stars too, and with any
+/// metric.
 struct CandidateSearch {
   int halvings = 10;  ///< of r, from half the mean edge length of the star
 

@@ -6,9 +6,9 @@
 
 namespace hfr {
 
-/// Guarded Laplacian smoothing: the vertex moves towards the mean of its neighbours by `step` (1: the whole way),
-/// and stays there only if the star's worst cell gets better. Taubin's filter is a pass with kTaubinForth and one
-/// with kTaubinBack, which steps away from the mean.
+/// Guarded Laplacian smoothing: the vertex moves towards the mean of its neighbours by `step` (1: the whole
+/// way), and stays there only if the star's worst cell gets better. Taubin's filter is a pass with
+/// kTaubinForth and one with kTaubinBack, which steps away from the mean.
 struct LaplacianSearch {
   double step = 1.0;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // With m = S³/(6V)² of a cell (S the sum of squared edges), q² = 432/m, and the p-norm is (Σ mᵏ)^(1/k). Since
-// grad log m = 3 grad S / S - 2 grad V / V and both derivatives are at hand in closed form, gradient and Hessian
-// cost about 60 operations a cell. Only + - * / and comparisons are used.
+// grad log m = 3 grad S / S - 2 grad V / V and both derivatives are at hand in closed form, gradient and
+// Hessian cost about 60 operations a cell. Only + - * / and comparisons are used.
 #include "Operators/SmoothNewton.hh"
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 namespace hfr {
 namespace {
 
-constexpr double kExponent = 4;      // k: weights are (m / m_max)^4
-constexpr double kEnough = 0.995;    // a step that lowers the largest m by less ends the search
-constexpr int kMaxHalvings = 5;      // of a step that does not lower it
+constexpr double kExponent = 4;    // k: weights are (m / m_max)^4
+constexpr double kEnough = 0.995;  // a step that lowers the largest m by less ends the search
+constexpr int kMaxHalvings = 5;    // of a step that does not lower it
 
 struct Derivatives {
   Vec3 gradient;
@@ -136,9 +136,10 @@ std::optional<Move> NewtonSearch::operator()(const TetMesh& mesh, VertexHandle v
     return fallback(mesh, v, link, metric, quality);
 }
 
-#define HFR_INSTANTIATE(Metric)                                                              \
-  template std::optional<Move> NewtonSearch::operator()(                                     \
-      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) const;
+#define HFR_INSTANTIATE(Metric)                                                                              \
+  template std::optional<Move> NewtonSearch::operator()(                                                     \
+      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
+      const;
 HFR_INSTANTIATE(VolumeLength)
 HFR_INSTANTIATE(MinSine2)
 HFR_INSTANTIATE(MinDihedral)

@@ -7,12 +7,12 @@
 
 namespace hfr {
 
-/// Newton's method on a p-norm of 1/q², which stands in for the largest of them: moves the vertex to where the
-/// worst volume-length of its star is nearly as large as it can be. A star with inverted or flat cells, where
-/// the norm has no meaning, goes through the candidate search instead. With another metric the place found for
-/// volume-length is one more candidate that this metric judges.
+/// Newton's method on a p-norm of 1/q², which stands in for the largest of them: moves the vertex to where
+/// the worst volume-length of its star is nearly as large as it can be. A star with inverted or flat cells,
+/// where the norm has no meaning, goes through the candidate search instead. With another metric the place
+/// found for volume-length is one more candidate that this metric judges.
 struct NewtonSearch {
-  int iterations = 6;     ///< at most; most stars need three
+  int iterations = 6;  ///< at most; most stars need three
   CandidateSearch fallback{};
 
   template <class Metric>

@@ -28,8 +28,8 @@ class StarForm {
 
   std::span<const hfr_star_cell> cells() const { return cells_; }
 
-  /// Smallest decision value with the vertex moved by x, or anything ≤ floor once it is no better. The cell that
-  /// ended the last search is asked first.
+  /// Smallest decision value with the vertex moved by x, or anything ≤ floor once it is no better. The cell
+  /// that ended the last search is asked first.
   double worst(Vec3 x, double floor) {
     const hfr_real3 at = to_kernel(x);
     double worst = std::numeric_limits<double>::infinity();

@@ -138,7 +138,7 @@ Tet StarFromVertex<kCluster, Metric>::identity(const TetMesh& mesh, Seed seed) c
   return names;
 }
 
-#define HFR_INSTANTIATE(Metric)                            \
+#define HFR_INSTANTIATE(Metric)                           \
   template struct StarFromVertex<Cluster::kEdge, Metric>; \
   template struct StarFromVertex<Cluster::kFace, Metric>; \
   template struct StarFromVertex<Cluster::kNode, Metric>;

@@ -15,9 +15,9 @@ namespace hfr {
 enum class Cluster { kEdge, kFace, kNode };
 
 /// CLUSTER OPTIMIZATION in exactly the paper's form: takes the outer surface of the cluster, joins all its
-/// triangles to each surface vertex in turn and, where insertion is allowed, to a new vertex in the middle, and
-/// keeps the best if its worst cell beats the old worst. Here for --compat and as the centre insertion; the
-/// stronger forms are EdgeRemoval, FaceSwap and VertexRemoval.
+/// triangles to each surface vertex in turn and, where insertion is allowed, to a new vertex in the middle,
+/// and keeps the best if its worst cell beats the old worst. Here for --compat and as the centre insertion;
+/// the stronger forms are EdgeRemoval, FaceSwap and VertexRemoval.
 template <Cluster kCluster, class Metric>
 struct StarFromVertex {
   struct Seed {

@@ -18,7 +18,7 @@ void VertexRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) co
 
 template <class Metric>
 std::optional<typename VertexRemoval<Metric>::Plan> VertexRemoval<Metric>::evaluate(const TetMesh& mesh,
-                                                                                   Seed seed) const {
+                                                                                    Seed seed) const {
   if (frozen[seed.idx()] || mesh.labels().vertex(seed) != 0) return std::nullopt;
   Star star;
   if (!mesh.gather_star(seed, star)) return std::nullopt;

@@ -19,14 +19,16 @@ namespace hfr {
 /// Operators that a run may use; a set of bits.
 enum class Ops : unsigned {
   kNone = 0,
-  kEdge = 1,      ///< edge removal
-  kFace = 2,      ///< 2-3 face swap
-  kNode = 4,      ///< vertex removal by collapse onto a neighbour
-  kSmooth = 8,    ///< vertex smoothing
-  kInsert = 16,   ///< new vertices in the centre of clusters
+  kEdge = 1,     ///< edge removal
+  kFace = 2,     ///< 2-3 face swap
+  kNode = 4,     ///< vertex removal by collapse onto a neighbour
+  kSmooth = 8,   ///< vertex smoothing
+  kInsert = 16,  ///< new vertices in the centre of clusters
   kDefault = kEdge | kFace | kNode | kSmooth,
 };
-constexpr Ops operator|(Ops a, Ops b) { return static_cast<Ops>(static_cast<unsigned>(a) | static_cast<unsigned>(b)); }
+constexpr Ops operator|(Ops a, Ops b) {
+  return static_cast<Ops>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
 constexpr bool has(Ops set, Ops op) { return (static_cast<unsigned>(set) & static_cast<unsigned>(op)) != 0; }
 /// From a comma-separated list such as "edge,face,node,smooth"; throws InvalidInput that lists the names.
 Ops ops_from_list(const std::string& list);
@@ -40,9 +42,9 @@ Smoother smoother_from_name(const std::string& name);
 enum class Compat { kNone, kJpdc2013 };
 
 struct Progress {
-  std::string stage;        ///< "untangle", "bulk", "polish", …
-  int iteration = 0;        ///< from 1, within the stage
-  double fraction = 0;      ///< 0 … 1 of the whole run, an estimate
+  std::string stage;    ///< "untangle", "bulk", "polish", …
+  int iteration = 0;    ///< from 1, within the stage
+  double fraction = 0;  ///< 0 … 1 of the whole run, an estimate
   std::size_t n_inverted = 0;
   double min_dihedral = 0;  ///< degrees
 };
@@ -51,7 +53,7 @@ struct ImproveOptions {
   /// Goal for the smallest dihedral angle, degrees, in (0, 70.5). With a goal, only cells that miss it are
   /// worked on. Without one, the whole mesh is improved and its worst cells are raised as far as they go.
   std::optional<double> min_dihedral;
-  int iterations = 0;  ///< limit of bulk iterations; 0 = until little is gained
+  int iterations = 0;  ///< limit of bulk iterations, or of all with a goal; 0 = until little is gained
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
   Ops ops = Ops::kDefault;
   Metric metric = Metric::kVolumeLength;  ///< of the bulk passes
@@ -90,14 +92,14 @@ struct Result {
   bool goal_reached = false;  ///< nothing inverted or flat, and min_dihedral met where given
   Stop stop = Stop::kNoProgress;
   std::vector<PassReport> passes;
-  Statistics before, after;   ///< when options.statistics
+  Statistics before, after;               ///< when options.statistics
   std::vector<CellHandle> invalid_cells;  ///< inverted or flat cells that remain
-  double seconds = 0;
+  double seconds = 0;                     ///< of the work itself, statistics apart
 };
 
-/// Improves `mesh` in place. The worst cell of every changed cluster gets better; boundary, region interfaces,
-/// labelled faces and edges and fixed vertices keep every bit. Deleted cells and vertices are collected before
-/// it returns. Throws InvalidInput for options out of range.
+/// Improves `mesh` in place. The worst cell of every changed cluster gets better; boundary, region
+/// interfaces, labelled faces and edges and fixed vertices keep every bit. Deleted cells and vertices are
+/// collected before it returns. Throws InvalidInput for options out of range.
 Result improve(TetMesh& mesh, const ImproveOptions& options = {});
 
 }  // namespace hfr

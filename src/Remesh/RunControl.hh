@@ -27,15 +27,16 @@ class RunControl {
 
   void add(PassReport pass) { passes_.push_back(std::move(pass)); }
   std::vector<PassReport>& passes() { return passes_; }
-  void tell(const Progress& progress) {
-    if (options_.progress) options_.progress(progress);
-  }
+  /// Estimate of how much of the run is done, 0 … 1; never goes back.
+  double fraction() const { return fraction_; }
+  void set_fraction(double fraction) { fraction_ = fraction > fraction_ ? fraction : fraction_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   const ImproveOptions& options_;
   Clock::time_point start_ = Clock::now();
   std::optional<Stop> reason_;
+  double fraction_ = 0;
   std::vector<PassReport> passes_;
 };
 

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 
+#include "Remesh/Pipeline.hh"
+
 namespace hfr {
 namespace {
 
-constexpr int kMaxRounds = 12;         // of one operator in one pass
-constexpr std::size_t kLittle = 200;   // stop when a round commits less than 1/kLittle of the first one
+constexpr int kMaxRounds = 12;        // of one operator in one pass
+constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/kLittle of the first one
 
 }  // namespace
 
@@ -39,14 +41,20 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
 template <class Metric>
 std::size_t Stage<Metric>::edge_pass(int iteration, Focus focus) {
   return rounds(
-      kEdge, iteration, focus, [&] { return EdgeRemoval<Metric>{metric_, work_.quality}; },
+      kEdge, iteration, focus,
+      [&] {
+        return EdgeRemoval<Metric>{metric_, work_.quality};
+      },
       [&](const Worklist& list) { return edge_seeds(mesh_, list, options_.policy); });
 }
 
 template <class Metric>
 std::size_t Stage<Metric>::face_pass(int iteration, Focus focus) {
   return rounds(
-      kFace, iteration, focus, [&] { return FaceSwap<Metric>{metric_, work_.quality}; },
+      kFace, iteration, focus,
+      [&] {
+        return FaceSwap<Metric>{metric_, work_.quality};
+      },
       [&](const Worklist& list) { return face_seeds(mesh_, list, options_.policy); });
 }
 
@@ -54,7 +62,9 @@ template <class Metric>
 std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
   return rounds(
       kNode, iteration, focus,
-      [&] { return VertexRemoval<Metric>{metric_, work_.quality, work_.frozen}; },
+      [&] {
+        return VertexRemoval<Metric>{metric_, work_.quality, work_.frozen};
+      },
       [&](const Worklist& list) { return vertex_seeds(mesh_, list, work_.frozen, options_.policy); });
 }
 
@@ -78,6 +88,35 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
+template <Cluster kCluster>
+std::size_t Stage<Metric>::star_pass(int iteration) {
+  using Op = StarFromVertex<kCluster, Metric>;
+  using Seed = typename Op::Seed;
+  constexpr Kind kKind = kCluster == Cluster::kEdge ? kEdge : kCluster == Cluster::kFace ? kFace : kNode;
+  return rounds(
+      kKind, iteration, Focus{},
+      [&] {
+        Op op{metric_, work_.quality, work_.frozen};
+        op.insert = has(options_.ops, Ops::kInsert);
+        return op;
+      },
+      [&](const Worklist& list) {
+        std::vector<Seed> seeds;
+        if constexpr (kCluster == Cluster::kEdge) {
+          for (EdgeHandle e : edge_seeds(mesh_, list, options_.policy))
+            seeds.push_back({CellHandle(e.idx() / 6), static_cast<std::uint8_t>(e.idx() % 6)});
+        } else if constexpr (kCluster == Cluster::kFace) {
+          for (HalfFaceHandle h : face_seeds(mesh_, list, options_.policy))
+            seeds.push_back({cell_of(h), static_cast<std::uint8_t>(corner_of(h))});
+        } else {
+          for (VertexHandle v : vertex_seeds(mesh_, list, work_.frozen, options_.policy))
+            seeds.push_back({mesh_.hook(v), static_cast<std::uint8_t>(mesh_.cell(mesh_.hook(v)).corner(v))});
+        }
+        return seeds;
+      });
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
   if (control_.stopped()) return 0;
   const double start = control_.seconds();
@@ -88,10 +127,16 @@ std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
     counts += hfr::smooth_pass(mesh_, work_, search, metric_, vertices, options_.policy);
   };
   if (!vertices.empty()) {
-    switch (options_.smoother) {
-      case Smoother::kNewton: run(NewtonSearch{}); break;
-      case Smoother::kCandidates: run(CandidateSearch{}); break;
-      case Smoother::kLaplacian: run(LaplacianSearch{}); break;
+    switch (options_.compat == Compat::kJpdc2013 ? Smoother::kCandidates : options_.smoother) {
+      case Smoother::kNewton:
+        run(NewtonSearch{});
+        break;
+      case Smoother::kCandidates:
+        run(CandidateSearch{});
+        break;
+      case Smoother::kLaplacian:
+        run(LaplacianSearch{});
+        break;
       case Smoother::kTaubin:
         run(kTaubinForth);
         run(kTaubinBack);
@@ -131,9 +176,14 @@ void Stage<Metric>::report(Kind kind, int iteration, const RoundCounts& counts, 
   pass.seconds_select = counts.seconds_select;
   pass.seconds_commit = counts.seconds_commit;
   control_.add(std::move(pass));
-  control_.tell({name_, iteration, 0.0, n_invalid_, 0.0});
+  if (options_.progress)
+    options_.progress(
+        {name_, iteration, control_.fraction(), n_invalid_, smallest_dihedral(mesh_, options_.policy)});
 }
 
+template std::size_t Stage<VolumeLength>::star_pass<Cluster::kEdge>(int);
+template std::size_t Stage<VolumeLength>::star_pass<Cluster::kFace>(int);
+template std::size_t Stage<VolumeLength>::star_pass<Cluster::kNode>(int);
 template class Stage<VolumeLength>;
 template class Stage<MinSine2>;
 template class Stage<MinDihedral>;

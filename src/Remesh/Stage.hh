@@ -33,14 +33,19 @@ struct Focus {
   bool everything() const { return below == std::numeric_limits<double>::infinity(); }
 };
 
-/// The passes of a run in one metric. Work follows damage: a pass looks at cells that are in focus and that, or
-/// whose surroundings, have changed since the same operator last looked at them in this stage.
+/// The passes of a run in one metric. Work follows damage: a pass looks at cells that are in focus and that,
+/// or whose surroundings, have changed since the same operator last looked at them in this stage.
 template <class Metric>
 class Stage {
  public:
   Stage(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, Metric metric,
         std::string name)
-      : mesh_(mesh), work_(work), options_(options), control_(control), metric_(metric), name_(std::move(name)) {
+      : mesh_(mesh),
+        work_(work),
+        options_(options),
+        control_(control),
+        metric_(metric),
+        name_(std::move(name)) {
     work_.set_qualities(mesh_, metric_, options_.policy);
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
     count();
@@ -70,6 +75,9 @@ class Stage {
   std::size_t node_pass(int iteration, Focus focus);
   std::size_t insert_pass(int iteration, Focus focus);
   std::size_t smooth_pass(int iteration, Focus focus);
+  /// The paper's star form of an operator over all cells that are pending.
+  template <Cluster kCluster>
+  std::size_t star_pass(int iteration);
 
  private:
   enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kKinds };
@@ -110,7 +118,9 @@ class Stage {
           const double q = work_.quality[i];
           return Sum{static_cast<std::size_t>(q > 0 ? 0 : 1), q};
         },
-        [](Sum a, Sum b) { return Sum{a.invalid + b.invalid, std::min(a.worst, b.worst)}; });
+        [](Sum a, Sum b) {
+          return Sum{a.invalid + b.invalid, std::min(a.worst, b.worst)};
+        });
     n_invalid_ = sum.invalid;
     worst_ = sum.worst;
   }

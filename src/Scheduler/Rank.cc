@@ -12,7 +12,8 @@ void rank(par::Policy policy, std::vector<par::KeyIndex>& keys, std::vector<par:
     if (keys[i].key != keys[i - 1].key) continue;
     std::size_t end = i + 1;
     while (end < keys.size() && keys[end].key == keys[i].key) ++end;
-    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(i - 1), keys.begin() + static_cast<std::ptrdiff_t>(end),
+    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(i - 1),
+              keys.begin() + static_cast<std::ptrdiff_t>(end),
               [&](const par::KeyIndex& a, const par::KeyIndex& b) {
                 return identities[a.index] < identities[b.index];
               });

@@ -20,8 +20,8 @@ constexpr std::uint64_t quality_bucket(double old_worst) {
   return static_cast<std::uint64_t>(exponent < -13 ? 1 : exponent > 0 ? 15 : 15 + exponent);
 }
 
-/// Priority of a candidate: smaller wins. Equal buckets are in the order of a hash of the vertices that name the
-/// seed, salted by the round, so that neighbours in storage are no neighbours in rank.
+/// Priority of a candidate: smaller wins. Equal buckets are in the order of a hash of the vertices that name
+/// the seed, salted by the round, so that neighbours in storage are no neighbours in rank.
 constexpr std::uint64_t priority(double old_worst, const Tet& identity, std::uint64_t salt) {
   std::uint64_t h = mix64(salt + 0x9e3779b97f4a7c15ULL);
   for (VertexHandle v : identity) h = mix64(h ^ v.idx());

@@ -28,9 +28,9 @@ struct RoundOptions {
 };
 
 /// One round of one operator kind: evaluate the seeds in parallel, rank what improves, select the first
-/// independent set in rank order, hand out slots, commit in bulk, refresh. The result depends on mesh, seeds (as
-/// a set) and options, not on the number of threads. What lost is not remembered: it shared a cell with a winner,
-/// so its evaluation is void; the winner's new cells are pending instead.
+/// independent set in rank order, hand out slots, commit in bulk, refresh. The result depends on mesh, seeds
+/// (as a set) and options, not on the number of threads. What lost is not remembered: it shared a cell with a
+/// winner, so its evaluation is void; the winner's new cells are pending instead.
 template <LocalOperator Op>
 class Round {
  public:
@@ -127,8 +127,9 @@ class Round {
     }
   }
 
-  /// Two winners that share no cell could still make the same edge in a folded mesh; the later one is refused.
-  /// Hashes of 64 bits stand for the simplices: a chance collision only refuses a candidate for this round.
+  /// Two winners that share no cell could still make the same edge in a folded mesh; the later one is
+  /// refused. Hashes of 64 bits stand for the simplices: a chance collision only refuses a candidate for this
+  /// round.
   bool creates_nothing_twice(const Op& op, const Plan& plan, Cavity& cavity,
                              std::unordered_set<std::uint64_t>& created) const {
     if (!options_.check_links) return true;
@@ -186,14 +187,15 @@ class Round {
     return {slots_.data() + winners_[w].first_slot, candidates_[winners_[w].candidate].n_born};
   }
 
-  /// Dead cells' slots first, then the free list from its back, then new ones; freed slots go to its back. All in
-  /// rank order, so slots do not depend on threads.
+  /// Dead cells' slots first, then the free list from its back, then new ones; freed slots go to its back.
+  /// All in rank order, so slots do not depend on threads.
   void assign_slots(const Op& op) {
     slots_.clear();
     std::vector<CellHandle>& free = mesh_.free_cells();
     freed_.clear();
     std::size_t n_cells = mesh_.n_cells();
-    std::vector<std::pair<CellHandle, CellHandle>> fresh;  // a dead cell of the cavity, a slot that it extends to
+    std::vector<std::pair<CellHandle, CellHandle>>
+        fresh;  // a dead cell of the cavity, a slot that it extends to
     Scope scope;
     Cavity cavity;
     for (Winner& winner : winners_) {
@@ -228,8 +230,8 @@ class Round {
     for (std::size_t i = freed_.size(); i-- > 0;) free.push_back(freed_[i]);
   }
 
-  /// Commit B: what lies behind an outer face learns of the new half-face; a neighbour that was itself replaced
-  /// in this round is looked up in its winner's notes.
+  /// Commit B: what lies behind an outer face learns of the new half-face; a neighbour that was itself
+  /// replaced in this round is looked up in its winner's notes.
   void mend_mates(std::size_t w) {
     for (const OuterFace& note : winners_[w].notes) {
       if (!note.behind.is_valid()) continue;
@@ -243,7 +245,8 @@ class Round {
     }
   }
 
-  /// Qualities, pending bits, change stamps and hooks (the smallest cell made in this round) of what was written.
+  /// Qualities, pending bits, change stamps and hooks (the smallest cell made in this round) of what was
+  /// written.
   template <class ForWinners>
   void refresh(const Op& op, ForWinners&& for_winners) {
     const auto store = [](auto& place, auto value) {  // several winners may write the same value

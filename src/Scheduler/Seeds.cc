@@ -50,8 +50,8 @@ std::vector<VertexHandle> vertex_seeds(const TetMesh& mesh, const Worklist& list
   std::vector<std::uint8_t> listed(mesh.n_vertices(), 0);
   for (Index c : list.cells())
     for (VertexHandle v : mesh.cell(CellHandle(c)).v) listed[v.idx()] = 1;
-  const auto indices = par::compact<Index>(policy, mesh.n_vertices(),
-                                           [&](std::size_t i) { return listed[i] && !frozen[i]; });
+  const auto indices =
+      par::compact<Index>(policy, mesh.n_vertices(), [&](std::size_t i) { return listed[i] && !frozen[i]; });
   std::vector<VertexHandle> vertices(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) vertices[i] = VertexHandle(indices[i]);
   return vertices;

@@ -12,8 +12,8 @@
 
 namespace hfr {
 
-/// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and moves
-/// by itself; a later colour sees the moves of the earlier ones.
+/// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and
+/// moves by itself; a later colour sees the moves of the earlier ones.
 template <class Search, class Metric>
 RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, const Metric& metric,
                         std::span<const VertexHandle> vertices, par::Policy policy) {
@@ -38,7 +38,8 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
           const auto link = stars.link(i);
           if (link.empty()) return 0;
           const VertexHandle v = vertices[i];
-          const std::optional<Move> move = search(mesh, v, link, metric, std::span<const double>(work.quality));
+          const std::optional<Move> move =
+              search(mesh, v, link, metric, std::span<const double>(work.quality));
           if (!move) return 0;
           mesh.set_point(v, move->target);
           for (HalfFaceHandle h : link) {

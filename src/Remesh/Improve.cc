@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Improve.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "HalfFace/Errors.hh"
+#include "Remesh/Pipeline.hh"
+#include "Remesh/RunControl.hh"
+
+namespace hfr {
+namespace {
+
+constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
+constexpr double kFirstGoal = 10;      // degrees; where no goal is given, goals rise from here …
+constexpr double kGoalStep = 5;        // … in these steps while they are met
+
+void validate(const ImproveOptions& options) {
+  HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
+              "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
+                  std::to_string(options.min_dihedral.value_or(0)));
+  HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
+  HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
+  HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
+  HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
+}
+
+/// Raises the worst dihedral step by step; a goal that is missed is the last. The next goal starts above what
+/// has been reached.
+void polish_upwards(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+  double goal = kFirstGoal;
+  while (!control.stopped() && goal < kLargestGoal) {
+    const double now = smallest_dihedral(mesh, options.policy);
+    while (goal <= now) goal += kGoalStep;
+    if (!polish(mesh, work, options, control, goal)) return;
+    control.set_fraction(0.5 + 0.5 * goal / kLargestGoal);
+  }
+}
+
+void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control) {
+  Workspace work;
+  work.attach(mesh, options.policy);
+  if (options.compat == Compat::kJpdc2013) {
+    run_jpdc2013(mesh, work, options, control);
+    return;
+  }
+  untangle(mesh, work, options, control);
+  control.set_fraction(0.1);
+  if (options.min_dihedral) {
+    polish(mesh, work, options, control, *options.min_dihedral);
+    return;
+  }
+  improve_bulk(mesh, work, options, control);
+  control.set_fraction(0.5);
+  polish_upwards(mesh, work, options, control);
+}
+
+}  // namespace
+
+Result improve(TetMesh& mesh, const ImproveOptions& options) {
+  validate(options);
+  Result result;
+  if (options.statistics) result.before = statistics(mesh, options.policy);
+  RunControl control(options);
+  const auto goal_met = [&] {
+    if (options.min_dihedral) return smallest_dihedral(mesh, options.policy) >= *options.min_dihedral;
+    return invalid_cells(mesh, options.policy).empty();
+  };
+  const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && goal_met();
+  if (!nothing_to_do) run(mesh, options, control);
+  result.passes = std::move(control.passes());
+  result.changed = std::any_of(result.passes.begin(), result.passes.end(),
+                               [](const PassReport& pass) { return pass.winners > 0; });
+  if (result.changed) mesh.collect_garbage();
+  result.invalid_cells = invalid_cells(mesh, options.policy);
+  result.goal_reached = result.invalid_cells.empty() && (nothing_to_do || goal_met());
+  result.stop = control.reason().value_or(result.goal_reached && options.min_dihedral ? Stop::kGoal
+                                          : options.iterations > 0                    ? Stop::kIterations
+                                                                                      : Stop::kNoProgress);
+  result.seconds = control.seconds();
+  if (options.statistics) result.after = result.changed ? statistics(mesh, options.policy) : result.before;
+  return result;
+}
+
+}  // namespace hfr

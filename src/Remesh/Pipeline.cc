@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Pipeline.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "Remesh/Stage.hh"
+
+namespace hfr {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// Focus of the untangling stage, as decision values of volume-length: from what is all but flat to what is
+/// merely poor. Wider only when the narrower one has stopped helping.
+constexpr std::array<double, 4> kUntangleFocus = {1e-4, 1e-2, 0.1, 0.3};
+constexpr int kMaxUntangleIterations = 40;
+constexpr int kDefaultBulkIterations = 3;
+constexpr int kMaxPolishIterations = 60;
+/// A polish iteration that neither lowers the number of poor cells nor raises the worst by this factor is
+/// idle.
+constexpr double kPolishGain = 1.01;
+constexpr int kMaxIdle = 2;
+
+/// Calls f with a metric functor that the operators are instantiated for.
+template <class F>
+void with_stage_metric(Metric metric, F&& f) {
+  switch (metric) {
+    case Metric::kVolumeLength:
+    case Metric::kMeanRatio:  // the same order of cells
+      return f(VolumeLength{});
+    case Metric::kMinSine:
+      return f(MinSine2{});
+    case Metric::kMinDihedral:
+      return f(MinDihedral{});
+    default:
+      return f(
+          CustomMetric([metric](Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return quality(metric, a, b, c, d); }));
+  }
+}
+
+/// Iterates while it helps. Returns true when no cell is below `goal` any more.
+template <class Metric>
+bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& control, double goal) {
+  const int limit = options.iterations > 0 ? options.iterations : kMaxPolishIterations;
+  std::size_t n_poor = stage.n_below(goal);
+  double worst = stage.worst();
+  int idle = 0;
+  for (int i = 1; i <= limit && n_poor > 0 && idle < kMaxIdle && !control.stopped(); ++i) {
+    if (stage.iterate(i, Focus{goal}, true) == 0) break;
+    const std::size_t n_poor_now = stage.n_below(goal);
+    const bool better =
+        n_poor_now < n_poor || stage.worst() > worst * kPolishGain || (worst <= 0 && stage.worst() > worst);
+    idle = better ? 0 : idle + 1;
+    n_poor = n_poor_now;
+    worst = stage.worst();
+  }
+  return n_poor == 0;
+}
+
+}  // namespace
+
+double dihedral_decision(double degrees) {
+  const double sine = std::sin(degrees * kDegree);
+  return sine * sine;
+}
+
+double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
+  const MinDihedral metric;
+  const double worst = par::reduce(
+      policy, mesh.n_cells(), std::numeric_limits<double>::infinity(),
+      [&](std::size_t i) {
+        const CellHandle c(i);
+        if (mesh.is_deleted(c)) return std::numeric_limits<double>::infinity();
+        const auto& v = mesh.cell(c).v;
+        return metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+      },
+      [](double a, double b) { return std::min(a, b); });
+  return report_value(Metric::kMinDihedral, std::min(worst, 8.0 / 9.0));
+}
+
+std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
+  const auto indices = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
+    const CellHandle c(i);
+    if (mesh.is_deleted(c)) return false;
+    const auto& v = mesh.cell(c).v;
+    return orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) <= 0;
+  });
+  std::vector<CellHandle> cells;
+  cells.reserve(indices.size());
+  for (Index i : indices) cells.push_back(CellHandle(i));
+  return cells;
+}
+
+void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+  Stage<VolumeLength> stage(mesh, work, options, control, VolumeLength{}, "untangle");
+  std::size_t level = 0;
+  std::size_t n_invalid = stage.n_invalid();
+  double worst = stage.worst();
+  int idle = 0;
+  for (int i = 1; i <= kMaxUntangleIterations && stage.n_invalid() > 0 && !control.stopped(); ++i) {
+    const std::size_t changes = stage.iterate(i, Focus{kUntangleFocus[level]}, true);
+    const bool better = stage.n_invalid() < n_invalid || stage.worst() > worst;
+    idle = better ? 0 : idle + 1;
+    n_invalid = stage.n_invalid();
+    worst = stage.worst();
+    if (changes > 0 && idle < kMaxIdle) continue;
+    if (++level == kUntangleFocus.size()) break;
+    stage.look_again();
+    idle = 0;
+  }
+}
+
+void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+  const int limit = options.iterations > 0 ? options.iterations : kDefaultBulkIterations;
+  with_stage_metric(options.metric, [&](auto metric) {
+    Stage<decltype(metric)> stage(mesh, work, options, control, metric, "bulk");
+    for (int i = 1; i <= limit && !control.stopped(); ++i)
+      if (stage.iterate(i, Focus{}, false) == 0) break;
+  });
+}
+
+bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal) {
+  const double decision = dihedral_decision(goal);
+  {
+    Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "polish");
+    if (polish_in(stage, options, control, decision)) return true;
+  }
+  // What is left may be obtuse only, or give way once obtuse angles do not count.
+  Stage<MinDihedral> stage(mesh, work, options, control, MinDihedral{}, "finish");
+  return polish_in(stage, options, control, decision);
+}
+
+}  // namespace hfr

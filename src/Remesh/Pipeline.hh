@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_PIPELINE_HH
+#define HFR_REMESH_PIPELINE_HH
+
+#include "HalfFace/TetMesh.hh"
+#include "Remesh/Improve.hh"
+#include "Remesh/RunControl.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+/// sin² of an angle in degrees: what the dihedral metrics call their decision value.
+double dihedral_decision(double degrees);
+/// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
+double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
+/// Cells whose volume is not positive beyond rounding, ascending.
+std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy);
+
+/// Mends inverted and flat cells on volume-length, the focus widening from the damage while it helps.
+void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
+/// Improves all cells in options.metric, until an iteration gains little.
+void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
+/// Works on cells with a dihedral below `goal` degrees (or above 180 - goal) until there are none or nothing
+/// helps. True when the smallest dihedral meets the goal.
+bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal);
+/// The paper's pipeline in the paper's form: star operators and candidate smoothing over the whole mesh,
+/// edge → face → node → smooth, a fixed number of iterations.
+void run_jpdc2013(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
+
+}  // namespace hfr
+
+#endif
