@@ -23,6 +23,7 @@ VertexHandle TetMesh::add_vertex(Vec3 p) {
 void TetMesh::resize_cells(std::size_t n) {
   cells_.resize(n);
   if (!regions_.empty()) regions_.resize(n, 0);
+  if (!cell_status_.empty()) cell_status_.resize(n, 0);
 }
 
 void TetMesh::mark_deleted(VertexHandle v) {

@@ -34,9 +34,20 @@ struct Cell {
 struct Star {
   static constexpr int kCapacity = 256;
   int size = 0;
-  std::array<CellHandle, kCapacity> cells;       ///< in order of discovery from the hook
-  std::array<std::uint8_t, kCapacity> corners;   ///< corner of the vertex in each cell
+  std::array<CellHandle, kCapacity> cells;        ///< in order of discovery from the hook
+  std::array<std::uint8_t, kCapacity> corners;    ///< corner of the vertex in each cell
   std::array<std::uint16_t, 2 * kCapacity> slot;  ///< hash table: 1 + position in cells
+};
+
+/// Old handle → new one, by index; invalid where it is gone.
+struct GarbageMap {
+  std::vector<VertexHandle> vertices;
+  std::vector<CellHandle> cells;
+};
+
+struct GarbageOptions {
+  bool drop_unused_vertices = false;  ///< also those that no cell uses
+  par::Policy policy = {};
 };
 
 /// Tetrahedral mesh with four implicit half-faces a cell.
@@ -54,10 +65,9 @@ class TetMesh {
   const Cell& cell(CellHandle c) const { return cells_[c.idx()]; }
   bool is_deleted(CellHandle c) const { return !cells_[c.idx()].v[0].is_valid(); }
   /// O(1). Invalid on the boundary.
-  HalfFaceHandle opposite_halfface(HalfFaceHandle h) const {
-    return cells_[h.idx() / 4].mate[h.idx() % 4];
-  }
-  /// The three vertices of a half-face as its cell sees them: with the opposite vertex appended, a positive cell.
+  HalfFaceHandle opposite_halfface(HalfFaceHandle h) const { return cells_[h.idx() / 4].mate[h.idx() % 4]; }
+  /// The three vertices of a half-face as its cell sees them: with the opposite vertex appended, a positive
+  /// cell.
   std::array<VertexHandle, 3> halfface_vertices(HalfFaceHandle h) const {
     const Cell& k = cells_[h.idx() / 4];
     const auto& f = kFaceCorners[h.idx() % 4];
@@ -86,6 +96,21 @@ class TetMesh {
   const Labels& labels() const { return labels_; }
   Labels& labels() { return labels_; }
 
+  // --- what a new cell or vertex inherits ---
+  /// Gives `to` the region, status and properties of `from`: for a cell born in a fresh slot. A cell born in
+  /// the slot of a dead one keeps that slot's. Safe in parallel for distinct `to`.
+  void copy_cell_data(CellHandle from, CellHandle to) {
+    if (!regions_.empty()) regions_[to.idx()] = regions_[from.idx()];
+    if (!cell_status_.empty()) cell_status_[to.idx()] = cell_status_[from.idx()];
+  }
+  /// Gives `to` the properties of `from` and whether it is selected or tagged; neither its label nor whether
+  /// it is fixed, which are constraints. Safe in parallel for distinct `to`.
+  void copy_vertex_data(VertexHandle from, VertexHandle to) {
+    constexpr int kInherited = kSelected | kTagged;
+    std::uint8_t& bits = vertex_status_[to.idx()];
+    bits = static_cast<std::uint8_t>((bits & ~kInherited) | (vertex_status_[from.idx()] & kInherited));
+  }
+
   /// True when no operator may remove the face of h: boundary, interface between regions, or labelled.
   bool is_constrained(HalfFaceHandle h) const {
     const HalfFaceHandle m = opposite_halfface(h);
@@ -99,11 +124,12 @@ class TetMesh {
   }
 
   // --- neighbourhoods in bulk, for operators ---
-  /// Fills `star` with the cells that face-connect to the hook of v round v. False, with star.size == 0, when v
-  /// has no cell or more than Star::kCapacity.
+  /// Fills `star` with the cells that face-connect to the hook of v round v. False, with star.size == 0, when
+  /// v has no cell or more than Star::kCapacity.
   bool gather_star(VertexHandle v, Star& star) const;
-  /// The half-face through which a walk round the edge (a, b) leaves cell c counter-clockwise about a→b, given
-  /// the vertex p of c such that (a, b, p, q) is positive: the one opposite p. See edge_ring() for a whole walk.
+  /// The half-face through which a walk round the edge (a, b) leaves cell c counter-clockwise about a→b,
+  /// given the vertex p of c such that (a, b, p, q) is positive: the one opposite p. See edge_ring() for a
+  /// whole walk.
   HalfFaceHandle ring_exit(CellHandle c, VertexHandle p) const {
     return halfface_of(c, cells_[c.idx()].corner(p));
   }
@@ -112,10 +138,17 @@ class TetMesh {
   /// Returns true when the ring closed.
   template <class Visit>
   bool walk_ring(CellHandle c, int edge, Visit&& visit) const;
+  /// The same walk in the other direction (clockwise about a→b), again starting with c itself.
+  template <class Visit>
+  bool walk_ring_back(CellHandle c, int edge, Visit&& visit) const;
   /// True when some cell has both vertices.
   bool has_edge(VertexHandle a, VertexHandle b, Star& scratch) const;
   /// True when some cell has all three vertices.
   bool has_face(VertexHandle a, VertexHandle b, VertexHandle c, Star& scratch) const;
+
+  /// Gives every vertex and cell that is not deleted a handle without gaps, in the old order. Labels of faces
+  /// and edges that no cell has any more are dropped.
+  GarbageMap collect_garbage(GarbageOptions options = {});
 
   // --- low-level writing, for operators and builders; nothing is checked ---
   VertexHandle add_vertex(Vec3 p);
@@ -123,6 +156,7 @@ class TetMesh {
   Cell& mutable_cell(CellHandle c) { return cells_[c.idx()]; }
   void set_mate(HalfFaceHandle h, HalfFaceHandle m) { cells_[h.idx() / 4].mate[h.idx() % 4] = m; }
   void set_hook(VertexHandle v, CellHandle c) { hook_[v.idx()] = c; }
+  CellHandle& mutable_hook(VertexHandle v) { return hook_[v.idx()]; }
   void mark_deleted(CellHandle c) { cells_[c.idx()] = Cell{}; }
   void mark_deleted(VertexHandle v);
   /// Deleted cells that wait for reuse, in the order in which they are to be taken (from the back).
@@ -131,13 +165,16 @@ class TetMesh {
 
  private:
   friend class MeshBuilder;
-  enum StatusBit : std::uint8_t { kDeleted = 1, kFixed = 2 };
+  enum StatusBit : std::uint8_t { kDeleted = 1, kFixed = 2, kSelected = 4, kTagged = 8 };
   static void set_bit(std::uint8_t& bits, std::uint8_t bit, bool on) {
     bits = static_cast<std::uint8_t>(on ? bits | bit : bits & ~bit);
   }
 
+  void renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells, par::Policy policy);
+
   std::vector<Cell> cells_;
-  std::vector<int> regions_;  // empty while every cell is in region 0
+  std::vector<int> regions_;               // empty while every cell is in region 0
+  std::vector<std::uint8_t> cell_status_;  // empty until a bit is set
   std::vector<CellHandle> free_cells_;
   std::vector<Vec3> points_;
   std::vector<CellHandle> hook_;
@@ -148,17 +185,17 @@ class TetMesh {
 
 /// What build() had to mend.
 struct BuildReport {
-  bool flipped = false;                 ///< the file orders every cell the other way round
-  std::vector<CellHandle> reoriented;   ///< cells whose order contradicted their neighbours'
+  bool flipped = false;                ///< the file orders every cell the other way round
+  std::vector<CellHandle> reoriented;  ///< cells whose order contradicted their neighbours'
 };
 
 /// Builds the connectivity of a mesh from arrays: n points, m cells of four 0-based point indices in either
-/// orientation. Cells that contradict their neighbours are put into the neighbours' orientation, which may make
-/// them inverted: that is the truth about them; the whole is flipped when most cells are then negative.
+/// orientation. Cells that contradict their neighbours are put into the neighbours' orientation, which may
+/// make them inverted: that is the truth about them; the whole is flipped when most cells are then negative.
 /// Handles equal array indices. Throws InvalidInput for an index out of range, a repeated vertex in a cell, a
 /// coordinate that is not finite, a face with three cells, or cells that cannot be oriented alike.
-TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells,
-              par::Policy policy = {}, BuildReport* report = nullptr);
+TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells, par::Policy policy = {},
+              BuildReport* report = nullptr);
 
 template <class Visit>
 bool TetMesh::walk_ring(CellHandle c, int edge, Visit&& visit) const {
@@ -178,6 +215,27 @@ bool TetMesh::walk_ring(CellHandle c, int edge, Visit&& visit) const {
     p = q;
     q = k->v[m.idx() % 4];
     exit = k->corner(p);
+  }
+}
+
+template <class Visit>
+bool TetMesh::walk_ring_back(CellHandle c, int edge, Visit&& visit) const {
+  const Cell* k = &cells_[c.idx()];
+  const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(edge)];
+  VertexHandle p = k->v[opposite[0]];
+  VertexHandle q = k->v[opposite[1]];
+  const CellHandle first = c;
+  int exit = opposite[1];
+  for (;;) {
+    if (!visit(c, p, q)) return false;
+    const HalfFaceHandle m = k->mate[static_cast<std::size_t>(exit)];
+    if (!m.is_valid()) return false;
+    c = cell_of(m);
+    if (c == first) return true;
+    k = &cells_[c.idx()];
+    q = p;
+    p = k->v[m.idx() % 4];
+    exit = k->corner(q);
   }
 }
 

@@ -22,11 +22,42 @@ constexpr std::uint64_t mix64(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Values keyed by an unordered set of N vertices: an edge (N = 2) or a face (N = 3). Edges and faces are not
-/// stored by the kernel, so what is attached to them hangs on their vertices: it then survives any operator
-/// that keeps the edge or face, at no cost to those that do not touch it. Entries keep their order of insertion.
-/// Reading is thread-safe.
-template <std::size_t N, class T>
+/// Key of an edge or face: its vertices in any order.
+struct AnyOrder {
+  static constexpr bool kDirected = false;
+  template <std::size_t N>
+  static std::array<VertexHandle, N> key(std::array<VertexHandle, N> vertices) {
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  }
+};
+
+/// Key of a half-edge or half-face: its vertices in their cyclic order.
+struct CyclicOrder {
+  static constexpr bool kDirected = true;
+  template <std::size_t N>
+  static std::array<VertexHandle, N> key(std::array<VertexHandle, N> vertices) {
+    if constexpr (N > 2)  // a half-edge a→b is no cycle: b→a is its opposite
+      std::rotate(vertices.begin(), std::min_element(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+};
+
+/// Hash of a key made by AnyOrder or CyclicOrder.
+struct TupleHash {
+  template <std::size_t N>
+  std::size_t operator()(const std::array<VertexHandle, N>& key) const {
+    std::uint64_t h = 0x9e3779b97f4a7c15ULL;
+    for (VertexHandle v : key) h = mix64(h ^ v.idx());
+    return static_cast<std::size_t>(h);
+  }
+};
+
+/// Values keyed by N vertices: an edge (N = 2) or a face (N = 3), or with CyclicOrder a half-edge or
+/// half-face. Edges and faces are not stored by the kernel, so what is attached to them hangs on their
+/// vertices: it then survives any operator that keeps the edge or face, at no cost to those that do not touch
+/// it. Entries keep their order of insertion. Reading is thread-safe.
+template <std::size_t N, class T, class Order = AnyOrder>
 class TupleMap {
  public:
   struct Entry {
@@ -38,10 +69,15 @@ class TupleMap {
   std::size_t size() const { return entries_.size(); }
   std::span<const Entry> entries() const { return entries_; }
 
+  /// Index into entries(); size() when nothing is attached to these vertices.
+  std::size_t position(const std::array<VertexHandle, N>& vertices) const {
+    const auto at = position_.find(Order::key(vertices));
+    return at == position_.end() ? entries_.size() : at->second;
+  }
   /// nullptr when nothing is attached to these vertices.
   const T* find(const std::array<VertexHandle, N>& vertices) const {
-    const auto at = position_.find(sorted(vertices));
-    return at == position_.end() ? nullptr : &entries_[at->second].value;
+    const std::size_t at = position(vertices);
+    return at == entries_.size() ? nullptr : &entries_[at].value;
   }
   T* find(const std::array<VertexHandle, N>& vertices) {
     return const_cast<T*>(static_cast<const TupleMap&>(*this).find(vertices));
@@ -49,7 +85,7 @@ class TupleMap {
 
   /// Overwrites what is there.
   T& set(const std::array<VertexHandle, N>& vertices, T value) {
-    const auto [at, is_new] = position_.try_emplace(sorted(vertices), entries_.size());
+    const auto [at, is_new] = position_.try_emplace(Order::key(vertices), entries_.size());
     if (is_new)
       entries_.push_back({vertices, std::move(value)});
     else
@@ -57,9 +93,27 @@ class TupleMap {
     return entries_[at->second].value;
   }
 
+  /// Forgets one entry, keeping the order of the others: O(size()). False when there was none.
+  bool erase(const std::array<VertexHandle, N>& vertices) {
+    const auto found = position_.find(Order::key(vertices));
+    if (found == position_.end()) return false;
+    const std::size_t gone = found->second;
+    position_.erase(found);
+    entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(gone));
+    for (auto& [key, at] : position_)
+      if (at > gone) --at;
+    return true;
+  }
+
   void clear() {
     entries_.clear();
     position_.clear();
+  }
+
+  /// Heap memory in bytes, estimated for the hash table.
+  std::size_t memory_bytes() const {
+    return entries_.capacity() * sizeof(Entry) + position_.bucket_count() * sizeof(void*) +
+           position_.size() * (sizeof(std::array<VertexHandle, N>) + sizeof(std::size_t) + 2 * sizeof(void*));
   }
 
   /// Replaces every vertex v by rename(v) and drops the entries with an invalid one or with !keep(vertices).
@@ -79,21 +133,8 @@ class TupleMap {
   }
 
  private:
-  using Key = std::array<VertexHandle, N>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t h = 0x9e3779b97f4a7c15ULL;
-      for (VertexHandle v : key) h = mix64(h ^ v.idx());
-      return static_cast<std::size_t>(h);
-    }
-  };
-  static Key sorted(Key key) {
-    std::sort(key.begin(), key.end());
-    return key;
-  }
-
   std::vector<Entry> entries_;
-  std::unordered_map<Key, std::size_t, Hash> position_;
+  std::unordered_map<std::array<VertexHandle, N>, std::size_t, TupleHash> position_;
 };
 
 }  // namespace hfr
