@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Every installed header in one translation unit: none may include a header that was left behind, and no two may
+# contradict each other.
+string(APPEND WORK /headers)
+include(${CMAKE_CURRENT_LIST_DIR}/pkg_config_flags.cmake)
+hfr_pkg_config(root --variable=includedir)
+file(GLOB_RECURSE headers RELATIVE ${root}/hfremesh ${root}/hfremesh/*.h ${root}/hfremesh/*.hh)
+list(LENGTH headers n_headers)
+if(n_headers LESS 20)
+  message(FATAL_ERROR "only ${n_headers} headers below ${root}/hfremesh")
+endif()
+list(TRANSFORM headers REPLACE ".+" "#include <\\0>")
+list(JOIN headers "\n" text)
+file(WRITE ${WORK}/all.cc "${text}\nint main() {}\n")
+hfr_pkg_config(flags --cflags)
+execute_process(COMMAND ${COMPILER} -std=c++20 -Wall -Wextra -Werror -fsyntax-only ${flags} ${WORK}/all.cc
+  COMMAND_ERROR_IS_FATAL ANY)
