@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs the Debian or Ubuntu packages that hfremesh needs and that are missing. Does nothing, and asks for no
+# rights, when all are there.
+# Usage: scripts/install-deps.sh [--tool] [--bench] [--dev]
+#   (none)   to build the library, the tool and the tests
+#   --tool   to build the library and the tool only
+#   --bench  the default, and the benchmarks
+#   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr
+set -euo pipefail
+
+packages=(g++ cmake make pkg-config zlib1g-dev libfmt-dev libtinyxml2-dev nlohmann-json3-dev libcli11-dev
+  libeigen3-dev libopenmesh-dev)
+tests=(libgtest-dev libgmock-dev)
+extra=()
+for option in "$@"; do
+  case $option in
+    --tool) tests=() ;;
+    --bench) extra+=(libbenchmark-dev) ;;
+    --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr) ;;
+    *) sed -n '3,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+  esac
+done
+packages+=("${tests[@]}" "${extra[@]}")
+
+if ! command -v dpkg-query > /dev/null; then
+  echo "install-deps: no dpkg here, so nothing was checked; needed are: ${packages[*]}" >&2
+  exit 0
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+  # A package of several architectures prints one line for each.
+  status=$(dpkg-query -W -f='${db:Status-Status}\n' "$package" 2> /dev/null || true)
+  grep -qx installed <<< "$status" || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo > /dev/null || { [ ! -t 0 ] && ! sudo -n true 2> /dev/null; }; then
+    echo "install-deps: ask an administrator to install these packages: ${missing[*]}" >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+
+echo "install-deps: installing ${missing[*]}"
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" \
+  < /dev/null
