@@ -34,12 +34,10 @@ Notes write_gmsh(const std::filesystem::path& path, const MeshData& mesh, const 
 Notes write_vtk(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options);
 Notes write_vtu(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options);
 
-#ifdef HFR_SURFACE
 /// .stl .obj .off .ply: triangles only; the mesh has no cells.
 MeshData read_surface(const InputFile& file);
-/// The triangles of the mesh, or the boundary of its cells where it has none.
+/// The boundary of the cells, outwards, or the triangles of the mesh where it has no cells.
 Notes write_surface(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options);
-#endif
 
 }  // namespace hfr::io
 

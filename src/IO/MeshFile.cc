@@ -26,6 +26,10 @@ constexpr Format kFormats[] = {
     {".ovm", read_ovm, write_ovm},
     {".vtk", read_vtk, write_vtk},
     {".vtu", read_vtu, write_vtu},
+    {".stl", read_surface, write_surface},
+    {".obj", read_surface, write_surface},
+    {".off", read_surface, write_surface},
+    {".ply", read_surface, write_surface},
 };
 
 std::string joined(const std::vector<std::string>& words) {

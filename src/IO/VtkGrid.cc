@@ -119,6 +119,11 @@ std::optional<Field> take_labels(std::vector<Field>& fields, std::span<const std
   return std::nullopt;
 }
 
+/// 0 means "no label": where all are 0 there are none.
+void forget_zeros(std::vector<int>& labels) {
+  if (std::all_of(labels.begin(), labels.end(), [](int label) { return label == 0; })) labels.clear();
+}
+
 /// Moves what a grid holds into a mesh, step by step.
 class GridConverter {
  public:
@@ -132,6 +137,8 @@ class GridConverter {
     mesh_.points = std::move(grid_.points);
     take_point_arrays();
     if (n_curved_ > 0) drop_middle_nodes();
+    forget_zeros(mesh_.regions);
+    forget_zeros(mesh_.vertex_labels);
     read_names(grid_.names, mesh_);
     mesh_.notes.insert(mesh_.notes.begin(), grid_.notes.begin(), grid_.notes.end());
     return std::move(mesh_);
