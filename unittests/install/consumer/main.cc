@@ -5,7 +5,8 @@
 #include <cstdio>
 #include <vector>
 
-/// Two cells that share a face: a first look at the half-faces, and one call into what links the most libraries.
+/// Two cells that share a face: a first look at the half-faces, and one call into what links the most
+/// libraries.
 int main() {
   const std::vector<hfr::Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
   const std::vector<std::array<hfr::Index, 4>> cells = {{0, 1, 2, 3}, {4, 1, 3, 2}};
