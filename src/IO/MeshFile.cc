@@ -24,6 +24,7 @@ constexpr Format kFormats[] = {
     {".ele", read_tetgen, write_tetgen},
     {".face", read_tetgen, write_tetgen},
     {".ovm", read_ovm, write_ovm},
+    {".msh", read_gmsh, write_gmsh},
     {".vtk", read_vtk, write_vtk},
     {".vtu", read_vtu, write_vtu},
     {".stl", read_surface, write_surface},
