@@ -17,6 +17,10 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::array<double, 4> kUntangleFocus = {1e-4, 1e-2, 0.1, 0.3};
 constexpr int kMaxUntangleIterations = 40;
 constexpr int kDefaultBulkIterations = 3;
+/// Volume-length above which the bulk stage leaves a cell alone, as decision value (q = 0.67). Measured on
+/// the 609,574-cell cavity: working on all cells raises the 1 % percentile of the smallest dihedrals by 0.1
+/// degrees more and takes half as long again.
+constexpr double kBulkFocus = 0.45;
 constexpr int kMaxPolishIterations = 60;
 /// A polish iteration that neither lowers the number of poor cells nor raises the worst by this factor is
 /// idle.
@@ -116,8 +120,11 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
   const int limit = options.iterations > 0 ? options.iterations : kDefaultBulkIterations;
   with_stage_metric(options.metric, [&](auto metric) {
     Stage<decltype(metric)> stage(mesh, work, options, control, metric, "bulk");
-    for (int i = 1; i <= limit && !control.stopped(); ++i)
-      if (stage.iterate(i, Focus{}, false) == 0) break;
+    const Focus focus{options.metric == Metric::kVolumeLength ? kBulkFocus : Focus{}.below};
+    for (int i = 1; i <= limit && !control.stopped(); ++i) {
+      if (stage.iterate(i, focus, false) == 0) break;
+      control.set_fraction(0.1 + 0.4 * i / limit);
+    }
   });
 }
 

@@ -14,9 +14,9 @@ constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/k
 }  // namespace
 
 template <class Metric>
-template <class MakeOp, class MakeSeeds>
+template <class MakeOp, class RunRound>
 std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op,
-                                  MakeSeeds&& make_seeds) {
+                                  RunRound&& run_round) {
   const double start = control_.seconds();
   RoundCounts total;
   std::size_t first = 0;
@@ -24,10 +24,8 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
   for (int r = 0; r < kMaxRounds && !control_.stopped(); ++r) {
     const Worklist list = worklist(kind, focus);
     if (list.cells().empty()) break;
-    const auto seeds = make_seeds(list);
-    RoundOptions round_options{options_.policy, n_invalid_ > 0, options_.seed};
-    Round<Op> round(mesh_, work_, round_options);
-    const RoundCounts counts = round.run(make_op(), seeds);
+    Round<Op> round(mesh_, work_, {options_.policy, n_invalid_ > 0, options_.seed});
+    const RoundCounts counts = run_round(round, make_op(), list);
     total += counts;
     if (n_invalid_ > 0) count();
     if (r == 0) first = counts.winners;
@@ -45,7 +43,11 @@ std::size_t Stage<Metric>::edge_pass(int iteration, Focus focus) {
       [&] {
         return EdgeRemoval<Metric>{metric_, work_.quality};
       },
-      [&](const Worklist& list) { return edge_seeds(mesh_, list, options_.policy); });
+      [&](auto& round, const auto& op, const Worklist& list) {
+        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+          visit_edge_seeds(mesh_, list, CellHandle(list.cells()[i]), visit);
+        });
+      });
 }
 
 template <class Metric>
@@ -55,7 +57,11 @@ std::size_t Stage<Metric>::face_pass(int iteration, Focus focus) {
       [&] {
         return FaceSwap<Metric>{metric_, work_.quality};
       },
-      [&](const Worklist& list) { return face_seeds(mesh_, list, options_.policy); });
+      [&](auto& round, const auto& op, const Worklist& list) {
+        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+          visit_face_seeds(mesh_, list, CellHandle(list.cells()[i]), visit);
+        });
+      });
 }
 
 template <class Metric>
@@ -65,54 +71,52 @@ std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
       [&] {
         return VertexRemoval<Metric>{metric_, work_.quality, work_.frozen};
       },
-      [&](const Worklist& list) { return vertex_seeds(mesh_, list, work_.frozen, options_.policy); });
+      [&](auto& round, const auto& op, const Worklist& list) {
+        return round.run(op, vertex_seeds(mesh_, list, work_.frozen, options_.policy));
+      });
 }
 
 template <class Metric>
 std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
-  using Op = StarFromVertex<Cluster::kEdge, Metric>;
-  return rounds(
-      kInsert, iteration, focus,
-      [&] {
-        Op op{metric_, work_.quality, work_.frozen};
-        op.insert = true;
-        op.reconnect = false;
-        return op;
-      },
-      [&](const Worklist& list) {
-        std::vector<typename Op::Seed> seeds;
-        for (EdgeHandle e : edge_seeds(mesh_, list, options_.policy))
-          seeds.push_back({CellHandle(e.idx() / 6), static_cast<std::uint8_t>(e.idx() % 6)});
-        return seeds;
-      });
+  return star_rounds<Cluster::kEdge>(kInsert, iteration, focus, false, true);
 }
 
 template <class Metric>
 template <Cluster kCluster>
 std::size_t Stage<Metric>::star_pass(int iteration) {
+  constexpr Kind kKind = kCluster == Cluster::kEdge ? kEdge : kCluster == Cluster::kFace ? kFace : kNode;
+  return star_rounds<kCluster>(kKind, iteration, Focus{}, true, has(options_.ops, Ops::kInsert));
+}
+
+template <class Metric>
+template <Cluster kCluster>
+std::size_t Stage<Metric>::star_rounds(Kind kind, int iteration, Focus focus, bool reconnect, bool insert) {
   using Op = StarFromVertex<kCluster, Metric>;
   using Seed = typename Op::Seed;
-  constexpr Kind kKind = kCluster == Cluster::kEdge ? kEdge : kCluster == Cluster::kFace ? kFace : kNode;
   return rounds(
-      kKind, iteration, Focus{},
+      kind, iteration, focus,
       [&] {
-        Op op{metric_, work_.quality, work_.frozen};
-        op.insert = has(options_.ops, Ops::kInsert);
-        return op;
+        return Op{metric_, work_.quality, work_.frozen, insert, reconnect};
       },
-      [&](const Worklist& list) {
-        std::vector<Seed> seeds;
-        if constexpr (kCluster == Cluster::kEdge) {
-          for (EdgeHandle e : edge_seeds(mesh_, list, options_.policy))
-            seeds.push_back({CellHandle(e.idx() / 6), static_cast<std::uint8_t>(e.idx() % 6)});
-        } else if constexpr (kCluster == Cluster::kFace) {
-          for (HalfFaceHandle h : face_seeds(mesh_, list, options_.policy))
-            seeds.push_back({cell_of(h), static_cast<std::uint8_t>(corner_of(h))});
-        } else {
+      [&](auto& round, const auto& op, const Worklist& list) {
+        if constexpr (kCluster == Cluster::kNode) {
+          std::vector<Seed> seeds;
           for (VertexHandle v : vertex_seeds(mesh_, list, work_.frozen, options_.policy))
             seeds.push_back({mesh_.hook(v), static_cast<std::uint8_t>(mesh_.cell(mesh_.hook(v)).corner(v))});
+          return round.run(op, seeds);
+        } else {
+          return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+            const CellHandle c(list.cells()[i]);
+            if constexpr (kCluster == Cluster::kEdge)
+              visit_edge_seeds(mesh_, list, c, [&](EdgeHandle e) {
+                visit(Seed{c, static_cast<std::uint8_t>(e.idx() % 6)});
+              });
+            else
+              visit_face_seeds(mesh_, list, c, [&](HalfFaceHandle h) {
+                visit(Seed{c, static_cast<std::uint8_t>(corner_of(h))});
+              });
+          });
         }
-        return seeds;
       });
 }
 

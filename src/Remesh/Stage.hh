@@ -104,8 +104,10 @@ class Stage {
   }
 
   /// Rounds of one operator until they bring little, then a line in the report.
-  template <class MakeOp, class MakeSeeds>
-  std::size_t rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op, MakeSeeds&& make_seeds);
+  template <class MakeOp, class RunRound>
+  std::size_t rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op, RunRound&& run_round);
+  template <Cluster kCluster>
+  std::size_t star_rounds(Kind kind, int iteration, Focus focus, bool reconnect, bool insert);
 
   void count() {
     struct Sum {

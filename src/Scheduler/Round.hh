@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <unordered_set>
 #include <vector>
@@ -36,16 +37,23 @@ class Round {
  public:
   Round(TetMesh& mesh, Workspace& work, RoundOptions options) : mesh_(mesh), work_(work), options_(options) {}
 
+  /// Looks at every seed of the list.
   RoundCounts run(const Op& op, std::span<const typename Op::Seed> seeds) {
+    return run(op, seeds.size(), [&](std::size_t i, auto&& visit) { visit(seeds[i]); });
+  }
+
+  /// Looks at what visit_seeds(i, visit) passes to visit(seed), for i = 0 … n_sources-1: seeds are made where
+  /// they are evaluated, while their cells are in cache, and never stored.
+  template <class VisitSeeds>
+  RoundCounts run(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
     using Clock = std::chrono::steady_clock;
     const auto since = [](Clock::time_point t) {
       return std::chrono::duration<double>(Clock::now() - t).count();
     };
     RoundCounts counts;
     counts.rounds = 1;
-    counts.seeds = seeds.size();
     auto start = Clock::now();
-    evaluate(op, seeds);
+    counts.seeds = evaluate(op, n_sources, visit_seeds);
     counts.candidates = candidates_.size();
     counts.seconds_evaluate = since(start);
     start = Clock::now();
@@ -69,27 +77,37 @@ class Round {
     std::span<OuterFace> notes;
   };
 
-  void evaluate(const Op& op, std::span<const typename Op::Seed> seeds) {
-    const int n_parts = par::thread_count(options_.policy, seeds.size());
+  /// Fills candidates_ in the order of the seeds; returns how many seeds there were.
+  template <class VisitSeeds>
+  std::size_t evaluate(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
+    const int n_parts = par::thread_count(options_.policy, n_sources);
     std::vector<std::vector<Plan>> found(static_cast<std::size_t>(n_parts));
+    std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_parts), 0);
+    const bool check = needs_admission();
     par::parts(n_parts, [&](int part) {
       Cavity cavity;
       Star scratch;
+      std::size_t n = 0;
       auto& mine = found[static_cast<std::size_t>(part)];
-      const std::size_t end = par::part_begin(seeds.size(), n_parts, part + 1);
-      for (std::size_t i = par::part_begin(seeds.size(), n_parts, part); i < end; ++i) {
-        const std::optional<Plan> plan = op.evaluate(mesh_, seeds[i]);
-        if (!plan) continue;
-        if (needs_admission()) {
-          op.commit(mesh_, *plan, cavity);
-          if (!admissible(mesh_, cavity, options_.check_links, scratch)) continue;
-        }
-        mine.push_back(*plan);
+      const std::size_t end = par::part_begin(n_sources, n_parts, part + 1);
+      for (std::size_t i = par::part_begin(n_sources, n_parts, part); i < end; ++i) {
+        visit_seeds(i, [&](typename Op::Seed seed) {
+          ++n;
+          const std::optional<Plan> plan = op.evaluate(mesh_, seed);
+          if (!plan) return;
+          if (check) {
+            op.commit(mesh_, *plan, cavity);
+            if (!admissible(mesh_, cavity, options_.check_links, scratch)) return;
+          }
+          mine.push_back(*plan);
+        });
       }
+      n_seeds[static_cast<std::size_t>(part)] = n;
     });
     candidates_ = std::move(found[0]);
     for (std::size_t p = 1; p < found.size(); ++p)
       candidates_.insert(candidates_.end(), found[p].begin(), found[p].end());
+    return std::accumulate(n_seeds.begin(), n_seeds.end(), std::size_t{0});
   }
 
   bool needs_admission() const {

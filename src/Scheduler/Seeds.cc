@@ -26,22 +26,13 @@ std::vector<Seed> gather(const Worklist& list, par::Policy policy, Emit&& emit) 
 
 std::vector<EdgeHandle> edge_seeds(const TetMesh& mesh, const Worklist& list, par::Policy policy) {
   return gather<EdgeHandle>(list, policy, [&](CellHandle c, std::vector<EdgeHandle>& out) {
-    for (int e = 0; e < 6; ++e) {
-      const bool mine = mesh.walk_ring(c, e, [&](CellHandle other, VertexHandle, VertexHandle) {
-        return !(other < c && list.has(other));
-      });
-      if (mine) out.push_back(EdgeHandle(6 * c.idx() + static_cast<Index>(e)));
-    }
+    visit_edge_seeds(mesh, list, c, [&](EdgeHandle e) { out.push_back(e); });
   });
 }
 
 std::vector<HalfFaceHandle> face_seeds(const TetMesh& mesh, const Worklist& list, par::Policy policy) {
   return gather<HalfFaceHandle>(list, policy, [&](CellHandle c, std::vector<HalfFaceHandle>& out) {
-    for (int k = 0; k < 4; ++k) {
-      const HalfFaceHandle h = halfface_of(c, k);
-      const HalfFaceHandle m = mesh.opposite_halfface(h);
-      if (m.is_valid() && (h < m || !list.has(cell_of(m)))) out.push_back(h);
-    }
+    visit_face_seeds(mesh, list, c, [&](HalfFaceHandle h) { out.push_back(h); });
   });
 }
 

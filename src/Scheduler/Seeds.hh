@@ -32,9 +32,30 @@ class Worklist {
   std::vector<std::uint8_t> listed_;
 };
 
-/// Inner edges of the listed cells, each once: from the smallest listed cell of its ring.
+/// Calls visit(seed) for the inner edges of listed cell c that are c's to name: c is the smallest listed cell
+/// of the ring. Over all listed cells, each inner edge of theirs is visited once.
+template <class Visit>
+void visit_edge_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+  for (int e = 0; e < 6; ++e) {
+    const bool mine = mesh.walk_ring(
+        c, e, [&](CellHandle other, VertexHandle, VertexHandle) { return !(other < c && list.has(other)); });
+    if (mine) visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)));
+  }
+}
+
+/// The same for inner faces: from the smaller listed half-face.
+template <class Visit>
+void visit_face_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+  for (int k = 0; k < 4; ++k) {
+    const HalfFaceHandle h = halfface_of(c, k);
+    const HalfFaceHandle m = mesh.opposite_halfface(h);
+    if (m.is_valid() && (h < m || !list.has(cell_of(m)))) visit(h);
+  }
+}
+
+/// All of visit_edge_seeds, in the order of the list.
 std::vector<EdgeHandle> edge_seeds(const TetMesh& mesh, const Worklist& list, par::Policy policy);
-/// Inner faces of the listed cells, each once: from the smaller listed half-face.
+/// All of visit_face_seeds, in the order of the list.
 std::vector<HalfFaceHandle> face_seeds(const TetMesh& mesh, const Worklist& list, par::Policy policy);
 /// Vertices of the listed cells that are not frozen, ascending.
 std::vector<VertexHandle> vertex_seeds(const TetMesh& mesh, const Worklist& list,
