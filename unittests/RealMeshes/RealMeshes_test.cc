@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every real mesh through the whole library: read, improve, check, write in every format, read back.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "HalfFace/Check.hh"
+#include "IO/Assemble.hh"
+#include "IO/Hash.hh"
+#include "IO/MeshFile.hh"
+#include "Quality/Statistics.hh"
+#include "Remesh/Improve.hh"
+
+namespace hfr {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RealMesh {
+  const char* path;     ///< below the folder of meshes
+  double min_dihedral;  ///< degrees that the default run must reach: what peers reach where they are honest
+};
+
+std::ostream& operator<<(std::ostream& out, const RealMesh& mesh) { return out << mesh.path; }
+
+class RealMeshes : public testing::TestWithParam<RealMesh> {
+ protected:
+  void SetUp() override {
+    path_ = fs::path(HFR_TEST_MESHES) / GetParam().path;
+    if (!fs::exists(path_))
+      GTEST_SKIP() << "there is no " << path_.string() << "; real meshes are not shipped";
+    folder_ = fs::temp_directory_path() / ("hfremesh-real-" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override {
+    if (!folder_.empty()) fs::remove_all(folder_);
+  }
+
+  fs::path path_, folder_;
+};
+
+using Bits = std::array<std::uint64_t, 3>;
+Bits bits(Vec3 p) {
+  return {std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y),
+          std::bit_cast<std::uint64_t>(p.z)};
+}
+
+/// Boundary and interface triangles by their coordinates' bits, with the regions on both sides.
+using Frozen = std::vector<std::pair<std::array<Bits, 3>, std::array<int, 2>>>;
+Frozen frozen_faces(const TetMesh& mesh) {
+  Frozen faces;
+  for (std::size_t i = 0; i < 4 * mesh.n_cells(); ++i) {
+    const HalfFaceHandle h(i);
+    if (mesh.is_deleted(cell_of(h))) continue;
+    const HalfFaceHandle m = mesh.opposite_halfface(h);
+    const int inside = mesh.region(cell_of(h));
+    const int outside = m.is_valid() ? mesh.region(cell_of(m)) : inside - 1;
+    if (inside == outside) continue;
+    const auto v = mesh.halfface_vertices(h);
+    std::array<Bits, 3> corners = {bits(mesh.point(v[0])), bits(mesh.point(v[1])), bits(mesh.point(v[2]))};
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    faces.emplace_back(corners, std::array<int, 2>{inside, m.is_valid() ? outside : -1});
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+std::map<int, double> region_volumes(const Statistics& statistics) {
+  std::map<int, double> volumes;
+  for (const RegionStatistics& region : statistics.regions) volumes[region.region] = region.volume;
+  return volumes;
+}
+
+TEST_P(RealMeshes, ImproveKeepsShapeAndRaisesTheWorst) {
+  TetMesh mesh = io::assemble(io::read_mesh(path_));
+  const CheckResult broken_before = check(mesh);
+  const Frozen frozen_before = frozen_faces(mesh);
+  const auto labels_before = mesh.labels().faces.size();
+  const Result result = improve(mesh);
+  EXPECT_EQ(check(mesh), broken_before.rule) << check(mesh);
+  EXPECT_EQ(frozen_faces(mesh), frozen_before) << "boundary or interfaces have changed";
+  EXPECT_EQ(mesh.labels().faces.size(), labels_before);
+  EXPECT_LE(result.invalid_cells.size(), result.before.inverted.size() + result.before.flat.size());
+  EXPECT_GE(result.after.min_dihedral.min, result.before.min_dihedral.min);
+  EXPECT_GE(result.after.min_dihedral.min, GetParam().min_dihedral);
+  if (result.invalid_cells.empty()) {
+    EXPECT_LT(std::abs(result.after.overlap), 1e-12);
+  }
+  const auto before = region_volumes(result.before);
+  const auto after = region_volumes(result.after);
+  ASSERT_EQ(after.size(), before.size());
+  for (const auto& [region, volume] : before)
+    EXPECT_NEAR(after.at(region), volume, 1e-12 * std::abs(result.before.enclosed_volume))
+        << "region " << region;
+}
+
+TEST_P(RealMeshes, EveryFormatGivesTheSameMeshBack) {
+  const io::MeshData data = io::disassemble(io::assemble(io::read_mesh(path_)));
+  for (const std::string& extension : io::writable_extensions()) {
+    if (extension == ".stl" || extension == ".obj" || extension == ".off" || extension == ".ply") continue;
+    for (bool binary : {false, true}) {
+      SCOPED_TRACE(extension + (binary ? " binary" : ""));
+      io::WriteOptions options;
+      options.binary = binary;
+      const fs::path file = folder_ / ("mesh" + extension);
+      io::write_mesh(file, data, options);
+      const io::MeshData back = io::disassemble(io::assemble(io::read_mesh(file)));
+      ASSERT_EQ(back.points.size(), data.points.size());
+      EXPECT_TRUE(std::equal(data.points.begin(), data.points.end(), back.points.begin(),
+                             [](Vec3 a, Vec3 b) { return bits(a) == bits(b); }));
+      EXPECT_EQ(back.cells, data.cells);
+      EXPECT_EQ(back.regions, data.regions);
+      EXPECT_EQ(back.triangles.size(), data.triangles.size());
+      EXPECT_EQ(back.triangle_labels, data.triangle_labels);
+    }
+  }
+}
+
+// Goals: the best honest peer of the bench's tables with the surface frozen, or 0 where none is known.
+INSTANTIATE_TEST_SUITE_P(
+    All, RealMeshes,
+    testing::Values(
+        RealMesh{"cavity/cavity20k.mesh", 8.94}, RealMesh{"cavity/cavity607k_tetgen.mesh", 20.0},
+        RealMesh{"cleaver_segmentation/output.node", -180}, RealMesh{"cleaver_short/output.node", -180},
+        RealMesh{"gaia_alligator/alligator.vtk", 0}, RealMesh{"gaia_dog/dog.mesh", 0},
+        RealMesh{"gaia_frog_reg/frog_reg.mesh", 0}, RealMesh{"gaia_octopus30k/octopus_30K.1.node", 1.32},
+        RealMesh{"ipc_armadillo13k/Armadillo13K.msh", 0}, RealMesh{"ipc_dolphin5k/dolphin5K.msh", 1.70},
+        RealMesh{"ipc_hollowcat/hollowCat7.5K.msh", 2.81}, RealMesh{"ipc_rod300x33/rod300x33.msh", 12.45},
+        RealMesh{"polyfem_cubes_mm/cubes_v22.msh", 0}, RealMesh{"polyfem_large_angle7/large_angle_7.msh", 0},
+        RealMesh{"polyfem_microstructure/P1.msh", -180}, RealMesh{"polyfem_screw/screw.msh", 0},
+        RealMesh{"random50k/random50k.mesh", 16.33}, RealMesh{"stellar_house2/house2.node", 0},
+        RealMesh{"tangled/bad2.mesh", 21.9}, RealMesh{"tangled/j0.6.mesh", 6.65},
+        RealMesh{"tangled/j1.0.mesh", 6.04}),
+    [](const testing::TestParamInfo<RealMesh>& info) {
+      std::string name = info.param.path;
+      for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+      return name;
+    });
+
+}  // namespace
+}  // namespace hfr
