@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hfremesh check IN: is this a mesh that a solver can take? Exit code 0 when it is, 3 when it is but misses
+// --min-dihedral, 4 when it is not, 2 when no mesh can be made of the file at all.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "Commands.hh"
+#include "Console.hh"
+#include "Files.hh"
+#include "HalfFace/Check.hh"
+#include "Json.hh"
+#include "Report.hh"
+
+namespace hfr::app {
+namespace {
+
+/// The sums of absolute volumes and of the enclosed volume differ by rounding in a mesh without overlap.
+constexpr double kOverlapTolerance = 1e-9;
+
+struct CommandLine {
+  std::string input;
+  std::string ids;
+  std::optional<double> min_dihedral;
+};
+
+/// What is wrong with the cells, one kind each.
+struct Finding {
+  std::string kind;
+  std::vector<CellHandle> cells;
+  std::string remark;
+};
+
+std::vector<CellHandle> both(const std::vector<CellHandle>& a, const std::vector<CellHandle>& b) {
+  std::vector<CellHandle> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return common;
+}
+
+std::vector<Finding> find_invalid(const BuildReport& build, const Statistics& statistics) {
+  std::vector<Finding> findings = {{"inverted", statistics.inverted, ""},
+                                   {"flat", statistics.flat, ""},
+                                   {"renumbered", build.reoriented, ""}};
+  const std::size_t hidden = both(build.reoriented, statistics.inverted).size();
+  findings[2].remark = "ordered against their neighbours";
+  if (hidden > 0)
+    findings[2].remark += fmt::format(", which hides that {} of them are inverted", grouped(hidden));
+  return findings;
+}
+
+/// A labelled triangle or edge of the file that belongs to no cell is odd, but no solver stumbles over it.
+bool is_fault(const CheckResult& structure) {
+  return !(structure == Rule::kNone) && !(structure == Rule::kLabel);
+}
+
+void write_ids(const std::string& path, const std::vector<Finding>& findings) {
+  std::string text = "# kind and 0-based index of each bad cell\n";
+  for (const Finding& finding : findings)
+    for (CellHandle cell : finding.cells) text += fmt::format("{} {}\n", finding.kind, cell.idx());
+  save_text(path, text);
+}
+
+void print_findings(const CommandLine& line, const LoadedMesh& loaded, const Statistics& statistics,
+                    const std::vector<Finding>& findings, const CheckResult& structure, bool overlaps) {
+  const auto row = [](const std::string& name, const std::string& text) {
+    fmt::print("{:<12}{}\n", name, text);
+  };
+  fmt::print("{}: {} vertices, {} cells\n", line.input, grouped(statistics.vertices),
+             grouped(statistics.cells));
+  row("orientation", loaded.report.flipped ? "the other way round as a whole, which is no fault" : "ok");
+  for (const Finding& finding : findings) {
+    std::string text = "none";
+    if (!finding.cells.empty()) text = grouped(finding.cells.size()) + ": " + id_list(finding.cells);
+    if (!finding.cells.empty() && !finding.remark.empty()) text += " (" + finding.remark + ")";
+    row(finding.kind, text);
+  }
+  row("structure", structure ? "ok" : structure.message + (is_fault(structure) ? "" : ", which is no fault"));
+  row("overlap", overlaps ? fmt::format("{:.3e} of the enclosed volume", statistics.overlap) : "none");
+  if (statistics.unused_vertices > 0)
+    row("unused", grouped(statistics.unused_vertices) + " vertices, which is no fault");
+  row("dihedral", fmt::format("{:.4f} to {:.4f}", statistics.min_dihedral.min, statistics.max_dihedral));
+}
+
+ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report) {
+  report["input"]["file"] = line.input;
+  if (!line.ids.empty() && line.ids != "-") require_writable_folder(line.ids);
+  const LoadedMesh loaded = load(line.input, common);
+  const Statistics figures = statistics(loaded.mesh, common.policy());
+  const std::vector<Finding> findings = find_invalid(loaded.report, figures);
+  const bool overlaps = figures.overlap > kOverlapTolerance;
+  const CheckResult structure = check(loaded.mesh, {.policy = common.policy()});
+  bool valid = !overlaps && !is_fault(structure);
+  for (const Finding& finding : findings) valid = valid && finding.cells.empty();
+  const bool goal_met = !line.min_dihedral || figures.min_dihedral.min >= *line.min_dihedral;
+
+  report["input"].update(to_json(loaded.report));
+  report["seconds"] = {{"read", loaded.seconds_read}, {"build", loaded.seconds_build}};
+  report["result"] = {{"valid", valid},
+                      {"goal_reached", valid && goal_met},
+                      {"overlaps", overlaps},
+                      {"structure", structure ? Json() : Json(structure.message)}};
+  report["statistics"] = to_json(figures);
+  report["notes"] = loaded.notes;
+  if (!line.ids.empty()) write_ids(line.ids, findings);
+  if (!common.quiet) print_notes(loaded.notes);
+  if (common.prints_table()) print_findings(line, loaded, figures, findings, structure, overlaps);
+  if (!valid) print_error(line.input + ": the mesh is not valid");
+  if (valid && !goal_met)
+    print_error(fmt::format("{}: the smallest dihedral angle is {:.4f}, below the goal of {}", line.input,
+                            figures.min_dihedral.min, *line.min_dihedral));
+  return !valid ? ExitCode::kInvalidCells : goal_met ? ExitCode::kDone : ExitCode::kGoalMissed;
+}
+
+}  // namespace
+
+Run add_check(CLI::App& app, CommonOptions& common) {
+  const auto line = std::make_shared<CommandLine>();
+  CLI::App* command =
+      app.add_subcommand("check", "Fail on inverted, flat, renumbered, overlapping or broken cells");
+  command->add_option("IN", line->input, "Mesh to read")->required();
+  command->add_option("--ids", line->ids, "Write kind and index of every bad cell; - is stdout")
+      ->type_name("FILE");
+  command->add_option("--min-dihedral", line->min_dihedral, "Fail on a smaller dihedral angle too")
+      ->type_name("DEG");
+  add_common_options(*command, common);
+  return [line, &common](Json& report) { return run(*line, common, report); };
+}
+
+}  // namespace hfr::app

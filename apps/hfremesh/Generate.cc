@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hfremesh generate SHAPE: meshes of simple shapes, and the cavity that the paper's figures are measured on.
+#include "HalfFace/Generate.hh"
+
+#include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "Commands.hh"
+#include "Console.hh"
+#include "Files.hh"
+#include "Json.hh"
+#include "Report.hh"
+
+namespace hfr::app {
+namespace {
+
+struct GenerateOptions {
+  std::string output;
+  io::WriteOptions write;
+  generate::CavityOptions cavity;
+  std::vector<Index> counts;  ///< as many as the shape has directions, or none
+  std::vector<double> low = {0, 0, 0};
+  std::vector<double> high = {1, 1, 1};
+  double jitter = 0;
+  std::uint64_t seed = 1;
+  int regions = 1;
+  double radius = 1;
+  double height = 2;
+  double twist = 0;
+};
+
+/// Counts of a shape: the given ones or those it has by itself.
+template <std::size_t N>
+std::array<Index, N> counts(const GenerateOptions& options, std::array<Index, N> standard) {
+  if (!options.counts.empty()) std::copy_n(options.counts.begin(), N, standard.begin());
+  return standard;
+}
+
+generate::Arrays make_cavity(const GenerateOptions& options) {
+  generate::CavityOptions cavity = options.cavity;
+  cavity.counts = counts<3>(options, cavity.counts);
+  return generate::cavity(cavity);
+}
+
+generate::Arrays make_box(const GenerateOptions& options) {
+  const auto n = counts<3>(options, {10, 10, 10});
+  const Vec3 low = {options.low[0], options.low[1], options.low[2]};
+  const Vec3 high = {options.high[0], options.high[1], options.high[2]};
+  generate::Arrays mesh = generate::jittered_box(n, options.jitter, options.seed, low, high);
+  if (options.regions == 2) mesh.regions = generate::two_region_box(n, low, high).regions;
+  return mesh;
+}
+
+generate::Arrays make_cylinder(const GenerateOptions& options) {
+  const auto n = counts<2>(options, {4, 12});
+  return generate::cylinder(n[0], n[1], options.radius, options.height, options.twist);
+}
+
+generate::Arrays make(const std::string& shape, const GenerateOptions& options) {
+  if (shape == "cavity") return make_cavity(options);
+  if (shape == "box") return make_box(options);
+  if (shape == "ball") return generate::ball(counts<1>(options, {8})[0], options.radius);
+  return make_cylinder(options);
+}
+
+ExitCode run(const std::string& shape, const GenerateOptions& options, const CommonOptions& common,
+             Json& report) {
+  report["output"]["file"] = options.output;
+  report["options"]["shape"] = shape;
+  require_writable_mesh(options.output);
+  const Stopwatch making;
+  generate::Arrays arrays = make(shape, options);
+  io::MeshData data;
+  data.points = std::move(arrays.points);
+  data.cells = std::move(arrays.cells);
+  data.regions = std::move(arrays.regions);
+  report["seconds"]["generate"] = making.seconds();
+  const Stopwatch write;
+  const std::vector<std::string> notes = save(options.output, data, options.write);
+  report["seconds"]["write"] = write.seconds();
+  report["output"].update(contents(data));
+  report["notes"] = notes;
+  if (!common.quiet) print_notes(notes);
+  if (common.prints_table()) print_written(options.output, data);
+  return ExitCode::kDone;
+}
+
+void add_cavity_options(CLI::App& shape, generate::CavityOptions& cavity) {
+  static const std::map<std::string, generate::CavityField> kFields = {
+      {"gaussians", generate::CavityField::kGaussians}, {"bulk-shear", generate::CavityField::kBulkShear}};
+  shape.add_option("--jitter", cavity.jitter, "Random move of inner coordinates, in cube widths");
+  shape.add_option("--sigma", cavity.sigma, "Width of the Gaussians");
+  shape.add_option("--amplitude", cavity.amplitude, "Strength of the deformation; 0 for none");
+  shape.add_option("--seed", cavity.seed, "Seed of the jitter");
+  shape.add_option("--field", cavity.field, "Deformation: gaussians or bulk-shear")
+      ->type_name("NAME")
+      ->transform(CLI::Transformer(kFields).description(""));
+}
+
+void add_box_options(CLI::App& shape, GenerateOptions& options) {
+  shape.add_option("--low", options.low, "Lower corner")->type_name("X Y Z")->expected(3);
+  shape.add_option("--high", options.high, "Upper corner")->type_name("X Y Z")->expected(3);
+  shape.add_option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths");
+  shape.add_option("--seed", options.seed, "Seed of the jitter");
+  shape.add_option("--regions", options.regions, "1, or 2 for two halves along x")->check(CLI::Range(1, 2));
+}
+
+}  // namespace
+
+Run add_generate(CLI::App& app, CommonOptions& common) {
+  const auto options = std::make_shared<GenerateOptions>();
+  CLI::App* command = app.add_subcommand("generate", "Make a mesh: cavity, box, ball or cylinder");
+  command->require_subcommand(1);
+  CLI::App* cavity = command->add_subcommand("cavity", "Unit cube, deformed inside until cells invert");
+  add_cavity_options(*cavity, options->cavity);
+  CLI::App* box = command->add_subcommand("box", "Box of cubes cut into six cells each");
+  add_box_options(*box, *options);
+  CLI::App* ball = command->add_subcommand("ball", "Ball round the origin, 20 n^3 cells");
+  ball->add_option("--radius", options->radius, "Radius");
+  CLI::App* cylinder = command->add_subcommand("cylinder", "Upright cylinder, 18 nr^2 nz cells");
+  cylinder->add_option("--radius", options->radius, "Radius");
+  cylinder->add_option("--height", options->height, "Height");
+  cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned");
+  for (CLI::App* shape : {cavity, box})
+    shape->add_option("--n", options->counts, "Grid cubes along x, y and z")
+        ->type_name("NX NY NZ")
+        ->expected(3);
+  ball->add_option("--n", options->counts, "Shells")->type_name("N")->expected(1);
+  cylinder->add_option("--n", options->counts, "Rings and layers")->type_name("NR NZ")->expected(2);
+  for (CLI::App* shape : {cavity, box, ball, cylinder}) {
+    shape->add_option("-o,--output", options->output, "Mesh to write")->required()->type_name("FILE");
+    add_write_options(*shape, options->write);
+    add_common_options(*shape, common);
+  }
+  return [options, command, &common](Json& report) {
+    return run(command->get_subcommands().front()->get_name(), *options, common, report);
+  };
+}
+
+}  // namespace hfr::app

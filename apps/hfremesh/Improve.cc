@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hfremesh improve IN -o OUT: what the tool does when no subcommand is named.
+#include "Remesh/Improve.hh"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+
+#include "Commands.hh"
+#include "Console.hh"
+#include "Files.hh"
+#include "IO/Assemble.hh"
+#include "Json.hh"
+#include "Report.hh"
+
+namespace hfr::app {
+namespace {
+
+/// The command line as it was given; names are looked up before the input is read.
+struct CommandLine {
+  std::string input, output;
+  bool dry_run = false;
+  bool progress = false;
+  std::string ops, metric, smoother, compat;
+  double time_limit = 0;  ///< 0 = none
+  io::WriteOptions write;
+  ImproveOptions improve;
+};
+
+ImproveOptions improve_options(const CommandLine& line, const CommonOptions& common) {
+  ImproveOptions options = line.improve;
+  if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
+  if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
+  if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
+  if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
+  if (line.time_limit > 0) options.time_limit = line.time_limit;
+  options.policy = common.policy();
+  options.statistics = common.prints_table() || !common.json.empty();
+  return options;
+}
+
+Json options_json(const CommandLine& line, const ImproveOptions& options) {
+  Json json;
+  json["min_dihedral"] = options.min_dihedral ? Json(*options.min_dihedral) : Json();
+  json["iterations"] = options.iterations;
+  json["time_limit"] = line.time_limit > 0 ? Json(line.time_limit) : Json();
+  json["ops"] = ops_to_list(options.ops);
+  json["metric"] = metric_name(options.metric);
+  json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
+  json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
+  json["seed"] = options.seed;
+  json["dry_run"] = line.dry_run;
+  return json;
+}
+
+ExitCode exit_code_of(const Result& result) {
+  if (result.stop == Stop::kCancelled) return ExitCode::kCancelled;
+  if (result.goal_reached) return ExitCode::kDone;
+  if (result.stop == Stop::kTimeLimit) return ExitCode::kLimit;
+  return result.invalid_cells.empty() ? ExitCode::kGoalMissed : ExitCode::kInvalidCells;
+}
+
+/// One line that says why the exit code is not 0.
+std::string shortfall(const Result& result, const ImproveOptions& options) {
+  std::string text;
+  if (result.stop == Stop::kCancelled) text = "cancelled; the mesh is the best so far";
+  if (result.stop == Stop::kTimeLimit && !result.goal_reached)
+    text = "the time limit was met; the mesh is the best so far";
+  if (!result.invalid_cells.empty())
+    text += fmt::format("{}{} inverted or flat cells remain: {}", text.empty() ? "" : "; ",
+                        grouped(result.invalid_cells.size()), id_list(result.invalid_cells));
+  if (text.empty() && !result.goal_reached)
+    text = options.min_dihedral
+               ? fmt::format("the goal of {} degrees was not reached for every cell", *options.min_dihedral)
+               : "the goal was not reached";
+  return text;
+}
+
+Json outcome(const Result& result) {
+  Json json;
+  json["changed"] = result.changed;
+  json["goal_reached"] = result.goal_reached;
+  json["stop"] = stop_name(result.stop);
+  json["n_invalid_cells"] = result.invalid_cells.size();
+  json["invalid_cells"] = ids(result.invalid_cells);
+  return json;
+}
+
+Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const CommandLine& line,
+                             const CommonOptions& common, const SignalGuard& signals) {
+  using Style = ProgressView::Style;
+  const bool bar = !common.quiet && stderr_is_terminal();
+  ProgressView view(line.progress ? Style::kLines : bar ? Style::kBar : Style::kNone);
+  options.progress = [&view](const Progress& progress) { view.show(progress); };
+  options.cancel = [&signals] { return signals.cancelled(); };
+  return improve(mesh, options);
+}
+
+void print_result(const Result& result, const Json& seconds, const CommandLine& line,
+                  const CommonOptions& common) {
+  if (common.verbose) print_passes(result.passes);
+  print_statistics({{"before", &result.before}, {"after", &result.after}});
+  fmt::print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, write {:.2f}\n",
+             result.changed ? "changed" : "unchanged", seconds["read"].get<double>(),
+             seconds["build"].get<double>(), seconds["improve"].get<double>(),
+             seconds["write"].get<double>());
+  if (line.dry_run) fmt::print("dry run: nothing was written\n");
+}
+
+ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report) {
+  if (line.output.empty() && !line.dry_run)
+    throw Failure(ExitCode::kUsage, "-o FILE is required (or --dry-run); try 'hfremesh improve --help'");
+  const ImproveOptions options = improve_options(line, common);
+  report["input"]["file"] = line.input;
+  report["options"] = options_json(line, options);
+  if (!line.dry_run) {
+    report["output"]["file"] = line.output;
+    require_writable_mesh(line.output);
+  }
+  const SignalGuard signals;
+  LoadedMesh loaded = load(line.input, common);
+  Json& seconds = report["seconds"];
+  seconds["read"] = loaded.seconds_read;
+  seconds["build"] = loaded.seconds_build;
+  report["input"].update(to_json(loaded.report));
+
+  const Stopwatch improving;
+  const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
+  seconds["improve"] = improving.seconds();
+
+  const Stopwatch writing;
+  const io::MeshData data = io::disassemble(loaded.mesh, common.policy());
+  std::vector<std::string> notes = std::move(loaded.notes);
+  if (!line.dry_run)
+    for (std::string& note : save(line.output, data, line.write)) notes.push_back(std::move(note));
+  seconds["write"] = writing.seconds();
+
+  report["output"].update(contents(data));
+  report["result"] = outcome(result);
+  if (options.statistics) {
+    report["before"] = to_json(result.before);
+    report["after"] = to_json(result.after);
+  }
+  for (const PassReport& pass : result.passes) report["passes"].push_back(to_json(pass));
+  report["notes"] = notes;
+  if (!common.quiet) print_notes(notes);
+  if (common.prints_table()) print_result(result, seconds, line, common);
+  const ExitCode code = exit_code_of(result);
+  if (code != ExitCode::kDone) print_error(line.input + ": " + shortfall(result, options));
+  return code;
+}
+
+}  // namespace
+
+Run add_improve(CLI::App& app, CommonOptions& common) {
+  const auto line = std::make_shared<CommandLine>();
+  CLI::App* command = app.add_subcommand("improve", "Repair and improve a mesh (the default)");
+  command->add_option("IN", line->input, "Mesh to read")->required();
+  command->add_option("-o,--output", line->output, "Mesh to write; may be IN")->type_name("FILE");
+  command->add_flag("--dry-run", line->dry_run, "Report only, write no mesh");
+  command
+      ->add_option("--min-dihedral", line->improve.min_dihedral,
+                   "Goal for the smallest dihedral angle; only cells that miss it are worked on")
+      ->type_name("DEG");
+  command->add_option("--iterations", line->improve.iterations, "At most N bulk iterations; 0 is no limit")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--time-limit", line->time_limit, "Stop improving after S seconds; exit code 5 then")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--ops", line->ops, "Operators, comma-separated: edge, face, node, smooth, insert")
+      ->type_name("LIST");
+  command->add_option("--metric", line->metric, "Quality metric of the bulk passes; volume-length by default")
+      ->type_name("NAME");
+  command->add_option("--smoother", line->smoother, "newton, candidates, laplacian or taubin")
+      ->type_name("NAME");
+  command->add_option("--compat", line->compat, "Run a published pipeline exactly: jpdc2013")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"jpdc2013"}));
+  command->add_option("--seed", line->improve.seed, "Seed of the order among equal candidates")
+      ->type_name("N");
+  command->add_flag("--progress", line->progress, "Print progress as lines on stderr");
+  add_write_options(*command, line->write);
+  add_common_options(*command, common);
+  return [line, &common](Json& report) { return run(*line, common, report); };
+}
+
+}  // namespace hfr::app

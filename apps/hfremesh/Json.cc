@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Json.hh"
+
+#include "HalfFace/Config.hh"
+#include "IO/Hash.hh"
+
+namespace hfr::app {
+namespace {
+
+Json to_json(const Distribution& distribution) {
+  Json percentiles;
+  for (std::size_t i = 0; i < kPercentiles.size(); ++i) {
+    std::string name = Json(kPercentiles[i]).dump();
+    if (name.ends_with(".0")) name.resize(name.size() - 2);
+    percentiles["p" + name] = distribution.percentiles[i];
+  }
+  return {{"min", distribution.min},
+          {"mean", distribution.mean},
+          {"max", distribution.max},
+          {"percentiles", std::move(percentiles)}};
+}
+
+Json to_json(const EdgeWedge& wedge) {
+  if (!wedge.a.is_valid()) return Json();
+  return {{"degrees", wedge.degrees}, {"edge", {wedge.a.idx(), wedge.b.idx()}}, {"cell", wedge.cell.idx()}};
+}
+
+Json to_json(Vec3 p) { return {p.x, p.y, p.z}; }
+
+Json to_json(const RegionStatistics& region) {
+  return {{"region", region.region}, {"cells", region.cells},   {"inverted", region.inverted},
+          {"flat", region.flat},     {"volume", region.volume}, {"min_dihedral", region.min_dihedral}};
+}
+
+Json to_json(const PatchStatistics& patch) {
+  return {{"label", patch.label}, {"faces", patch.faces}, {"area", patch.area}};
+}
+
+template <class T>
+Json list_json(const std::vector<T>& items) {
+  Json list = Json::array();
+  for (const T& item : items) list.push_back(to_json(item));
+  return list;
+}
+
+}  // namespace
+
+Json new_report(const std::string& command) {
+  Json report;
+  report["schema"] = "hfremesh-1";
+  report["tool"] = {{"name", "hfremesh"}, {"version", HFR_VERSION}};
+  report["command"] = command;
+  return report;
+}
+
+std::string json_text(const Json& report) {
+  // File names may hold any byte; one that is not UTF-8 must not cost the report.
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json contents(const io::MeshData& data) {
+  return {{"vertices", data.points.size()},
+          {"cells", data.cells.size()},
+          {"triangles", data.triangles.size()},
+          {"edges", data.edges.size()},
+          {"hash", io::hash_text(io::mesh_hash(data))}};
+}
+
+Json to_json(const Statistics& s) {
+  Json json;
+  json["vertices"] = s.vertices;
+  json["unused_vertices"] = s.unused_vertices;
+  json["cells"] = s.cells;
+  json["edges"] = s.edges;
+  json["faces"] = s.faces;
+  json["boundary_faces"] = s.boundary_faces;
+  json["interface_faces"] = s.interface_faces;
+  json["components"] = s.components;
+  json["inverted"] = s.inverted.size();
+  json["inverted_cells"] = ids(s.inverted);
+  json["flat"] = s.flat.size();
+  json["flat_cells"] = ids(s.flat);
+  json["min_dihedral"] = to_json(s.min_dihedral);
+  json["worst_cell"] = s.worst_cell.is_valid() ? Json(s.worst_cell.idx()) : Json();
+  json["mean_dihedral"] = s.mean_dihedral;
+  json["max_dihedral"] = s.max_dihedral;
+  json["dihedral_histogram"] = s.dihedral_histogram;
+  json["volume_length"] = to_json(s.volume_length);
+  json["volume_length_histogram"] = s.volume_length_histogram;
+  json["edge_length"] = {{"min", s.min_edge}, {"mean", s.mean_edge}, {"max", s.max_edge}};
+  json["box"] = {{"low", to_json(s.box_low)}, {"high", to_json(s.box_high)}};
+  json["volume"] = s.volume;
+  json["absolute_volume"] = s.absolute_volume;
+  json["enclosed_volume"] = s.enclosed_volume;
+  json["overlap"] = s.overlap;
+  json["regions"] = list_json(s.regions);
+  json["patches"] = list_json(s.patches);
+  json["surface_ceiling"] = to_json(s.surface_ceiling);
+  json["interface_ceiling"] = to_json(s.interface_ceiling);
+  return json;
+}
+
+Json to_json(const PassReport& pass) {
+  Json json;
+  json["stage"] = pass.stage;
+  json["op"] = pass.op;
+  json["iteration"] = pass.iteration;
+  json["rounds"] = pass.rounds;
+  json["seeds"] = pass.seeds;
+  json["candidates"] = pass.candidates;
+  json["winners"] = pass.winners;
+  json["inverted"] = pass.n_inverted;
+  json["worst"] = pass.worst;
+  json["seconds"] = {{"total", pass.seconds},
+                     {"evaluate", pass.seconds_evaluate},
+                     {"select", pass.seconds_select},
+                     {"commit", pass.seconds_commit}};
+  return json;
+}
+
+Json to_json(const BuildReport& report) {
+  return {{"flipped", report.flipped},
+          {"reoriented", report.reoriented.size()},
+          {"reoriented_cells", ids(report.reoriented)}};
+}
+
+const char* stop_name(Stop stop) {
+  switch (stop) {
+    case Stop::kGoal:
+      return "goal";
+    case Stop::kNoProgress:
+      return "no progress";
+    case Stop::kIterations:
+      return "iterations";
+    case Stop::kTimeLimit:
+      return "time limit";
+    case Stop::kCancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+}  // namespace hfr::app

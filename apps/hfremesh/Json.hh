@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_APPS_JSON_HH
+#define HFR_APPS_JSON_HH
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "IO/MeshData.hh"
+#include "Quality/Statistics.hh"
+#include "Remesh/Improve.hh"
+
+/// The parts of the JSON report; docs/json.md describes the schema.
+namespace hfr::app {
+
+using Json = nlohmann::ordered_json;
+
+/// Schema, tool and command.
+Json new_report(const std::string& command);
+std::string json_text(const Json& report);
+
+/// Counts and hash of what a file holds.
+Json contents(const io::MeshData& data);
+Json to_json(const Statistics& statistics);
+Json to_json(const PassReport& pass);
+Json to_json(const BuildReport& report);
+const char* stop_name(Stop stop);
+
+/// The first `limit` handles as numbers.
+template <class Handles>
+Json ids(const Handles& handles, std::size_t limit = 100) {
+  Json list = Json::array();
+  for (const auto& handle : handles) {
+    if (list.size() == limit) break;
+    list.push_back(handle.idx());
+  }
+  return list;
+}
+
+}  // namespace hfr::app
+
+#endif

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Report.hh"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace hfr::app {
+namespace {
+
+struct Row {
+  const char* name;
+  std::string (*text)(const Statistics&);
+};
+
+std::string angle(double degrees) { return fmt::format("{:.2f}", degrees); }
+
+std::string ceiling(const EdgeWedge& wedge) { return wedge.a.is_valid() ? angle(wedge.degrees) : "-"; }
+
+constexpr std::size_t kP01 = 0, kP1 = 1, kP5 = 2, kMedian = 4;  // places in kPercentiles
+
+const Row kRows[] = {
+    {"cells", [](const Statistics& s) { return grouped(s.cells); }},
+    {"vertices", [](const Statistics& s) { return grouped(s.vertices); }},
+    {"boundary faces", [](const Statistics& s) { return grouped(s.boundary_faces); }},
+    {"regions", [](const Statistics& s) { return grouped(s.regions.size()); }},
+    {"inverted", [](const Statistics& s) { return grouped(s.inverted.size()); }},
+    {"flat", [](const Statistics& s) { return grouped(s.flat.size()); }},
+    {"dihedral min", [](const Statistics& s) { return angle(s.min_dihedral.min); }},
+    {"  p0.1", [](const Statistics& s) { return angle(s.min_dihedral.percentiles[kP01]); }},
+    {"  p1", [](const Statistics& s) { return angle(s.min_dihedral.percentiles[kP1]); }},
+    {"  p5", [](const Statistics& s) { return angle(s.min_dihedral.percentiles[kP5]); }},
+    {"  median", [](const Statistics& s) { return angle(s.min_dihedral.percentiles[kMedian]); }},
+    {"dihedral max", [](const Statistics& s) { return angle(s.max_dihedral); }},
+    {"surface ceiling", [](const Statistics& s) { return ceiling(s.surface_ceiling); }},
+    {"volume", [](const Statistics& s) { return fmt::format("{:.8g}", s.volume); }},
+    {"overlap", [](const Statistics& s) { return fmt::format("{:.1e}", s.overlap); }},
+};
+
+}  // namespace
+
+std::string grouped(std::size_t n) {
+  std::string text = std::to_string(n);
+  for (std::size_t i = text.size(); i > 3;) text.insert(i -= 3, 1, ',');
+  return text;
+}
+
+std::string id_list(const std::vector<CellHandle>& cells, std::size_t limit) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(cells.size(), limit); ++i)
+    text += (i == 0 ? "" : ", ") + std::to_string(cells[i].idx());
+  if (cells.size() > limit) text += " and " + grouped(cells.size() - limit) + " more";
+  return text;
+}
+
+void print_statistics(const std::vector<Column>& columns) {
+  // Angles of percentiles are those of each cell's smallest dihedral.
+  std::vector<std::size_t> width;
+  for (const Column& column : columns) {
+    std::size_t widest = column.heading.size();
+    for (const Row& row : kRows) widest = std::max(widest, row.text(*column.statistics).size());
+    width.push_back(widest);
+  }
+  const auto print_row = [&](const std::string& name, auto&& text) {
+    fmt::print("{:<16}", name);
+    for (std::size_t i = 0; i < columns.size(); ++i) fmt::print("  {:>{}}", text(columns[i]), width[i]);
+    fmt::print("\n");
+  };
+  print_row("", [](const Column& column) { return column.heading; });
+  for (const Row& row : kRows)
+    print_row(row.name, [&](const Column& column) { return row.text(*column.statistics); });
+}
+
+void print_passes(const std::vector<PassReport>& passes) {
+  fmt::print("{:<10} {:<10} {:>4} {:>6} {:>10} {:>10} {:>10} {:>8} {:>10} {:>8}\n", "stage", "op", "iter",
+             "rounds", "seeds", "candidates", "winners", "inverted", "worst", "seconds");
+  for (const PassReport& pass : passes)
+    fmt::print("{:<10} {:<10} {:>4} {:>6} {:>10} {:>10} {:>10} {:>8} {:>10.3g} {:>8.3f}\n", pass.stage,
+               pass.op, pass.iteration, pass.rounds, pass.seeds, pass.candidates, pass.winners,
+               pass.n_inverted, pass.worst, pass.seconds);
+  fmt::print("\n");
+}
+
+void print_written(const std::string& path, const io::MeshData& data) {
+  fmt::print("{}: {} vertices, {} cells, {} triangles\n", path, grouped(data.points.size()),
+             grouped(data.cells.size()), grouped(data.triangles.size()));
+}
+
+}  // namespace hfr::app

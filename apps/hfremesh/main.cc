@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "Commands.hh"
+#include "Console.hh"
+#include "Files.hh"
+#include "HalfFace/Config.hh"
+#include "HalfFace/Errors.hh"
+#include "Json.hh"
+
+namespace hfr::app {
+namespace {
+
+/// Idle OpenMP threads that spin make short parallel loops many times slower on a busy machine. The run-time
+/// library reads how to wait before main() starts, so the process has to start once more to change it.
+/// Whoever sets one of the variables has decided, and is left alone.
+void wait_passively(char** argv) {
+  if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT") || getenv("KMP_BLOCKTIME")) return;
+  if (setenv("OMP_WAIT_POLICY", "passive", 1) != 0) return;
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (!error) execv(self.c_str(), argv);  // returns only on failure: go on as we are
+}
+
+struct Command {
+  CLI::App* app;
+  Run run;
+};
+
+constexpr const char* kSubcommands[] = {"improve", "check", "stats", "convert", "generate"};
+
+/// The arguments, last first as CLI11 wants them. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o
+/// OUT".
+std::vector<std::string> arguments(int argc, char** argv) {
+  std::vector<std::string> args(argv + 1, argv + argc);
+  static const std::vector<std::string> kOwnFlags = {"-h", "--help", "--version"};
+  const auto is_one_of = [](const auto& list, const std::string& word) {
+    return std::find(std::begin(list), std::end(list), word) != std::end(list);
+  };
+  if (!args.empty() && !is_one_of(kSubcommands, args[0]) && !is_one_of(kOwnFlags, args[0]))
+    args.insert(args.begin(), "improve");
+  std::reverse(args.begin(), args.end());
+  return args;
+}
+
+/// What an exception that reached main() means to the shell.
+ExitCode exit_code_of(const std::exception& error) {
+  if (const auto* failure = dynamic_cast<const Failure*>(&error)) return failure->code();
+  if (dynamic_cast<const InvalidInput*>(&error)) return ExitCode::kUsage;
+  if (dynamic_cast<const ResourceLimit*>(&error)) return ExitCode::kLimit;
+  if (dynamic_cast<const std::bad_alloc*>(&error)) return ExitCode::kLimit;
+  if (dynamic_cast<const std::length_error*>(&error)) return ExitCode::kLimit;
+  if (dynamic_cast<const DeviceError*>(&error)) return ExitCode::kDevice;
+  return ExitCode::kInternal;
+}
+
+std::string message_of(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error)) return "not enough memory; nothing was written";
+  return error.what();
+}
+
+ExitCode run(const Command& command, const CommonOptions& common) {
+  Json report = new_report(command.app->get_name());
+  report["threads"] = common.policy().threads;
+  ExitCode code = ExitCode::kDone;
+  try {
+    if (!common.json.empty() && common.json != "-") require_writable_folder(common.json);
+    code = command.run(report);
+  } catch (const std::exception& error) {
+    code = exit_code_of(error);
+    print_error(message_of(error));
+    report["error"] = message_of(error);
+  }
+  if (common.json.empty()) return code;
+  report["exit_code"] = static_cast<int>(code);
+  try {
+    save_text(common.json, json_text(report));
+  } catch (const std::exception& error) {
+    if (code != ExitCode::kUsage) print_error(error.what());
+    return code == ExitCode::kDone ? exit_code_of(error) : code;
+  }
+  return code;
+}
+
+/// Name of the subcommand that was being parsed, for the hint after an error.
+std::string parsed_command(const std::vector<Command>& commands) {
+  for (const Command& command : commands)
+    if (command.app->parsed()) return command.app->get_name() + " ";
+  return "";
+}
+
+ExitCode parse_and_run(int argc, char** argv) {
+  CLI::App app(
+      "Repairs and improves tetrahedral meshes.\n'hfremesh IN -o OUT' is short for 'hfremesh improve IN "
+      "-o OUT'.",
+      "hfremesh");
+  app.set_version_flag("--version", std::string("hfremesh ") + HFR_VERSION);
+  app.require_subcommand(1);
+  CommonOptions common;
+  const Run runs[] = {add_improve(app, common), add_check(app, common), add_stats(app, common),
+                      add_convert(app, common), add_generate(app, common)};
+  std::vector<Command> commands;
+  for (std::size_t i = 0; i < std::size(runs); ++i)
+    commands.push_back({app.get_subcommand(kSubcommands[i]), runs[i]});
+  try {
+    if (argc < 2) throw CLI::RequiredError("a mesh or a subcommand");
+    std::vector<std::string> args = arguments(argc, argv);
+    app.parse(args);
+  } catch (const CLI::Success& wanted) {  // --help or --version
+    app.exit(wanted);
+    return ExitCode::kDone;
+  } catch (const CLI::ParseError& error) {
+    print_error(fmt::format("{}; try 'hfremesh {}--help'", error.what(), parsed_command(commands)));
+    return ExitCode::kUsage;
+  }
+  for (const Command& command : commands)
+    if (command.app->parsed()) return run(command, common);
+  return ExitCode::kInternal;
+}
+
+}  // namespace
+}  // namespace hfr::app
+
+int main(int argc, char** argv) {
+  hfr::app::wait_passively(argv);
+  try {
+    return static_cast<int>(hfr::app::parse_and_run(argc, argv));
+  } catch (const std::exception& error) {
+    hfr::app::print_error(error.what());
+    return static_cast<int>(hfr::app::ExitCode::kInternal);
+  }
+}
