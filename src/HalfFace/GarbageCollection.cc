@@ -43,6 +43,7 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
                        par::Policy policy) {
   rename_used(*this, map.vertices, labels_.faces);
   rename_used(*this, map.vertices, labels_.edges);
+  properties_.renumber(*this, map.vertices, n_vertices, map.cells, n_cells);
   permute(policy, map.vertices, n_vertices, labels_.vertices);
   permute(policy, map.vertices, n_vertices, points_);
   permute(policy, map.vertices, n_vertices, vertex_status_);
@@ -59,6 +60,7 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
     }
   });
   cells_ = std::move(cells);
+  outdate_hand_index();
   free_cells_.clear();
   n_deleted_vertices_ = 0;
   hook_.assign(n_vertices, CellHandle());
@@ -75,8 +77,7 @@ GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
   });
   map.cells =
       close_up<CellHandle>(cells_.size(), n_cells, [&](std::size_t i) { return !is_deleted(CellHandle(i)); });
-  if (n_vertices < points_.size() || n_cells < cells_.size())
-    renumber(map, n_vertices, n_cells, options.policy);
+  renumber(map, n_vertices, n_cells, options.policy);
   return map;
 }
 

@@ -17,13 +17,20 @@ VertexHandle TetMesh::add_vertex(Vec3 p) {
   hook_.push_back(CellHandle());
   vertex_status_.push_back(0);
   if (!labels_.vertices.empty()) labels_.vertices.push_back(0);
+  properties_.resize_vertices(points_.size());
   return v;
 }
 
 void TetMesh::resize_cells(std::size_t n) {
+  outdate_hand_index();
+  grow_cells(n);
+}
+
+void TetMesh::grow_cells(std::size_t n) {
   cells_.resize(n);
   if (!regions_.empty()) regions_.resize(n, 0);
   if (!cell_status_.empty()) cell_status_.resize(n, 0);
+  properties_.resize_cells(n);
 }
 
 void TetMesh::mark_deleted(VertexHandle v) {

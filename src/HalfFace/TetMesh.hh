@@ -3,6 +3,7 @@
 #define HFR_HALFFACE_TET_MESH_HH
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Handles.hh"
 #include "HalfFace/Labels.hh"
+#include "HalfFace/Properties.hh"
 #include "HalfFace/Vec3.hh"
 #include "Parallel/Parallel.hh"
 
@@ -50,6 +52,43 @@ struct GarbageOptions {
   par::Policy policy = {};
 };
 
+struct ReorderOptions;
+
+/// Where a walk round an edge a→b begins: (a, b, p, q) is positive in the cell, and the walk leaves it by the
+/// face opposite p.
+struct RingStart {
+  CellHandle cell;
+  VertexHandle p, q;
+  bool closed;  ///< the cells go all the way round
+};
+
+// What the queries below return; all are C++20 views that do not allocate, see Circulators.hh.
+template <class T, std::size_t N>
+class FixedList;
+template <class H, bool kOnlyBoundary>
+class MeshRange;
+template <class H>
+using AllRange = MeshRange<H, false>;
+template <class H>
+using BoundaryRange = MeshRange<H, true>;
+template <class Policy>
+class StarRange;
+template <class Policy>
+class RingRange;
+class VertexVertices;
+namespace policy {
+struct StarCells;
+struct StarEdges;
+struct StarFaces;
+struct StarHalfFaces;
+template <bool kOutgoing>
+struct StarHalfEdges;
+struct RingCells;
+struct RingFaces;
+struct RingHalfFaces;
+struct RingBothHalfFaces;
+}  // namespace policy
+
 /// Tetrahedral mesh with four implicit half-faces a cell.
 /// Invariant: mate(mate(h)) == h inside, and mates see their three vertices in opposite order.
 /// Reading is thread-safe.
@@ -60,6 +99,161 @@ class TetMesh {
   std::size_t n_cells() const { return cells_.size(); }
   std::size_t n_logical_vertices() const { return points_.size() - n_deleted_vertices_; }
   std::size_t n_logical_cells() const { return cells_.size() - free_cells_.size(); }
+  std::size_t n_edges() const;  ///< by counting: O(n)
+  std::size_t n_faces() const;  ///< by counting: O(n)
+  std::size_t n_halfedges() const { return 2 * n_edges(); }
+  /// Half-faces that have a cell: the outer side of a boundary face is not stored.
+  std::size_t n_halffaces() const { return 4 * n_logical_cells(); }
+  /// 1 - (vertices - edges + faces - cells): 0 for a solid ball. O(n).
+  int genus() const;
+  std::size_t memory_bytes() const;  ///< heap memory of everything, capacity included
+
+  // --- every thing of a kind by ascending handle; the deleted left out ---
+  AllRange<VertexHandle> vertices() const;
+  AllRange<EdgeHandle> edges() const;
+  AllRange<HalfEdgeHandle> halfedges() const;
+  AllRange<FaceHandle> faces() const;
+  AllRange<HalfFaceHandle> halffaces() const;
+  AllRange<CellHandle> cells() const;
+  BoundaryRange<VertexHandle> boundary_vertices() const;
+  BoundaryRange<EdgeHandle> boundary_edges() const;
+  BoundaryRange<HalfEdgeHandle> boundary_halfedges() const;
+  BoundaryRange<FaceHandle> boundary_faces() const;
+  BoundaryRange<HalfFaceHandle> boundary_halffaces() const;
+  BoundaryRange<CellHandle> boundary_cells() const;
+  /// True when the handle names a thing of the mesh: in range, not deleted, and for faces, edges and
+  /// half-edges the canonical handle. O(1); O(ring) for edges and half-edges.
+  bool exists(VertexHandle v) const { return v.idx() < n_vertices() && !is_deleted(v); }
+  bool exists(CellHandle c) const { return c.idx() < n_cells() && !is_deleted(c); }
+  bool exists(HalfFaceHandle h) const { return exists(cell_of(h)); }
+  bool exists(FaceHandle f) const {
+    const HalfFaceHandle h(f.idx());
+    return exists(h) && h < opposite_halfface(h);  // an invalid mate is larger than any
+  }
+  bool exists(EdgeHandle e) const;
+  bool exists(HalfEdgeHandle e) const { return exists(edge_handle(e)); }
+
+  // --- round a vertex: the cells that connect to its hook through faces at the vertex ---
+  /// In order of discovery from the hook. O(star); O(mesh) for a vertex with more than Star::kCapacity cells,
+  /// which is given all its cells, connected or not.
+  StarRange<policy::StarCells> vertex_cells(VertexHandle v) const;
+  StarRange<policy::StarEdges> vertex_edges(VertexHandle v) const;
+  StarRange<policy::StarFaces> vertex_faces(VertexHandle v) const;
+  StarRange<policy::StarHalfFaces> vertex_halffaces(VertexHandle v) const;
+  StarRange<policy::StarHalfEdges<true>> outgoing_halfedges(VertexHandle v) const;
+  StarRange<policy::StarHalfEdges<false>> incoming_halfedges(VertexHandle v) const;
+  VertexVertices vertex_vertices(VertexHandle v) const;
+  std::size_t valence(VertexHandle v) const;  ///< number of edges
+
+  // --- round an edge: one cell record a step; a fan starts at the boundary ---
+  RingRange<policy::RingCells> edge_cells(EdgeHandle e) const;
+  RingRange<policy::RingFaces> edge_faces(EdgeHandle e) const;
+  RingRange<policy::RingBothHalfFaces> edge_halffaces(EdgeHandle e) const;
+  RingRange<policy::RingCells> halfedge_cells(HalfEdgeHandle e) const;
+  RingRange<policy::RingFaces> halfedge_faces(HalfEdgeHandle e) const;
+  /// The half-faces that have the half-edge in its direction, one a cell.
+  RingRange<policy::RingHalfFaces> halfedge_halffaces(HalfEdgeHandle e) const;
+  RingStart ring_start(EdgeHandle e) const { return ring_start(HalfEdgeHandle(2 * e.idx())); }
+  RingStart ring_start(HalfEdgeHandle e) const;
+  std::size_t valence(EdgeHandle e) const;  ///< number of faces
+
+  // --- edges and half-edges ---
+  std::array<VertexHandle, 2> edge_vertices(EdgeHandle e) const {
+    return halfedge_vertices(HalfEdgeHandle(2 * e.idx()));
+  }
+  std::array<VertexHandle, 2> halfedge_vertices(HalfEdgeHandle e) const {
+    return {from_vertex(e), to_vertex(e)};
+  }
+  VertexHandle from_vertex(HalfEdgeHandle e) const { return end_vertex(e, e.idx() % 2); }
+  VertexHandle to_vertex(HalfEdgeHandle e) const { return end_vertex(e, 1 - e.idx() % 2); }
+  static EdgeHandle edge_handle(HalfEdgeHandle e) { return EdgeHandle(e.idx() / 2); }
+  /// side 0 or 1.
+  static HalfEdgeHandle halfedge_handle(EdgeHandle e, int side) {
+    return HalfEdgeHandle(2 * e.idx() + static_cast<Index>(side));
+  }
+  static HalfEdgeHandle opposite_halfedge(HalfEdgeHandle e) { return HalfEdgeHandle(e.idx() ^ 1U); }
+  /// Handle of local edge 0 … 5 of a cell. O(ring).
+  EdgeHandle edge_in_cell(CellHandle c, int local_edge) const;
+  /// Handle of the half-edge between two different corners of a cell. O(ring).
+  HalfEdgeHandle halfedge_in_cell(CellHandle c, int from_corner, int to_corner) const;
+  HalfEdgeHandle next_halfedge_in_halfface(HalfEdgeHandle e, HalfFaceHandle h) const;
+  HalfEdgeHandle prev_halfedge_in_halfface(HalfEdgeHandle e, HalfFaceHandle h) const;
+
+  // --- faces and half-faces ---
+  static CellHandle incident_cell(HalfFaceHandle h) { return cell_of(h); }
+  FaceHandle face_handle(HalfFaceHandle h) const {
+    const HalfFaceHandle m = opposite_halfface(h);
+    return FaceHandle(h < m ? h.idx() : m.idx());
+  }
+  /// side 0 or 1; side 1 is invalid on the boundary.
+  HalfFaceHandle halfface_handle(FaceHandle f, int side) const {
+    return side == 0 ? HalfFaceHandle(f.idx()) : opposite_halfface(HalfFaceHandle(f.idx()));
+  }
+  FixedList<HalfFaceHandle, 2> face_halffaces(FaceHandle f) const;
+  FixedList<CellHandle, 2> face_cells(FaceHandle f) const;
+  std::array<VertexHandle, 3> face_vertices(FaceHandle f) const {
+    return halfface_vertices(HalfFaceHandle(f.idx()));
+  }
+  std::array<HalfEdgeHandle, 3> face_halfedges(FaceHandle f) const {
+    return halfface_halfedges(HalfFaceHandle(f.idx()));
+  }
+  std::array<EdgeHandle, 3> face_edges(FaceHandle f) const { return halfface_edges(HalfFaceHandle(f.idx())); }
+  /// Half-edge i goes from vertex i of halfface_vertices() to the next.
+  std::array<HalfEdgeHandle, 3> halfface_halfedges(HalfFaceHandle h) const;
+  std::array<EdgeHandle, 3> halfface_edges(HalfFaceHandle h) const;
+  static constexpr std::size_t valence(FaceHandle) { return 3; }
+  /// The other half-face of the cell of h that has the edge; the edge is one of h. O(1).
+  HalfFaceHandle adjacent_halfface_in_cell(HalfFaceHandle h, EdgeHandle e) const {
+    return adjacent_halfface_in_cell(h, halfedge_handle(e, 0));
+  }
+  HalfFaceHandle adjacent_halfface_in_cell(HalfFaceHandle h, HalfEdgeHandle e) const;
+  /// The boundary half-face on the other side of an edge of boundary half-face h. O(ring).
+  HalfFaceHandle adjacent_halfface_on_surface(HalfFaceHandle h, HalfEdgeHandle e) const;
+  /// Its three neighbours on the boundary, across halfface_halfedges(h) in turn.
+  std::array<HalfFaceHandle, 3> boundary_halfface_halffaces(HalfFaceHandle h) const;
+  bool is_incident(FaceHandle f, EdgeHandle e) const;
+
+  // --- round and in a cell ---
+  FixedList<CellHandle, 4> cell_cells(CellHandle c) const;
+  const std::array<VertexHandle, 4>& cell_vertices(CellHandle c) const { return cell(c).v; }
+  /// Beginning with v, the rest so that the order stays a positive one.
+  std::array<VertexHandle, 4> cell_vertices(CellHandle c, VertexHandle v) const;
+  /// The vertices of half-face h, then the one opposite: a positive order.
+  std::array<VertexHandle, 4> cell_vertices(HalfFaceHandle h) const {
+    const auto f = halfface_vertices(h);
+    return {f[0], f[1], f[2], halfface_opposite_vertex(h)};
+  }
+  /// Half-face k lies opposite vertex k.
+  std::array<HalfFaceHandle, 4> cell_halffaces(CellHandle c) const {
+    return {halfface_of(c, 0), halfface_of(c, 1), halfface_of(c, 2), halfface_of(c, 3)};
+  }
+  std::array<FaceHandle, 4> cell_faces(CellHandle c) const;
+  std::array<EdgeHandle, 6> cell_edges(CellHandle c) const;
+  std::array<HalfEdgeHandle, 12> cell_halfedges(CellHandle c) const;
+  static constexpr std::size_t valence(CellHandle) { return 4; }
+  HalfFaceHandle vertex_opposite_halfface(CellHandle c, VertexHandle v) const {
+    return halfface_of(c, cell(c).corner(v));
+  }
+
+  // --- on the boundary? ---
+  bool is_boundary(VertexHandle v) const;  ///< O(star)
+  bool is_boundary(EdgeHandle e) const { return !ring_start(e).closed; }
+  bool is_boundary(HalfEdgeHandle e) const { return !ring_start(e).closed; }
+  bool is_boundary(FaceHandle f) const { return is_boundary(HalfFaceHandle(f.idx())); }
+  /// True when nothing lies on the other side.
+  bool is_boundary(HalfFaceHandle h) const { return !opposite_halfface(h).is_valid(); }
+  bool is_boundary(CellHandle c) const;  ///< a face of it is
+
+  // --- by vertices; invalid when there is none among the cells that vertex_cells() gives for one of them:
+  // O(star)
+  EdgeHandle find_edge(VertexHandle a, VertexHandle b) const;
+  HalfEdgeHandle find_halfedge(VertexHandle from, VertexHandle to) const;
+  HalfEdgeHandle find_halfedge_in_cell(VertexHandle from, VertexHandle to, CellHandle c) const;
+  FaceHandle find_face(const std::array<VertexHandle, 3>& vertices) const;  ///< in any order
+  /// In this cyclic order.
+  HalfFaceHandle find_halfface(const std::array<VertexHandle, 3>& vertices) const;
+  HalfFaceHandle find_halfface_in_cell(const std::array<VertexHandle, 3>& vertices, CellHandle c) const;
+  CellHandle find_cell(const std::array<VertexHandle, 4>& vertices) const;  ///< in any order
 
   // --- cells and half-faces ---
   const Cell& cell(CellHandle c) const { return cells_[c.idx()]; }
@@ -89,6 +283,21 @@ class TetMesh {
   bool is_fixed(VertexHandle v) const { return (vertex_status_[v.idx()] & kFixed) != 0; }
   void set_fixed(VertexHandle v, bool fixed = true) { set_bit(vertex_status_[v.idx()], kFixed, fixed); }
 
+  // --- status bits for the user; no operator reads these ---
+  bool is_selected(VertexHandle v) const { return (vertex_status_[v.idx()] & kSelected) != 0; }
+  bool is_tagged(VertexHandle v) const { return (vertex_status_[v.idx()] & kTagged) != 0; }
+  void set_selected(VertexHandle v, bool on = true) { set_bit(vertex_status_[v.idx()], kSelected, on); }
+  void set_tagged(VertexHandle v, bool on = true) { set_bit(vertex_status_[v.idx()], kTagged, on); }
+  bool is_fixed(CellHandle c) const { return has_cell_bit(c, kFixed); }
+  bool is_selected(CellHandle c) const { return has_cell_bit(c, kSelected); }
+  bool is_tagged(CellHandle c) const { return has_cell_bit(c, kTagged); }
+  void set_fixed(CellHandle c, bool on = true) { set_cell_bit(c, kFixed, on); }
+  void set_selected(CellHandle c, bool on = true) { set_cell_bit(c, kSelected, on); }
+  void set_tagged(CellHandle c, bool on = true) { set_cell_bit(c, kTagged, on); }
+  /// Makes room for the status of cells (a byte each), as the first set_…(cell) does; after it those are safe
+  /// in parallel for distinct cells.
+  void request_cell_status() { cell_status_.resize(cells_.size(), 0); }
+
   // --- regions, labels ---
   bool has_regions() const { return !regions_.empty(); }
   int region(CellHandle c) const { return regions_.empty() ? 0 : regions_[c.idx()]; }
@@ -96,12 +305,51 @@ class TetMesh {
   const Labels& labels() const { return labels_; }
   Labels& labels() { return labels_; }
 
+  // --- properties; the same name gives the same values, another type throws InvalidInput ---
+  template <class T>
+  VertexProperty<T> request_vertex_property(std::string_view name, const T& default_value = T()) {
+    return VertexProperty<T>(
+        PropertySet::request_dense<T>(properties_.vertices, name, default_value, n_vertices()));
+  }
+  template <class T>
+  CellProperty<T> request_cell_property(std::string_view name, const T& default_value = T()) {
+    return CellProperty<T>(PropertySet::request_dense<T>(properties_.cells, name, default_value, n_cells()));
+  }
+  template <class T>
+  EdgeProperty<T> request_edge_property(std::string_view name, const T& default_value = T()) {
+    return EdgeProperty<T>(
+        PropertySet::request_tuples<2, T, AnyOrder>(properties_.edges, name, default_value));
+  }
+  template <class T>
+  HalfEdgeProperty<T> request_halfedge_property(std::string_view name, const T& default_value = T()) {
+    return HalfEdgeProperty<T>(
+        PropertySet::request_tuples<2, T, CyclicOrder>(properties_.halfedges, name, default_value));
+  }
+  template <class T>
+  FaceProperty<T> request_face_property(std::string_view name, const T& default_value = T()) {
+    return FaceProperty<T>(
+        PropertySet::request_tuples<3, T, AnyOrder>(properties_.faces, name, default_value));
+  }
+  template <class T>
+  HalfFaceProperty<T> request_halfface_property(std::string_view name, const T& default_value = T()) {
+    return HalfFaceProperty<T>(
+        PropertySet::request_tuples<3, T, CyclicOrder>(properties_.halffaces, name, default_value));
+  }
+  template <class T>
+  MeshProperty<T> request_mesh_property(std::string_view name, const T& default_value = T()) {
+    return MeshProperty<T>(PropertySet::request_single<T>(properties_.mesh, name, default_value));
+  }
+  /// By kind: names(), remove(name).
+  PropertySet& properties() { return properties_; }
+  const PropertySet& properties() const { return properties_; }
+
   // --- what a new cell or vertex inherits ---
   /// Gives `to` the region, status and properties of `from`: for a cell born in a fresh slot. A cell born in
   /// the slot of a dead one keeps that slot's. Safe in parallel for distinct `to`.
   void copy_cell_data(CellHandle from, CellHandle to) {
     if (!regions_.empty()) regions_[to.idx()] = regions_[from.idx()];
     if (!cell_status_.empty()) cell_status_[to.idx()] = cell_status_[from.idx()];
+    for (const auto& p : properties_.cells) p->copy(from.idx(), to.idx());
   }
   /// Gives `to` the properties of `from` and whether it is selected or tagged; neither its label nor whether
   /// it is fixed, which are constraints. Safe in parallel for distinct `to`.
@@ -109,6 +357,7 @@ class TetMesh {
     constexpr int kInherited = kSelected | kTagged;
     std::uint8_t& bits = vertex_status_[to.idx()];
     bits = static_cast<std::uint8_t>((bits & ~kInherited) | (vertex_status_[from.idx()] & kInherited));
+    for (const auto& p : properties_.vertices) p->copy(from.idx(), to.idx());
   }
 
   /// True when no operator may remove the face of h: boundary, interface between regions, or labelled.
@@ -128,7 +377,7 @@ class TetMesh {
   /// v has no cell or more than Star::kCapacity.
   bool gather_star(VertexHandle v, Star& star) const;
   /// The half-face through which a walk round the edge (a, b) leaves cell c counter-clockwise about a→b,
-  /// given the vertex p of c such that (a, b, p, q) is positive: the one opposite p. See edge_ring() for a
+  /// given the vertex p of c such that (a, b, p, q) is positive: the one opposite p. See edge_cells() for a
   /// whole walk.
   HalfFaceHandle ring_exit(CellHandle c, VertexHandle p) const {
     return halfface_of(c, cells_[c.idx()].corner(p));
@@ -150,14 +399,30 @@ class TetMesh {
   /// and edges that no cell has any more are dropped.
   GarbageMap collect_garbage(GarbageOptions options = {});
 
+  // --- by hand, one at a time; the first call after building or low-level writing costs O(n) ---
+  /// Appends a cell and links it with its neighbours. Throws InvalidInput, leaving the mesh as it was, when a
+  /// vertex does not exist or comes twice, when a face has two cells already, or when the order contradicts a
+  /// neighbour.
+  CellHandle add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, VertexHandle v3);
+  /// Deleted things keep their handles until collect_garbage(); labels of edges and faces that vanish go at
+  /// once.
+  void delete_cell(CellHandle c);
+  void delete_vertex(VertexHandle v);  ///< and every cell that has it
+
   // --- low-level writing, for operators and builders; nothing is checked ---
   VertexHandle add_vertex(Vec3 p);
   void resize_cells(std::size_t n);  ///< new cells are deleted ones, not on the free list
-  Cell& mutable_cell(CellHandle c) { return cells_[c.idx()]; }
-  void set_mate(HalfFaceHandle h, HalfFaceHandle m) { cells_[h.idx() / 4].mate[h.idx() % 4] = m; }
+  Cell& mutable_cell(CellHandle c) {
+    outdate_hand_index();
+    return cells_[c.idx()];
+  }
+  void set_mate(HalfFaceHandle h, HalfFaceHandle m) {
+    outdate_hand_index();
+    cells_[h.idx() / 4].mate[h.idx() % 4] = m;
+  }
   void set_hook(VertexHandle v, CellHandle c) { hook_[v.idx()] = c; }
   CellHandle& mutable_hook(VertexHandle v) { return hook_[v.idx()]; }
-  void mark_deleted(CellHandle c) { cells_[c.idx()] = Cell{}; }
+  void mark_deleted(CellHandle c) { mutable_cell(c) = Cell{}; }
   void mark_deleted(VertexHandle v);
   /// Deleted cells that wait for reuse, in the order in which they are to be taken (from the back).
   std::vector<CellHandle>& free_cells() { return free_cells_; }
@@ -165,11 +430,40 @@ class TetMesh {
 
  private:
   friend class MeshBuilder;
+  friend GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options);
   enum StatusBit : std::uint8_t { kDeleted = 1, kFixed = 2, kSelected = 4, kTagged = 8 };
   static void set_bit(std::uint8_t& bits, std::uint8_t bit, bool on) {
     bits = static_cast<std::uint8_t>(on ? bits | bit : bits & ~bit);
   }
 
+  bool has_cell_bit(CellHandle c, StatusBit bit) const {
+    return !cell_status_.empty() && (cell_status_[c.idx()] & bit) != 0;
+  }
+  void set_cell_bit(CellHandle c, StatusBit bit, bool on) {
+    if (cell_status_.empty()) request_cell_status();
+    set_bit(cell_status_[c.idx()], bit, on);
+  }
+  VertexHandle end_vertex(HalfEdgeHandle e, Index end) const {
+    return cells_[e.idx() / 12].v[kEdgeCorners[e.idx() / 2 % 6][end]];
+  }
+  RingStart ring_start(CellHandle c, int local_edge, bool reversed) const;
+  template <std::size_t N>
+  CellHandle find_cell_with(const std::array<VertexHandle, N>& vertices) const;
+
+  /// What building by hand looks up: made when first needed, void after low-level writing.
+  struct HandIndex {
+    std::unordered_map<std::array<VertexHandle, 3>, HalfFaceHandle, TupleHash> face;  // one half-face of each
+    std::vector<Index> n_cells;                                                       // per vertex
+  };
+  void outdate_hand_index() {  // operators write from several threads at once
+    const std::atomic_ref<bool> valid(hand_index_valid_);
+    if (valid.load(std::memory_order_relaxed)) valid.store(false, std::memory_order_relaxed);
+  }
+  void make_hand_index();
+  void grow_cells(std::size_t n);
+  void drop_labels_of_nothing(const Cell& dead);
+
+  /// Moves vertices and cells to new places; those with an invalid one go.
   void renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells, par::Policy policy);
 
   std::vector<Cell> cells_;
@@ -181,6 +475,9 @@ class TetMesh {
   std::vector<std::uint8_t> vertex_status_;
   std::size_t n_deleted_vertices_ = 0;
   Labels labels_;
+  PropertySet properties_;
+  HandIndex hand_index_;
+  bool hand_index_valid_ = false;
 };
 
 /// What build() had to mend.
@@ -240,5 +537,8 @@ bool TetMesh::walk_ring_back(CellHandle c, int edge, Visit&& visit) const {
 }
 
 }  // namespace hfr
+
+#include "HalfFace/Circulators.hh"
+#include "HalfFace/TupleUse.hh"
 
 #endif

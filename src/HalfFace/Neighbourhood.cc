@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Queries of TetMesh that are more than a line.
+#include <algorithm>
+
+#include "HalfFace/TetMesh.hh"
+
+namespace hfr {
+
+std::size_t TetMesh::n_edges() const { return edges().count(); }
+std::size_t TetMesh::n_faces() const { return faces().count(); }
+
+int TetMesh::genus() const {
+  const auto signed_size = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
+  return static_cast<int>(1 - (signed_size(n_logical_vertices()) - signed_size(n_edges()) +
+                               signed_size(n_faces()) - signed_size(n_logical_cells())));
+}
+
+std::size_t TetMesh::memory_bytes() const {
+  const auto array = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
+  std::size_t sum = array(cells_) + array(regions_) + array(cell_status_) + array(free_cells_) +
+                    array(points_) + array(hook_) + array(vertex_status_) + array(labels_.vertices) +
+                    array(hand_index_.n_cells);
+  sum += labels_.faces.memory_bytes() + labels_.edges.memory_bytes() + properties_.memory_bytes();
+  sum += hand_index_.face.bucket_count() * sizeof(void*) + hand_index_.face.size() * 5 * sizeof(void*);
+  return sum;
+}
+
+// --- edges ---
+
+RingStart TetMesh::ring_start(CellHandle c, int local_edge, bool reversed) const {
+  const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(local_edge)];
+  const RingStart given{c, cell(c).v[opposite[reversed ? 1 : 0]], cell(c).v[opposite[reversed ? 0 : 1]],
+                        true};
+  RingStart at = given;
+  for (;;) {  // backwards, until the boundary or the cell that it began with
+    const Cell& k = cell(at.cell);
+    const HalfFaceHandle m = k.mate[static_cast<std::size_t>(k.corner(at.q))];
+    if (!m.is_valid()) {
+      at.closed = false;
+      return at;
+    }
+    if (cell_of(m) == c) return given;
+    at.cell = cell_of(m);
+    at.q = at.p;
+    at.p = cell(at.cell).v[m.idx() % 4];
+  }
+}
+
+RingStart TetMesh::ring_start(HalfEdgeHandle e) const {
+  return ring_start(CellHandle(e.idx() / 12), static_cast<int>(e.idx() / 2 % 6), e.idx() % 2 != 0);
+}
+
+bool TetMesh::exists(EdgeHandle e) const {
+  const CellHandle c(e.idx() / 6);
+  if (!exists(c)) return false;
+  const int local = static_cast<int>(e.idx() % 6);
+  bool smallest = true;
+  const auto go_on = [&](CellHandle d, VertexHandle, VertexHandle) { return smallest = !(d < c); };
+  if (!walk_ring(c, local, go_on) && smallest) walk_ring_back(c, local, go_on);
+  return smallest;
+}
+
+EdgeHandle TetMesh::edge_in_cell(CellHandle c, int local_edge) const {
+  const auto& corners = kEdgeCorners[static_cast<std::size_t>(local_edge)];
+  return edge_handle(halfedge_in_cell(c, corners[0], corners[1]));
+}
+
+HalfEdgeHandle TetMesh::halfedge_in_cell(CellHandle c, int from_corner, int to_corner) const {
+  const auto from = static_cast<std::size_t>(from_corner);
+  const auto to = static_cast<std::size_t>(to_corner);
+  const VertexHandle a = cell(c).v[from];
+  const VertexHandle b = cell(c).v[to];
+  CellHandle smallest = c;
+  const auto note = [&](CellHandle d, VertexHandle, VertexHandle) {
+    smallest = std::min(smallest, d);
+    return true;
+  };
+  const int local = kEdgeOfCorners[from][to];
+  if (!walk_ring(c, local, note)) walk_ring_back(c, local, note);
+  return find_halfedge_in_cell(a, b, smallest);
+}
+
+/// The handle is canonical only when c is the smallest cell of the ring; callers see to that.
+static HalfEdgeHandle halfedge_at(CellHandle c, std::size_t from, std::size_t to) {
+  const Index local = kEdgeOfCorners[from][to];
+  return HalfEdgeHandle(12 * c.idx() + 2 * local + (kEdgeCorners[local][0] == from ? 0 : 1));
+}
+
+HalfEdgeHandle TetMesh::find_halfedge_in_cell(VertexHandle from, VertexHandle to, CellHandle c) const {
+  const int i = cell(c).corner(from);
+  const int j = cell(c).corner(to);
+  if (i == 4 || j == 4 || i == j) return {};
+  return halfedge_at(c, static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+}
+
+HalfEdgeHandle TetMesh::next_halfedge_in_halfface(HalfEdgeHandle e, HalfFaceHandle h) const {
+  const auto v = halfface_vertices(h);
+  const auto edges_of_h = halfface_halfedges(h);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (v[i] == from_vertex(e) && v[(i + 1) % 3] == to_vertex(e)) return edges_of_h[(i + 1) % 3];
+  return {};
+}
+
+HalfEdgeHandle TetMesh::prev_halfedge_in_halfface(HalfEdgeHandle e, HalfFaceHandle h) const {
+  const HalfEdgeHandle next = next_halfedge_in_halfface(e, h);
+  return next.is_valid() ? next_halfedge_in_halfface(next, h) : next;
+}
+
+std::size_t TetMesh::valence(EdgeHandle e) const { return edge_faces(e).count(); }
+std::size_t TetMesh::valence(VertexHandle v) const { return vertex_vertices(v).count(); }
+
+// --- faces ---
+
+std::array<HalfEdgeHandle, 3> TetMesh::halfface_halfedges(HalfFaceHandle h) const {
+  const auto& f = kFaceCorners[h.idx() % 4];
+  const CellHandle c = cell_of(h);
+  return {halfedge_in_cell(c, f[0], f[1]), halfedge_in_cell(c, f[1], f[2]), halfedge_in_cell(c, f[2], f[0])};
+}
+
+std::array<EdgeHandle, 3> TetMesh::halfface_edges(HalfFaceHandle h) const {
+  const auto e = halfface_halfedges(h);
+  return {edge_handle(e[0]), edge_handle(e[1]), edge_handle(e[2])};
+}
+
+HalfFaceHandle TetMesh::adjacent_halfface_in_cell(HalfFaceHandle h, HalfEdgeHandle e) const {
+  const Cell& k = cell(cell_of(h));
+  const int a = k.corner(from_vertex(e));
+  const int b = k.corner(to_vertex(e));
+  HFR_REQUIRE(a < 4 && b < 4 && a != corner_of(h) && b != corner_of(h),
+              "adjacent_halfface_in_cell: the edge is none of the half-face's");
+  return halfface_of(cell_of(h), 6 - a - b - corner_of(h));  // the corners of a cell add up to 6
+}
+
+HalfFaceHandle TetMesh::adjacent_halfface_on_surface(HalfFaceHandle h, HalfEdgeHandle e) const {
+  HFR_REQUIRE(is_boundary(h), "adjacent_halfface_on_surface: the half-face is not on the boundary");
+  HalfFaceHandle g = adjacent_halfface_in_cell(h, e);
+  while (opposite_halfface(g).is_valid()) g = adjacent_halfface_in_cell(opposite_halfface(g), e);
+  return g;
+}
+
+std::array<HalfFaceHandle, 3> TetMesh::boundary_halfface_halffaces(HalfFaceHandle h) const {
+  const auto e = halfface_halfedges(h);
+  return {adjacent_halfface_on_surface(h, e[0]), adjacent_halfface_on_surface(h, e[1]),
+          adjacent_halfface_on_surface(h, e[2])};
+}
+
+bool TetMesh::is_incident(FaceHandle f, EdgeHandle e) const {
+  const auto v = face_vertices(f);
+  const auto ends = edge_vertices(e);
+  return std::count(v.begin(), v.end(), ends[0]) + std::count(v.begin(), v.end(), ends[1]) == 2;
+}
+
+// --- cells ---
+
+std::array<VertexHandle, 4> TetMesh::cell_vertices(CellHandle c, VertexHandle v) const {
+  const auto corner = static_cast<std::size_t>(cell(c).corner(v));
+  HFR_REQUIRE(corner < 4, "cell_vertices: the vertex is none of the cell's");
+  const auto f = halfface_vertices(halfface_of(c, static_cast<int>(corner)));
+  return {v, f[0], f[2], f[1]};  // (f0, f1, f2, v) is positive; this is an even permutation of it
+}
+
+std::array<FaceHandle, 4> TetMesh::cell_faces(CellHandle c) const {
+  std::array<FaceHandle, 4> faces_of_c;
+  for (int k = 0; k < 4; ++k) faces_of_c[static_cast<std::size_t>(k)] = face_handle(halfface_of(c, k));
+  return faces_of_c;
+}
+
+std::array<EdgeHandle, 6> TetMesh::cell_edges(CellHandle c) const {
+  std::array<EdgeHandle, 6> edges_of_c;
+  for (int k = 0; k < 6; ++k) edges_of_c[static_cast<std::size_t>(k)] = edge_in_cell(c, k);
+  return edges_of_c;
+}
+
+std::array<HalfEdgeHandle, 12> TetMesh::cell_halfedges(CellHandle c) const {
+  std::array<HalfEdgeHandle, 12> halfedges_of_c;
+  for (std::size_t k = 0; k < 6; ++k) {
+    halfedges_of_c[2 * k] = halfedge_in_cell(c, kEdgeCorners[k][0], kEdgeCorners[k][1]);
+    halfedges_of_c[2 * k + 1] = opposite_halfedge(halfedges_of_c[2 * k]);
+  }
+  return halfedges_of_c;
+}
+
+bool TetMesh::is_boundary(CellHandle c) const {
+  const auto& mate = cell(c).mate;
+  return std::any_of(mate.begin(), mate.end(), [](HalfFaceHandle m) { return !m.is_valid(); });
+}
+
+bool TetMesh::is_boundary(VertexHandle v) const {
+  const auto halffaces_of_v = vertex_halffaces(v);
+  return std::any_of(halffaces_of_v.begin(), halffaces_of_v.end(),
+                     [&](HalfFaceHandle h) { return is_boundary(h); });
+}
+
+// --- by vertices ---
+
+template <std::size_t N>
+CellHandle TetMesh::find_cell_with(const std::array<VertexHandle, N>& wanted) const {
+  const auto exists_here = [&](VertexHandle v) { return exists(v) && hook(v).is_valid(); };
+  if (!std::all_of(wanted.begin(), wanted.end(), exists_here)) return {};
+  for (VertexHandle v : wanted) {  // should v pinch the mesh, the thing may hang on the others alone
+    const StarRange<policy::StarCells> star = vertex_cells(v);
+    for (CellHandle c : star) {
+      const Cell& k = cell(c);
+      if (std::all_of(wanted.begin(), wanted.end(), [&](VertexHandle w) { return k.has(w); })) return c;
+    }
+  }
+  return {};
+}
+
+HalfEdgeHandle TetMesh::find_halfedge(VertexHandle from, VertexHandle to) const {
+  if (from == to) return {};
+  const CellHandle c = find_cell_with<2>({from, to});
+  return c.is_valid() ? halfedge_in_cell(c, cell(c).corner(from), cell(c).corner(to)) : HalfEdgeHandle();
+}
+
+EdgeHandle TetMesh::find_edge(VertexHandle a, VertexHandle b) const {
+  const HalfEdgeHandle e = find_halfedge(a, b);
+  return e.is_valid() ? edge_handle(e) : EdgeHandle();
+}
+
+HalfFaceHandle TetMesh::find_halfface_in_cell(const std::array<VertexHandle, 3>& wanted, CellHandle c) const {
+  for (HalfFaceHandle h : cell_halffaces(c))
+    if (CyclicOrder::key(halfface_vertices(h)) == CyclicOrder::key(wanted)) return h;
+  return {};
+}
+
+HalfFaceHandle TetMesh::find_halfface(const std::array<VertexHandle, 3>& wanted) const {
+  const CellHandle c = find_cell_with<3>(wanted);
+  if (!c.is_valid()) return {};
+  const HalfFaceHandle h = find_halfface_in_cell(wanted, c);
+  if (h.is_valid()) return h;
+  const HalfFaceHandle other = find_halfface_in_cell({wanted[0], wanted[2], wanted[1]}, c);
+  return other.is_valid() ? opposite_halfface(other) : other;
+}
+
+FaceHandle TetMesh::find_face(const std::array<VertexHandle, 3>& wanted) const {
+  const CellHandle c = find_cell_with<3>(wanted);
+  if (!c.is_valid()) return {};
+  for (HalfFaceHandle h : cell_halffaces(c))
+    if (AnyOrder::key(halfface_vertices(h)) == AnyOrder::key(wanted)) return face_handle(h);
+  return {};
+}
+
+CellHandle TetMesh::find_cell(const std::array<VertexHandle, 4>& wanted) const {
+  const auto key = AnyOrder::key(wanted);
+  if (std::adjacent_find(key.begin(), key.end()) != key.end()) return {};
+  return find_cell_with<4>(wanted);
+}
+
+// --- vertices round a vertex ---
+
+VertexVertices::VertexVertices(const TetMesh& mesh, VertexHandle v) : mesh_(&mesh), v_(v) {
+  Star star;
+  if (!mesh.gather_star(v, star)) {
+    scan_ = mesh.hook(v).is_valid();
+    limit_ = scan_ ? 4 * mesh.n_cells() : 0;
+    return;
+  }
+  constexpr unsigned kMask = 1023;  // at most a quarter full
+  std::array<std::uint16_t, kMask + 1> slot{};
+  for (int i = 0; i < star.size; ++i) {
+    for (VertexHandle w : mesh.cell(star.cells[static_cast<std::size_t>(i)]).v) {
+      if (w == v) continue;
+      unsigned at = (static_cast<std::uint32_t>(w.idx()) * 0x9e3779b1U >> 16) & kMask;
+      while (slot[at] != 0 && neighbours_[slot[at] - 1U] != w) at = (at + 1) & kMask;
+      if (slot[at] != 0) continue;
+      neighbours_[limit_] = w;
+      slot[at] = static_cast<std::uint16_t>(++limit_);
+    }
+  }
+}
+
+bool VertexVertices::scan_has(std::size_t place) const {
+  const CellHandle c(place / 4);
+  const int corner = mesh_->cell(c).corner(v_);
+  const auto other = place % 4;
+  if (corner == 4 || static_cast<std::size_t>(corner) == other) return false;
+  return mesh_->exists(EdgeHandle(6 * c.idx() + kEdgeOfCorners[static_cast<std::size_t>(corner)][other]));
+}
+
+}  // namespace hfr

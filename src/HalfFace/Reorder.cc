@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hilbert places after J. Skilling, "Programming the Hilbert curve", AIP Conf. Proc. 707 (2004): undo the
+// excess work of each level from the top bit down, then Gray-decode.
+#include "HalfFace/Reorder.hh"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "Parallel/Sort.hh"
+
+namespace hfr {
+namespace {
+
+constexpr int kBits = 21;
+
+/// Puts two zero bits between the bits of x.
+std::uint64_t spread(std::uint64_t x) {
+  x &= 0x1fffff;
+  x = (x | x << 32) & 0x1f00000000ffffULL;
+  x = (x | x << 16) & 0x1f0000ff0000ffULL;
+  x = (x | x << 8) & 0x100f00f00f00f00fULL;
+  x = (x | x << 4) & 0x10c30c30c30c30c3ULL;
+  return (x | x << 2) & 0x1249249249249249ULL;
+}
+
+/// A box as a grid of 2^21 places in each direction.
+class Grid {
+ public:
+  Grid(const TetMesh& mesh, SpaceCurve curve) : curve_(curve) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Vec3 high = {-kInfinity, -kInfinity, -kInfinity};
+    low_ = {kInfinity, kInfinity, kInfinity};
+    for (const Vec3& p : mesh.points()) {
+      for (int i = 0; i < 3; ++i) {
+        low_[i] = std::min(low_[i], p[i]);
+        high[i] = std::max(high[i], p[i]);
+      }
+    }
+    double size = 0;
+    for (int i = 0; i < 3; ++i) size = std::max(size, high[i] - low_[i]);
+    scale_ = size > 0 ? ((1 << kBits) - 1) / size : 0;
+  }
+
+  std::uint64_t place(Vec3 p) const {
+    const auto step = [&](int i) { return static_cast<std::uint32_t>((p[i] - low_[i]) * scale_); };
+    return curve_place(curve_, step(0), step(1), step(2));
+  }
+
+ private:
+  SpaceCurve curve_;
+  Vec3 low_;
+  double scale_;
+};
+
+/// Old → new when the things that exist(i) are sorted by place(i).
+template <class H, class Exists, class Place>
+std::vector<H> sorted_places(par::Policy policy, std::size_t n, std::size_t& n_new, Exists&& exists,
+                             Place&& place) {
+  if (n > std::numeric_limits<std::uint32_t>::max())
+    throw ResourceLimit("reorder: " + std::to_string(n) + " things are more than the sort can number");
+  std::vector<par::KeyIndex> items;
+  items.reserve(n);
+  for (std::size_t i = 0; i < n; ++i)
+    if (exists(i)) items.push_back({0, static_cast<std::uint32_t>(i)});
+  par::for_each(policy, items.size(), [&](std::size_t i) { items[i].key = place(items[i].index); });
+  std::vector<par::KeyIndex> scratch;
+  par::stable_sort(policy, items, scratch);
+  n_new = items.size();
+  std::vector<H> to(n);
+  par::for_each(policy, items.size(), [&](std::size_t i) { to[items[i].index] = H(i); });
+  return to;
+}
+
+}  // namespace
+
+std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  if (curve == SpaceCurve::kHilbert) {
+    std::uint32_t axis[3] = {x, y, z};
+    for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1) {
+      const std::uint32_t below = bit - 1;
+      for (std::uint32_t& a : axis) {
+        if (a & bit) {
+          axis[0] ^= below;
+        } else {
+          const std::uint32_t swap = (axis[0] ^ a) & below;
+          axis[0] ^= swap;
+          a ^= swap;
+        }
+      }
+    }
+    axis[1] ^= axis[0];
+    axis[2] ^= axis[1];
+    std::uint32_t flip = 0;
+    for (std::uint32_t bit = 1U << (kBits - 1); bit > 1; bit >>= 1)
+      if (axis[2] & bit) flip ^= bit - 1;
+    x = axis[0] ^ flip;
+    y = axis[1] ^ flip;
+    z = axis[2] ^ flip;
+  }
+  return spread(x) << 2 | spread(y) << 1 | spread(z);
+}
+
+GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
+  const Grid grid(mesh, options.curve);
+  GarbageMap map;
+  std::size_t n_vertices = 0;
+  std::size_t n_cells = 0;
+  map.vertices = sorted_places<VertexHandle>(
+      options.policy, mesh.n_vertices(), n_vertices,
+      [&](std::size_t i) { return !mesh.is_deleted(VertexHandle(i)); },
+      [&](std::size_t i) { return grid.place(mesh.point(VertexHandle(i))); });
+  map.cells = sorted_places<CellHandle>(
+      options.policy, mesh.n_cells(), n_cells, [&](std::size_t i) { return !mesh.is_deleted(CellHandle(i)); },
+      [&](std::size_t i) {
+        const auto& v = mesh.cell(CellHandle(i)).v;
+        return grid.place(0.25 *
+                          ((mesh.point(v[0]) + mesh.point(v[1])) + (mesh.point(v[2]) + mesh.point(v[3]))));
+      });
+  mesh.renumber(map, n_vertices, n_cells, options.policy);
+  return map;
+}
+
+}  // namespace hfr
