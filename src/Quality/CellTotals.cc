@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "Quality/CellBlock.hh"
 #include "Quality/Metrics.hh"
 
 namespace hfr::detail {
@@ -46,84 +47,60 @@ class AngleBins {
   std::array<std::size_t, kSteps> guess_{};
 };
 
-// The six dihedrals of a cell as complex numbers on a common scale.
-struct Angles {
-  std::array<double, 6> cosine;  ///< normalised
-  std::array<double, 6> sine;
-};
-
-Angles angles_of(const hfr_tet_frame& f) {
-  const double r0 = 1.0 / std::sqrt(f.q0);
-  const double r1 = 1.0 / std::sqrt(f.q1);
-  const double r2 = 1.0 / std::sqrt(f.q2);
-  const double r3 = 1.0 / std::sqrt(f.q3);
-  Angles a;
-  const auto set = [&](std::size_t edge, hfr_cos_sin angle, double scale) {
-    a.cosine[edge] = angle.cosine * scale;
-    a.sine[edge] = angle.sine * scale;
-  };
-  set(0, hfr_dihedral_cos_sin(f, 0), r2 * r3);
-  set(1, hfr_dihedral_cos_sin(f, 1), r1 * r3);
-  set(2, hfr_dihedral_cos_sin(f, 2), r1 * r2);
-  set(3, hfr_dihedral_cos_sin(f, 3), r0 * r3);
-  set(4, hfr_dihedral_cos_sin(f, 4), r0 * r2);
-  set(5, hfr_dihedral_cos_sin(f, 5), r0 * r1);
-  return a;
-}
-
-// Sum of the dihedrals of a positive cell in radians. It lies between 2π and 3π (Gaddum 1952), so the
-// argument of the product of the six unit numbers tells it: one arc tangent instead of six.
-double angle_sum(const Angles& a) {
-  double re = 1.0;
-  double im = 0.0;
-  for (std::size_t edge = 0; edge < 6; ++edge) {
-    const double next = re * a.cosine[edge] - im * a.sine[edge];
-    im = re * a.sine[edge] + im * a.cosine[edge];
-    re = next;
-  }
-  double angle = std::atan2(im, re);
-  // rounding can carry a sum next to 2π or 3π over the cut
-  if (angle < -0.5 * kPi) angle += 2.0 * kPi;
-  return 2.0 * kPi + angle;
-}
-
+// Gathers cells into blocks and adds up what comes out.
 class CellPass {
  public:
-  CellPass(const TetMesh& mesh, const AngleBins& bins, CellTotals& totals)
-      : mesh_(mesh), bins_(bins), totals_(totals) {}
+  CellPass(const TetMesh& mesh, const AngleBins& bins, CellValues& values, CellTotals& totals)
+      : mesh_(mesh), bins_(bins), values_(values), totals_(totals) {}
 
-  void visit(CellHandle c, double& min_dihedral, double& volume_length) {
+  void visit(CellHandle c) {
     const Cell& cell = mesh_.cell(c);
-    const hfr_real3 p0 = to_real3(mesh_.point(cell.v[0]));
-    const hfr_real3 p1 = to_real3(mesh_.point(cell.v[1]));
-    const hfr_real3 p2 = to_real3(mesh_.point(cell.v[2]));
-    const hfr_real3 p3 = to_real3(mesh_.point(cell.v[3]));
-    const hfr_tet_frame frame = hfr_make_frame(p0, p1, p2, p3);
-    min_dihedral = hfr_min_dihedral_of(frame);
-    volume_length = hfr_volume_length_decision(p0, p1, p2, p3);
-    ++totals_.cells;
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      block_.set_corner(corner, in_block_, mesh_.point(cell.v[corner]));
+    cells_[in_block_] = c;
     count_faces(c, cell);
-    add_region(c, frame.det, min_dihedral);
-    add_lengths(frame);
-    totals_.det.add(frame.det);
-    totals_.absolute_det.add(std::abs(frame.det));
+    if (++in_block_ == CellBlock::kSize) finish_block();
+  }
+
+  void finish_block() {
+    if (in_block_ == 0) return;
+    evaluate(block_);
+    for (std::size_t i = 0; i < in_block_; ++i) add(i);
+    in_block_ = 0;
+  }
+
+ private:
+  void add(std::size_t i) {
+    const CellHandle c = cells_[i];
+    const double det = block_.det[i];
+    const double min_dihedral = block_.min_dihedral[i];
+    values_.min_dihedral[c.idx()] = min_dihedral;
+    values_.volume_length[c.idx()] = block_.volume_length[i];
+    ++totals_.cells;
+    add_region(c, det, min_dihedral);
+    totals_.min_length2 =
+        totals_.cells == 1 ? block_.min_length2[i] : std::min(totals_.min_length2, block_.min_length2[i]);
+    totals_.max_length2 = std::max(totals_.max_length2, block_.max_length2[i]);
+    totals_.lengths.add(block_.length_sum[i]);
     if (min_dihedral < totals_.min_decision || !totals_.worst_cell.is_valid()) {
       totals_.min_decision = min_dihedral;
       totals_.worst_cell = c;
     }
-    const double q = hfr_volume_length_report(volume_length);
+    const double q = block_.q[i];
     totals_.volume_length.add(q);
-    if (frame.det < 0.0) totals_.inverted.push_back(c);
-    if (frame.det == 0.0) totals_.flat.push_back(c);
-    if (frame.det >= 0.0)
+    if (det < 0.0) {
+      totals_.inverted.push_back(c);
+      totals_.negative_det.add(det);
+    } else {
       ++totals_.volume_length_histogram[std::min<std::size_t>(19, static_cast<std::size_t>(20.0 * q))];
+    }
+    if (det == 0.0) totals_.flat.push_back(c);
     if (min_dihedral > 0.0)
-      add_angles(frame, min_dihedral);
+      add_angles(i);
     else
-      add_angles_one_by_one(frame, min_dihedral);
+      add_angles_one_by_one(c, min_dihedral);
   }
 
- private:
   void count_faces(CellHandle c, const Cell& cell) {
     for (const HalfFaceHandle m : cell.mate) {
       if (!m.is_valid())
@@ -148,25 +125,18 @@ class CellPass {
     region_->min_decision = std::min(region_->min_decision, min_dihedral);
   }
 
-  void add_lengths(const hfr_tet_frame& f) {
-    const double low = std::min({f.l01, f.l02, f.l03, f.l12, f.l13, f.l23});
-    const double high = std::max({f.l01, f.l02, f.l03, f.l12, f.l13, f.l23});
-    totals_.min_length2 = totals_.cells == 1 ? low : std::min(totals_.min_length2, low);
-    totals_.max_length2 = std::max(totals_.max_length2, high);
-    totals_.lengths.add(((std::sqrt(f.l01) + std::sqrt(f.l02)) + (std::sqrt(f.l03) + std::sqrt(f.l12))) +
-                        (std::sqrt(f.l13) + std::sqrt(f.l23)));
-  }
-
-  void add_angles(const hfr_tet_frame& frame, double min_dihedral) {
-    const Angles angles = angles_of(frame);
-    for (const double cosine : angles.cosine) ++totals_.dihedral_histogram[bins_(cosine)];
-    totals_.angles.add(angle_sum(angles));
-    totals_.min_angles.add(std::asin(std::sqrt(std::min(min_dihedral, 1.0))));
-    totals_.max_decision = std::min(totals_.max_decision, hfr_max_dihedral_of(frame));
+  void add_angles(std::size_t i) {
+    for (const CellBlock::Lane& cosine : block_.cosine) ++totals_.dihedral_histogram[bins_(cosine[i])];
+    totals_.angles.add(block_.angle_sum[i]);
+    totals_.min_angles.add(block_.min_angle[i]);
+    totals_.max_decision = std::min(totals_.max_decision, block_.max_dihedral[i]);
   }
 
   // Flat, inverted or so small that squares underflow: nothing may be divided by.
-  void add_angles_one_by_one(const hfr_tet_frame& frame, double min_dihedral) {
+  void add_angles_one_by_one(CellHandle c, double min_dihedral) {
+    const Cell& cell = mesh_.cell(c);
+    const auto point = [&](std::size_t corner) { return to_real3(mesh_.point(cell.v[corner])); };
+    const hfr_tet_frame frame = hfr_make_frame(point(0), point(1), point(2), point(3));
     double sum = 0.0;
     for (int edge = 0; edge < 6; ++edge) {
       const hfr_cos_sin angle = hfr_dihedral_cos_sin(frame, edge);
@@ -181,8 +151,12 @@ class CellPass {
 
   const TetMesh& mesh_;
   const AngleBins& bins_;
+  CellValues& values_;
   CellTotals& totals_;
-  const FixedSum empty_det_ = totals_.det;
+  CellBlock block_;
+  std::array<CellHandle, CellBlock::kSize> cells_;
+  std::size_t in_block_ = 0;
+  const FixedSum empty_det_ = totals_.negative_det;
   RegionTotals* region_ = nullptr;
   int region_number_ = 0;
 };
@@ -190,12 +164,7 @@ class CellPass {
 }  // namespace
 
 CellTotals::CellTotals(double max_det, double max_length)
-    : det(max_det),
-      absolute_det(max_det),
-      angles(32.0),
-      min_angles(4.0),
-      volume_length(2.0),
-      lengths(8.0 * max_length) {}
+    : negative_det(max_det), angles(32.0), min_angles(4.0), volume_length(2.0), lengths(8.0 * max_length) {}
 
 void CellTotals::merge(const CellTotals& next) {
   if (next.cells == 0) return;
@@ -213,8 +182,7 @@ void CellTotals::merge(const CellTotals& next) {
     dihedral_histogram[i] += next.dihedral_histogram[i];
   for (std::size_t i = 0; i < volume_length_histogram.size(); ++i)
     volume_length_histogram[i] += next.volume_length_histogram[i];
-  det.add(next.det);
-  absolute_det.add(next.absolute_det);
+  negative_det.add(next.negative_det);
   angles.add(next.angles);
   min_angles.add(next.min_angles);
   volume_length.add(next.volume_length);
@@ -239,11 +207,11 @@ CellTotals gather_cells(const TetMesh& mesh, par::Policy policy, double max_det,
   const int n_parts = par::thread_count(policy, n);
   std::vector<CellTotals> totals(static_cast<std::size_t>(n_parts), CellTotals(max_det, max_length));
   par::parts(n_parts, [&](int part) {
-    CellPass pass(mesh, bins, totals[static_cast<std::size_t>(part)]);
+    CellPass pass(mesh, bins, values, totals[static_cast<std::size_t>(part)]);
     const std::size_t end = par::part_begin(n, n_parts, part + 1);
     for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i)
-      if (!mesh.is_deleted(CellHandle(i)))
-        pass.visit(CellHandle(i), values.min_dihedral[i], values.volume_length[i]);
+      if (!mesh.is_deleted(CellHandle(i))) pass.visit(CellHandle(i));
+    pass.finish_block();
   });
   CellTotals all(max_det, max_length);
   for (const CellTotals& part : totals) all.merge(part);

@@ -39,11 +39,11 @@ struct CellTotals {
   CellHandle worst_cell;
   double min_length2 = 0.0;
   double max_length2 = 0.0;
-  FixedSum det, absolute_det;  ///< 6V
-  FixedSum angles;             ///< all six, radians
-  FixedSum min_angles;         ///< the smallest of each cell, radians
-  FixedSum volume_length;
-  FixedSum lengths;
+  FixedSum negative_det;  ///< 6V of the inverted cells; that of all is in the regions
+  CoarseSum angles;       ///< all six, radians
+  CoarseSum min_angles;   ///< the smallest of each cell, radians
+  CoarseSum volume_length;
+  CoarseSum lengths;
   std::map<int, RegionTotals> regions;
 };
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "Quality/CellTotals.hh"
+#include "Quality/FixedSum.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/SurfaceStatistics.hh"
 
@@ -120,7 +121,7 @@ std::size_t count_components(const TetMesh& mesh) {
   return components;
 }
 
-void add_cells(const detail::CellTotals& totals, Statistics& s) {
+void add_cells(const detail::CellTotals& totals, double max_det, Statistics& s) {
   s.cells = totals.cells;
   s.boundary_faces = totals.boundary_faces;
   s.interface_faces = totals.interface_halffaces / 2;
@@ -130,8 +131,11 @@ void add_cells(const detail::CellTotals& totals, Statistics& s) {
   s.worst_cell = totals.worst_cell;
   s.dihedral_histogram = totals.dihedral_histogram;
   s.volume_length_histogram = totals.volume_length_histogram;
-  s.volume = totals.det.value() / 6.0;
-  s.absolute_volume = totals.absolute_det.value() / 6.0;
+  FixedSum det(max_det);
+  for (const auto& [region, mine] : totals.regions) det.add(mine.det);
+  s.volume = det.value() / 6.0;
+  // |V| = V - 2 min(V, 0)
+  s.absolute_volume = (det.value() - 2.0 * totals.negative_det.value()) / 6.0;
   for (const auto& [region, mine] : totals.regions)
     s.regions.push_back({region, mine.cells, mine.inverted, mine.flat, mine.det.value() / 6.0,
                          report_value(Metric::kMinDihedral, mine.min_decision)});
@@ -154,11 +158,15 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
   const double max_det = 2.0 * diagonal * diagonal * diagonal;
   detail::CellValues values;
   const detail::CellTotals totals = detail::gather_cells(mesh, policy, max_det, diagonal, values);
-  add_cells(totals, s);
-  par::parts(std::min(2, policy.threads), [&](int part) {
-    if (part == 0) s.min_dihedral = distribution(Metric::kMinDihedral, values.min_dihedral);
-    if (part == 1 || policy.threads < 2)
-      s.volume_length = distribution(Metric::kVolumeLength, values.volume_length);
+  add_cells(totals, max_det, s);
+  constexpr int kTasks = 3;
+  const int n_parts = std::min(kTasks, policy.threads);
+  par::parts(n_parts, [&](int part) {
+    for (int task = part; task < kTasks; task += n_parts) {
+      if (task == 0) s.min_dihedral = distribution(Metric::kMinDihedral, values.min_dihedral);
+      if (task == 1) s.volume_length = distribution(Metric::kVolumeLength, values.volume_length);
+      if (task == 2 && options.components) s.components = count_components(mesh);
+    }
   });
   if (s.cells > 0) {
     const auto n = static_cast<double>(s.cells);
@@ -169,7 +177,6 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
   s.enclosed_volume = detail::boundary_determinant(mesh, policy, centre, max_det) / 6.0;
   if (s.enclosed_volume != 0.0) s.overlap = s.absolute_volume / std::abs(s.enclosed_volume) - 1.0;
   s.edges = edge_count(mesh, s);
-  if (options.components) s.components = count_components(mesh);
   if (options.surface) {
     detail::SurfaceTotals surface = detail::gather_surface(mesh, policy, diagonal * diagonal);
     s.patches = std::move(surface.patches);

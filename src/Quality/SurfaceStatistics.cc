@@ -107,27 +107,33 @@ struct Ceilings {
 
 // Walks from the frozen half-face h round one of its edges, to the next frozen face and, when h is on the
 // boundary, on to the boundary face at the other end. Each wedge is found from both of its ends and counts
-// from the smaller half-face, so that it is summed in one order.
-void walk_wedge(const TetMesh& mesh, HalfFaceHandle h, WedgeWalk walk, Ceilings& ceilings) {
-  const WedgeWalk start = walk;
+// from the smaller half-face, so that it is summed in one order, and once.
+void walk_wedge(const TetMesh& mesh, HalfFaceHandle h, const WedgeWalk& start, Ceilings& ceilings) {
+  constexpr int kNone = -1;
   const bool from_boundary = !mesh.opposite_halfface(h).is_valid();
-  bool inside_first_wedge = true;
-  double degrees = 0.0;
-  for (;;) {
-    degrees += kDegrees * dihedral_at(mesh, walk);
+  int interface_steps = kNone;  // cells up to the next frozen face, when the wedge counts from h
+  int surface_steps = kNone;
+  bool in_first_wedge = true;
+  WedgeWalk walk = start;
+  for (int steps = 1;; ++steps) {
     const HalfFaceHandle end = halfface_of(walk.c, walk.exit);
+    if (in_first_wedge && mesh.is_constrained(end)) {
+      in_first_wedge = false;
+      if (h < end) interface_steps = steps;
+    }
     const bool at_boundary = !mesh.opposite_halfface(end).is_valid();
-    if (inside_first_wedge && mesh.is_constrained(end)) {
-      inside_first_wedge = false;
-      if (h < end) Ceilings::lower(ceilings.interface, within_turn(degrees), mesh, start);
-    }
-    if (at_boundary) {
-      if (from_boundary && h < end) Ceilings::lower(ceilings.surface, within_turn(degrees), mesh, start);
-      return;
-    }
-    if (!inside_first_wedge && !from_boundary) return;
+    if (at_boundary && from_boundary && h < end) surface_steps = steps;
+    if (at_boundary || (!in_first_wedge && !from_boundary)) break;
     walk = next_cell(mesh, walk);
-    if (walk.c == start.c) return;
+    if (walk.c == start.c) break;
+  }
+  double degrees = 0.0;
+  walk = start;
+  for (int steps = 1; steps <= std::max(interface_steps, surface_steps); ++steps) {
+    if (steps > 1) walk = next_cell(mesh, walk);
+    degrees += kDegrees * dihedral_at(mesh, walk);
+    if (steps == interface_steps) Ceilings::lower(ceilings.interface, within_turn(degrees), mesh, start);
+    if (steps == surface_steps) Ceilings::lower(ceilings.surface, within_turn(degrees), mesh, start);
   }
 }
 
