@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "IO/FieldProperties.hh"
+
 namespace hfr::io {
 namespace {
 
@@ -72,6 +74,7 @@ TetMesh assemble(MeshData data, par::Policy policy, BuildReport* report, std::ve
   }
   labels.names = std::move(data.names);
   for (Index v : data.fixed_vertices) mesh.set_fixed(VertexHandle(v));
+  attach_fields(mesh, data.point_fields, data.cell_fields, notes);
   return mesh;
 }
 
@@ -110,6 +113,8 @@ MeshData disassemble(const TetMesh& mesh, par::Policy policy) {
     if (mesh.is_fixed(VertexHandle(i)) && !mesh.is_deleted(VertexHandle(i)))
       data.fixed_vertices.push_back(moved(new_vertex, static_cast<Index>(i)));
   data.names = mesh.labels().names;
+  data.point_fields = point_fields(mesh);
+  data.cell_fields = cell_fields(mesh);
   return data;
 }
 
