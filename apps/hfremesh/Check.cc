@@ -120,7 +120,7 @@ Run add_check(CLI::App& app, CommonOptions& common) {
   const auto line = std::make_shared<CommandLine>();
   CLI::App* command =
       app.add_subcommand("check", "Fail on inverted, flat, renumbered, overlapping or broken cells");
-  command->add_option("IN", line->input, "Mesh to read")->required();
+  command->add_option("IN", line->input, "Mesh to read")->required()->type_name("FILE");
   command->add_option("--ids", line->ids, "Write kind and index of every bad cell; - is stdout")
       ->type_name("FILE");
   command->add_option("--min-dihedral", line->min_dihedral, "Fail on a smaller dihedral angle too")

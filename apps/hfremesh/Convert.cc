@@ -44,7 +44,7 @@ ExitCode run(const ConvertOptions& options, const CommonOptions& common, Json& r
 Run add_convert(CLI::App& app, CommonOptions& common) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* command = app.add_subcommand("convert", "Write a mesh in another format");
-  command->add_option("A", options->input, "Mesh to read")->required();
+  command->add_option("A", options->input, "Mesh to read")->required()->type_name("FILE");
   command->add_option("B,-o,--output", options->output, "Mesh to write; its extension gives the format")
       ->required();
   add_write_options(*command, options->write);

@@ -2,6 +2,7 @@
 #ifndef HFR_APPS_EXIT_CODE_HH
 #define HFR_APPS_EXIT_CODE_HH
 
+#include <exception>
 #include <stdexcept>
 #include <string>
 
@@ -29,6 +30,11 @@ class Failure : public std::runtime_error {
  private:
   ExitCode code_;
 };
+
+/// What an exception that nobody caught means to the shell.
+ExitCode exit_code_of(const std::exception& error);
+/// One line about it for the user.
+std::string message_of(const std::exception& error);
 
 }  // namespace hfr::app
 

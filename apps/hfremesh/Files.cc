@@ -43,7 +43,7 @@ auto writing(const std::string& path, Write&& write) {
   } catch (const InvalidInput& error) {
     throw Failure(ExitCode::kUsage, with_file(path, error.what()));
   } catch (const IoError& error) {
-    throw Failure(ExitCode::kInternal, with_file(path, error.what()));
+    throw Failure(ExitCode::kUsage, with_file(path, error.what()));
   }
 }
 

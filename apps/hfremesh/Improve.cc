@@ -98,14 +98,18 @@ Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const Comman
   return improve(mesh, options);
 }
 
-void print_result(const Result& result, const Json& seconds, const CommandLine& line,
+/// Wall time by step.
+struct Seconds {
+  double read = 0, build = 0, improve = 0, write = 0;
+};
+
+void print_result(const Result& result, const Seconds& seconds, const CommandLine& line,
                   const CommonOptions& common) {
   if (common.verbose) print_passes(result.passes);
   print_statistics({{"before", &result.before}, {"after", &result.after}});
   fmt::print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, write {:.2f}\n",
-             result.changed ? "changed" : "unchanged", seconds["read"].get<double>(),
-             seconds["build"].get<double>(), seconds["improve"].get<double>(),
-             seconds["write"].get<double>());
+             result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,
+             seconds.write);
   if (line.dry_run) fmt::print("dry run: nothing was written\n");
 }
 
@@ -121,28 +125,31 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   }
   const SignalGuard signals;
   LoadedMesh loaded = load(line.input, common);
-  Json& seconds = report["seconds"];
-  seconds["read"] = loaded.seconds_read;
-  seconds["build"] = loaded.seconds_build;
+  Seconds seconds{.read = loaded.seconds_read, .build = loaded.seconds_build};
   report["input"].update(to_json(loaded.report));
 
   const Stopwatch improving;
   const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
-  seconds["improve"] = improving.seconds();
+  seconds.improve = improving.seconds();
 
   const Stopwatch writing;
   const io::MeshData data = io::disassemble(loaded.mesh, common.policy());
   std::vector<std::string> notes = std::move(loaded.notes);
   if (!line.dry_run)
     for (std::string& note : save(line.output, data, line.write)) notes.push_back(std::move(note));
-  seconds["write"] = writing.seconds();
+  seconds.write = writing.seconds();
 
   report["output"].update(contents(data));
+  report["seconds"] = {{"read", seconds.read},
+                       {"build", seconds.build},
+                       {"improve", seconds.improve},
+                       {"write", seconds.write}};
   report["result"] = outcome(result);
   if (options.statistics) {
     report["before"] = to_json(result.before);
     report["after"] = to_json(result.after);
   }
+  report["passes"] = Json::array();
   for (const PassReport& pass : result.passes) report["passes"].push_back(to_json(pass));
   report["notes"] = notes;
   if (!common.quiet) print_notes(notes);
@@ -157,7 +164,7 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
 Run add_improve(CLI::App& app, CommonOptions& common) {
   const auto line = std::make_shared<CommandLine>();
   CLI::App* command = app.add_subcommand("improve", "Repair and improve a mesh (the default)");
-  command->add_option("IN", line->input, "Mesh to read")->required();
+  command->add_option("IN", line->input, "Mesh to read")->required()->type_name("FILE");
   command->add_option("-o,--output", line->output, "Mesh to write; may be IN")->type_name("FILE");
   command->add_flag("--dry-run", line->dry_run, "Report only, write no mesh");
   command

@@ -13,7 +13,6 @@
 #include "Console.hh"
 #include "Files.hh"
 #include "HalfFace/Config.hh"
-#include "HalfFace/Errors.hh"
 #include "Json.hh"
 
 namespace hfr::app {
@@ -49,22 +48,6 @@ std::vector<std::string> arguments(int argc, char** argv) {
     args.insert(args.begin(), "improve");
   std::reverse(args.begin(), args.end());
   return args;
-}
-
-/// What an exception that reached main() means to the shell.
-ExitCode exit_code_of(const std::exception& error) {
-  if (const auto* failure = dynamic_cast<const Failure*>(&error)) return failure->code();
-  if (dynamic_cast<const InvalidInput*>(&error)) return ExitCode::kUsage;
-  if (dynamic_cast<const ResourceLimit*>(&error)) return ExitCode::kLimit;
-  if (dynamic_cast<const std::bad_alloc*>(&error)) return ExitCode::kLimit;
-  if (dynamic_cast<const std::length_error*>(&error)) return ExitCode::kLimit;
-  if (dynamic_cast<const DeviceError*>(&error)) return ExitCode::kDevice;
-  return ExitCode::kInternal;
-}
-
-std::string message_of(const std::exception& error) {
-  if (dynamic_cast<const std::bad_alloc*>(&error)) return "not enough memory; nothing was written";
-  return error.what();
 }
 
 ExitCode run(const Command& command, const CommonOptions& common) {
