@@ -160,14 +160,15 @@ std::size_t AsciiSource::count(std::size_t integers, std::size_t reals) {
   return text_.count(integers + reals, "number of entries");
 }
 
-std::size_t AsciiSource::skip() {
+std::size_t AsciiSource::announced() {
   if (text_.at_end()) text_.fail("the file ends in the middle of a section");
   const std::string_view first = text_.peek_word();
-  const bool has_count =
-      !first.empty() && std::all_of(first.begin(), first.end(), [](char c) { return '0' <= c && c <= '9'; });
-  const auto announced = has_count ? static_cast<std::size_t>(text_.integer()) : 0;
+  const bool is_count = std::all_of(first.begin(), first.end(), [](char c) { return '0' <= c && c <= '9'; });
+  return is_count ? static_cast<std::size_t>(text_.integer()) : 0;
+}
+
+void AsciiSource::skip() {
   while (!text_.at_end() && !is_keyword(text_.peek_word())) text_.word();
-  return announced;
 }
 
 // --------------------------------------------------------------------------------------------------- binary
@@ -256,7 +257,7 @@ std::optional<Heading> BinarySource::next() {
   return std::nullopt;
 }
 
-std::size_t BinarySource::skip() {
+std::size_t BinarySource::announced() {
   const std::int64_t announced = integer();
   return announced < 0 ? 0 : static_cast<std::size_t>(announced);
 }

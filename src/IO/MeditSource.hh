@@ -65,8 +65,10 @@ class AsciiSource {
     return text_.integer_in(low, high, what);
   }
   std::int64_t short_integer() { return text_.integer(); }
-  /// Passes over the section's entries; returns how many it announces, 0 when it says nothing.
-  std::size_t skip();
+  /// How many entries the section announces, 0 when it says nothing; for sections that skip() then passes
+  /// over.
+  std::size_t announced();
+  void skip();
   [[noreturn]] void fail(std::string_view message) const { text_.fail(message); }
 
  private:
@@ -84,7 +86,8 @@ class BinarySource {
   double value();
   std::int64_t integer_in(std::int64_t low, std::int64_t high, std::string_view what);
   std::int64_t short_integer();  ///< always of 32 bits
-  std::size_t skip();
+  std::size_t announced();
+  void skip() {}
   [[noreturn]] void fail(std::string_view message) const;
 
  private:

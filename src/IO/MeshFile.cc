@@ -18,18 +18,12 @@ struct Format {
 
 /// The formats that are built in. A new one is a row here, two declarations in Formats.hh, and its sources.
 constexpr Format kFormats[] = {
-    {".mesh", read_medit, write_medit},
-    {".meshb", read_meditb, write_meditb},
-    {".node", read_tetgen, write_tetgen},
-    {".ele", read_tetgen, write_tetgen},
-    {".face", read_tetgen, write_tetgen},
-    {".ovm", read_ovm, write_ovm},
-    {".msh", read_gmsh, write_gmsh},
-    {".vtk", read_vtk, write_vtk},
-    {".vtu", read_vtu, write_vtu},
-    {".stl", read_surface, write_surface},
-    {".obj", read_surface, write_surface},
-    {".off", read_surface, write_surface},
+    {".mesh", read_medit, write_medit},    {".meshb", read_meditb, write_meditb},
+    {".node", read_tetgen, write_tetgen},  {".ele", read_tetgen, write_tetgen},
+    {".face", read_tetgen, write_tetgen},  {".ovm", read_ovm, write_ovm},
+    {".msh", read_gmsh, write_gmsh},       {".vtk", read_vtk, write_vtk},
+    {".vtu", read_vtu, write_vtu},         {".stl", read_surface, write_surface},
+    {".obj", read_surface, write_surface}, {".off", read_surface, write_surface},
     {".ply", read_surface, write_surface},
 };
 
@@ -56,13 +50,25 @@ std::vector<std::string> all_extensions() {
   return extensions;
 }
 
+/// Messages quote the file, which may have anything in it; they are lines all the same.
+std::string one_line(std::string message) {
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return c < ' ' || c == 0x7f; }, ' ');
+  return message;
+}
+
 }  // namespace
 
 MeshData read_mesh(const std::filesystem::path& path) {
   const Format& format = format_of(path, readable_extensions());
   const InputFile file(path);
   HFR_REQUIRE(!file.bytes().empty(), path.string() + ": the file is empty");
-  MeshData mesh = format.read(file);
+  MeshData mesh;
+  try {
+    mesh = format.read(file);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(one_line(error.what()));
+  }
   validate(mesh, path.string());
   return mesh;
 }

@@ -121,11 +121,12 @@ class MeditReader {
   }
 
   void skip(const Heading& heading) {
-    const std::size_t n = in_.skip();
+    const std::size_t n = in_.announced();
     if (n > 0 && medit::is_unsupported_cell(heading.name)) {
       in_.fail(std::to_string(n) + " " + std::string(heading.name) +
                ": only tetrahedra of first and second order are read");
     }
+    in_.skip();
     const std::string name =
         heading.name.empty() ? "section " + std::to_string(heading.code) : std::string(heading.name);
     if (n > 0 || heading.keyword == Keyword::kUnknown) {

@@ -62,6 +62,7 @@ void read_solution(const InputFile& file, MeshData& mesh) {
     } else if (heading->keyword == Keyword::kSolAtTetrahedra) {
       keep(read_fields(in), mesh.cells.size(), "cells", name, mesh.cell_fields, mesh.notes);
     } else {
+      in.announced();
       in.skip();
       mesh.notes.push_back(name + ": " + std::string(heading->name) + " is not kept");
     }

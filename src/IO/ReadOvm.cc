@@ -57,6 +57,9 @@ class OvmReader {
     read_faces();
     read_cells();
     while (!in_.at_end()) read_property();
+    if (!in_.ends_with_line_break()) {
+      mesh_.notes.emplace_back("the last line has no end; the file may have been cut short");
+    }
     take_elements();
     return std::move(mesh_);
   }

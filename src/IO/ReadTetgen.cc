@@ -61,8 +61,12 @@ class TetgenReader {
     }
   }
 
-  static void expect_end(TextScanner& in) {
+  void expect_end(TextScanner& in) {
     if (!in.at_end()) in.fail("more lines than the first line says");
+    if (!in.ends_with_line_break()) {
+      mesh_.notes.push_back(std::filesystem::path(in.name()).filename().string() +
+                            ": the last line has no end; the file may have been cut short");
+    }
   }
 
   static int label(TextScanner& in) {

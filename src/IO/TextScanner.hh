@@ -33,6 +33,8 @@ class TextScanner {
   void seek(std::size_t offset) { at_ = begin_ + offset; }
   std::string_view text() const { return {begin_, static_cast<std::size_t>(end_ - begin_)}; }
   const std::string& name() const { return name_; }
+  /// False: the file may have been cut in the middle of its last number.
+  bool ends_with_line_break() const { return begin_ == end_ || end_[-1] == '\n' || end_[-1] == '\r'; }
   std::size_t line() const;             ///< 1-based, of the current position; O(bytes before it)
   [[noreturn]] void fail(std::string_view message) const;
 

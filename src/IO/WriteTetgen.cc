@@ -103,7 +103,8 @@ Notes write_tetgen(const std::filesystem::path& path, const MeshData& mesh, cons
   std::unique_ptr<OutputFile> faces;
   std::unique_ptr<OutputFile> edges;
   std::error_code ignored;
-  if (!mesh.triangles.empty() || std::filesystem::exists(part(".face"), ignored)) {
+  const bool asked_for_faces = path == part(".face");
+  if (!mesh.triangles.empty() || asked_for_faces || std::filesystem::exists(part(".face"), ignored)) {
     faces = std::make_unique<OutputFile>(part(".face"));
     write_elements(*faces, mesh.triangles, mesh.triangle_labels);
   }

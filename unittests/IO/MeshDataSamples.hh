@@ -2,6 +2,7 @@
 #ifndef HFR_UNITTESTS_IO_MESH_DATA_SAMPLES_HH
 #define HFR_UNITTESTS_IO_MESH_DATA_SAMPLES_HH
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
@@ -11,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "HalfFace/Errors.hh"
 #include "IO/MeshData.hh"
+#include "IO/MeshFile.hh"
 
 namespace hfr::io::samples {
 
@@ -112,12 +115,40 @@ class TemporaryFolder {
 };
 
 inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::filesystem::remove(path);  // some file systems wait for the disk when a file is cut to nothing
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
 inline std::string read_bytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// What read_mesh says of a file with these bytes: the message of its error without the folder, "ok" for
+/// none.
+inline std::string message_of_reading(const TemporaryFolder& folder, const std::string& name,
+                                      const std::string& bytes) {
+  write_bytes(folder / name, bytes);
+  try {
+    read_mesh(folder / name);
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    const std::string prefix = folder.path().string() + "/";
+    return message.starts_with(prefix) ? message.substr(prefix.size()) : "no path: " + message;
+  }
+  return "ok";
+}
+
+inline MeshData read_text(const std::string& name, const std::string& bytes) {
+  const TemporaryFolder folder;
+  write_bytes(folder / name, bytes);
+  return read_mesh(folder / name);
+}
+
+/// Does one of the lines have this in it?
+inline bool mentions(const std::vector<std::string>& lines, const std::string& what) {
+  return std::any_of(lines.begin(), lines.end(),
+                     [&](const std::string& line) { return line.find(what) != std::string::npos; });
 }
 
 }  // namespace hfr::io::samples

@@ -57,7 +57,7 @@ TEST(TextScanner, WhatIsNoFiniteNumberIsNamedWithItsLine) {
   EXPECT_EQ(message("nan"), "f.txt:1: expected a finite number, found 'nan'");
   EXPECT_EQ(message("-inf"), "f.txt:1: expected a finite number, found '-inf'");
   EXPECT_EQ(message("1e400"), "f.txt:1: expected a number that fits a double, found '1e400'");
-  EXPECT_EQ(message("\xff\x01"), "f.txt:1: expected a number, found '??'");
+  EXPECT_EQ(message("\xff\x01"), "f.txt:1: expected a number, found '\?\?'");
   EXPECT_EQ(message("+-1"), "f.txt:1: expected a number, found '+-1'");
   EXPECT_EQ(message(" \n"), "f.txt:2: the file ends too early: expected a number");
 }
