@@ -103,7 +103,7 @@ class LegacyReader {
   ValueType value_type();
   void end_header_line();
   /// Throws when the rest of the file is too short for `n` items of `components` values.
-  std::size_t total(std::size_t n, std::size_t components, ValueType type, std::string_view what) const;
+  std::size_t total(std::size_t n, std::size_t components, ValueType type, std::string_view what);
   template <class T>
   void read_values(ValueType type, std::size_t n, T* out);
   void skip_strings(std::size_t n);
@@ -179,14 +179,16 @@ void LegacyReader::end_header_line() {
 }
 
 std::size_t LegacyReader::total(std::size_t n, std::size_t components, ValueType type,
-                                std::string_view what) const {
+                                std::string_view what) {
   const std::size_t left = scan_.text().size() - scan_.offset();
   std::size_t most = (left + 1) / 2;  // a number and the space before the next
   if (type.kind == ValueType::Kind::kString) most = left;
   if (binary_ && type.kind == ValueType::Kind::kNumber) most = left / size_of(type.number);
   if (binary_ && type.kind == ValueType::Kind::kBit) most = 8 * left;
-  if (n > most / std::max<std::size_t>(components, 1))
+  if (n > most / std::max<std::size_t>(components, 1)) {
+    if (!binary_) scan_.seek(scan_.offset() - 1);  // the line that says how many
     fail(std::to_string(n) + " " + std::string(what) + " are more than the rest of the file can hold");
+  }
   return n * components;
 }
 
