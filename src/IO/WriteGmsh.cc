@@ -117,6 +117,7 @@ void write_field(Sink& sink, const Field& field, bool on_points, std::size_t cou
     notes.push_back("Gmsh holds fields of 1 to 9 components: '" + field.name + "' is left out");
     return;
   }
+  if (field.integer) notes.push_back("Gmsh has no integer fields: '" + field.name + "' is written as reals");
   if (components != 1 && components != 3 && components != 9) {
     notes.push_back("Gmsh draws fields of 1, 3 or 9 components: '" + field.name + "' keeps its " +
                     std::to_string(components));
@@ -177,9 +178,6 @@ Notes write_gmsh(const std::filesystem::path& path, const MeshData& mesh, const 
     write_field(sink, field, false, mesh.cells.size(), layout.dimensions[3].first_tag, notes);
   }
   out.commit();
-  if (variant == "4.0" && options.binary) {
-    notes.push_back("Gmsh 4.2 and later read version 4.0 in ASCII only: choose 4.1 for binary");
-  }
   if (has_negative(layout)) notes.push_back("Gmsh takes a negative label for its positive one, reversed");
   if (!mesh.fixed_vertices.empty()) notes.push_back("Gmsh holds no fixed vertices: they are left out");
   return notes;

@@ -53,6 +53,7 @@ TEST_P(GmshRoundTrip, EverythingThatTheFormatHoldsComesBack) {
   expect_same(back, mesh);
   EXPECT_TRUE(back.notes.empty());
   EXPECT_TRUE(has_note(file.notes, "fixed"));
+  EXPECT_TRUE(has_note(file.notes, "integer fields: 'rank'"));
 }
 
 TEST_P(GmshRoundTrip, RandomBitsAndInterleavedRegionsComeBackInOrder) {
