@@ -42,7 +42,7 @@ struct CheckResult {
   std::string message;  ///< one line; empty when no rule is broken
 
   explicit operator bool() const { return rule == Rule::kNone; }
-  friend bool operator==(const CheckResult& result, Rule rule) { return result.rule == rule; }
+  friend bool operator==(const CheckResult& result, Rule wanted) { return result.rule == wanted; }
 };
 std::ostream& operator<<(std::ostream& out, const CheckResult& result);
 

@@ -483,14 +483,16 @@ class TetMesh {
 /// What build() had to mend.
 struct BuildReport {
   bool flipped = false;                ///< the file orders every cell the other way round
-  std::vector<CellHandle> reoriented;  ///< cells whose order contradicted their neighbours'
+  std::vector<CellHandle> reoriented;  ///< cells whose order contradicted their neighbours', or the whole's
 };
 
 /// Builds the connectivity of a mesh from arrays: n points, m cells of four 0-based point indices in either
 /// orientation. Cells that contradict their neighbours are put into the neighbours' orientation, which may
-/// make them inverted: that is the truth about them; the whole is flipped when most cells are then negative.
-/// Handles equal array indices. Throws InvalidInput for an index out of range, a repeated vertex in a cell, a
-/// coordinate that is not finite, a face with three cells, or cells that cannot be oriented alike.
+/// make them inverted: that is the truth about them. The whole is flipped when most cells are then negative;
+/// a component that connects to the rest through no face, and most of whose cells are negative, is turned by
+/// itself. Handles equal array indices. Throws InvalidInput for an index out of range, a repeated vertex in a
+/// cell, a coordinate that is not finite, a face with three cells, a cell given twice, or cells that cannot
+/// be oriented alike; ResourceLimit for more cells than an index can count.
 TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells, par::Policy policy = {},
               BuildReport* report = nullptr);
 

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HalfFace/Properties.hh"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "HalfFace/Check.hh"
+#include "HalfFace/Reorder.hh"
+#include "Meshes.hh"
+#include "Oracle.hh"
+
+namespace hfr {
+namespace {
+
+template <class Property, class Key>
+concept Indexable = requires(Property p, Key key) {
+  p[key];
+};
+static_assert(Indexable<VertexProperty<int>, VertexHandle> && Indexable<CellProperty<int>, CellHandle>);
+static_assert(!Indexable<VertexProperty<int>, CellHandle> && !Indexable<CellProperty<int>, VertexHandle>);
+static_assert(!Indexable<VertexProperty<int>, std::size_t> && !Indexable<VertexProperty<int>, int>);
+static_assert(!Indexable<CellProperty<bool>, HalfFaceHandle>);
+
+TEST(Property, RequestedTwiceIsTheSame) {
+  TetMesh mesh = test::kuhn_box(1);
+  auto height = mesh.request_vertex_property<double>("height", 1.5);
+  EXPECT_EQ(height[VertexHandle(3)], 1.5);
+  height[VertexHandle(3)] = 7;
+  const auto again = mesh.request_vertex_property<double>("height", 0.0);
+  EXPECT_EQ(again[VertexHandle(3)], 7);
+  EXPECT_EQ(again[VertexHandle(2)], 1.5);
+  EXPECT_EQ(again.default_value(), 1.5);
+  EXPECT_EQ(mesh.properties().vertices.names(), std::vector<std::string>{"height"});
+}
+
+TEST(Property, KindsDoNotShareNames) {
+  TetMesh mesh = test::kuhn_box(1);
+  mesh.request_vertex_property<int>("n");
+  mesh.request_cell_property<std::string>("n", "x");
+  mesh.request_edge_property<double>("n");
+  mesh.request_halfedge_property<float>("n");
+  mesh.request_face_property<char>("n");
+  mesh.request_halfface_property<long>("n");
+  mesh.request_mesh_property<bool>("n");
+  EXPECT_EQ(mesh.request_cell_property<std::string>("n")[CellHandle(5)], "x");
+}
+
+TEST(Property, OtherTypeIsRefusedAndBothAreNamed) {
+  TetMesh mesh = test::kuhn_box(1);
+  mesh.request_cell_property<double>("stress");
+  try {
+    mesh.request_cell_property<int>("stress");
+    FAIL() << "no exception";
+  } catch (const InvalidInput& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("\"stress\""), testing::HasSubstr("double"),
+                                             testing::HasSubstr("int")));
+  }
+}
+
+TEST(Property, GrowsWithTheMeshByItsDefault) {
+  TetMesh mesh = test::single_cell();
+  auto mark = mesh.request_vertex_property<bool>("mark", true);
+  auto weight = mesh.request_cell_property<int>("weight", 4);
+  mark[VertexHandle(0)] = false;
+  const VertexHandle v = mesh.add_vertex({1, 1, 1});
+  const CellHandle c = mesh.add_cell(VertexHandle(1), VertexHandle(2), VertexHandle(3), v);
+  EXPECT_TRUE(mark[v]);
+  EXPECT_FALSE(mark[VertexHandle(0)]);
+  EXPECT_EQ(weight[c], 4);
+  EXPECT_EQ(weight.size(), 2U);
+  weight.fill(9);
+  EXPECT_THAT(weight.values(), testing::ElementsAre(9, 9));
+}
+
+TEST(Property, CopyOfAMeshHasItsOwnValues) {
+  TetMesh mesh = test::kuhn_box(1);
+  auto height = mesh.request_vertex_property<int>("height", 0);
+  auto crease = mesh.request_edge_property<int>("crease", 0);
+  auto title = mesh.request_mesh_property<std::string>("title", "box");
+  height[VertexHandle(1)] = 1;
+  crease[{VertexHandle(0), VertexHandle(1)}] = 1;
+  TetMesh copy = mesh;
+  height[VertexHandle(1)] = 2;
+  crease[{VertexHandle(0), VertexHandle(1)}] = 2;
+  *title = "changed";
+  EXPECT_EQ(copy.request_vertex_property<int>("height")[VertexHandle(1)], 1);
+  EXPECT_EQ(copy.request_edge_property<int>("crease").get({VertexHandle(1), VertexHandle(0)}), 1);
+  EXPECT_EQ(*copy.request_mesh_property<std::string>("title"), "box");
+  copy = mesh;
+  EXPECT_EQ(copy.request_vertex_property<int>("height")[VertexHandle(1)], 2);
+  const TetMesh moved = std::move(mesh);
+  EXPECT_EQ(height.size(), moved.n_vertices());
+}
+
+TEST(Property, RemovedKeepsItsValuesForWhoHoldsThem) {
+  TetMesh mesh = test::single_cell();
+  auto p = mesh.request_cell_property<int>("p", 3);
+  EXPECT_TRUE(mesh.properties().cells.remove("p"));
+  EXPECT_FALSE(mesh.properties().cells.remove("p"));
+  EXPECT_EQ(p[CellHandle(0)], 3);
+  EXPECT_NO_THROW(mesh.request_cell_property<double>("p"));
+}
+
+TEST(TupleProperties, OrderCountsOnlyForDirectedThings) {
+  TetMesh mesh = test::single_cell();
+  const auto v = mesh.halfface_vertices(HalfFaceHandle(0));
+  auto edge = mesh.request_edge_property<int>("e", -1);
+  auto halfedge = mesh.request_halfedge_property<int>("he", -1);
+  auto face = mesh.request_face_property<int>("f", -1);
+  auto halfface = mesh.request_halfface_property<int>("hf", -1);
+  edge[{v[0], v[1]}] = 1;
+  halfedge[{v[0], v[1]}] = 2;
+  face[v] = 3;
+  halfface[v] = 4;
+  EXPECT_EQ(edge.get({v[1], v[0]}), 1);
+  EXPECT_EQ(halfedge.get({v[0], v[1]}), 2);
+  EXPECT_EQ(halfedge.get({v[1], v[0]}), -1);
+  EXPECT_EQ(face.get({v[1], v[0], v[2]}), 3);
+  EXPECT_EQ(halfface.get({v[1], v[2], v[0]}), 4);
+  EXPECT_EQ(halfface.get({v[1], v[0], v[2]}), -1);
+  EXPECT_EQ(halfface.get(mesh, HalfFaceHandle(0)), 4);
+  EXPECT_EQ(edge.get(mesh, mesh.find_edge(v[0], v[1])), 1);
+  EXPECT_EQ(halfedge.get(mesh, mesh.find_halfedge(v[0], v[1])), 2);
+  EXPECT_EQ(face.at(mesh, FaceHandle(0)), 3);
+  EXPECT_EQ(edge.size(), 1U);
+  EXPECT_TRUE(edge.erase({v[1], v[0]}));
+  EXPECT_FALSE(edge.has({v[0], v[1]}));
+}
+
+/// Values that name what they belong to by position, which no renumbering changes.
+struct Tracked {
+  explicit Tracked(TetMesh& m)
+      : mesh(m),
+        vertex(m.request_vertex_property<Vec3>("at")),
+        cell(m.request_cell_property<Vec3>("centre")),
+        edge(m.request_edge_property<Vec3>("middle")),
+        halfedge(m.request_halfedge_property<Vec3>("direction")),
+        face(m.request_face_property<Vec3>("sum")),
+        halfface(m.request_halfface_property<Vec3>("normal")) {}
+
+  Vec3 centre(CellHandle c) const {
+    Vec3 sum;
+    for (VertexHandle v : mesh.cell(c).v) sum = sum + mesh.point(v);
+    return sum;
+  }
+  template <std::size_t N>
+  Vec3 sum(const std::array<VertexHandle, N>& vertices) const {
+    Vec3 s;
+    for (VertexHandle v : vertices) s = s + mesh.point(v);
+    return s;
+  }
+  Vec3 direction(HalfEdgeHandle e) const {
+    return mesh.point(mesh.to_vertex(e)) - mesh.point(mesh.from_vertex(e));
+  }
+  Vec3 normal(HalfFaceHandle h) const {
+    const auto v = mesh.halfface_vertices(h);
+    return cross(mesh.point(v[1]) - mesh.point(v[0]), mesh.point(v[2]) - mesh.point(v[0]));
+  }
+
+  void write() {
+    for (VertexHandle v : mesh.vertices()) vertex[v] = mesh.point(v);
+    for (CellHandle c : mesh.cells()) cell[c] = centre(c);
+    for (EdgeHandle e : mesh.edges()) edge.set(mesh, e, sum(mesh.edge_vertices(e)));
+    for (HalfEdgeHandle e : mesh.halfedges()) halfedge.set(mesh, e, direction(e));
+    for (FaceHandle f : mesh.faces()) face.set(mesh, f, sum(mesh.face_vertices(f)));
+    for (HalfFaceHandle h : mesh.halffaces()) halfface.set(mesh, h, normal(h));
+  }
+  void expect_right() const {
+    ASSERT_EQ(vertex.size(), mesh.n_vertices());
+    ASSERT_EQ(cell.size(), mesh.n_cells());
+    const auto near = [](Vec3 a, Vec3 b) { EXPECT_LT(norm(a - b), 1e-12); };
+    for (VertexHandle v : mesh.vertices()) near(vertex[v], mesh.point(v));
+    for (CellHandle c : mesh.cells()) near(cell[c], centre(c));
+    for (EdgeHandle e : mesh.edges()) near(edge.get(mesh, e), sum(mesh.edge_vertices(e)));
+    for (HalfEdgeHandle e : mesh.halfedges()) near(halfedge.get(mesh, e), direction(e));
+    for (FaceHandle f : mesh.faces()) near(face.get(mesh, f), sum(mesh.face_vertices(f)));
+    for (HalfFaceHandle h : mesh.halffaces()) near(halfface.get(mesh, h), normal(h));
+  }
+
+  TetMesh& mesh;
+  VertexProperty<Vec3> vertex;
+  CellProperty<Vec3> cell;
+  EdgeProperty<Vec3> edge;
+  HalfEdgeProperty<Vec3> halfedge;
+  FaceProperty<Vec3> face;
+  HalfFaceProperty<Vec3> halfface;
+};
+
+TEST(Properties, FollowGarbageCollection) {
+  TetMesh mesh = test::kuhn_box(3);
+  Tracked tracked(mesh);
+  tracked.write();
+  for (Index c = 0; c < mesh.n_cells(); c += 3) mesh.delete_cell(CellHandle(c));
+  mesh.delete_vertex(VertexHandle(21));
+  mesh.collect_garbage({.drop_unused_vertices = true});
+  tracked.expect_right();
+  EXPECT_EQ(tracked.edge.size(), test::Oracle(mesh).edges().size())
+      << "values of edges that are gone must go";
+  EXPECT_EQ(tracked.halfface.size(), mesh.n_halffaces());
+}
+
+TEST(Properties, FollowReordering) {
+  TetMesh mesh = test::carved_ball(6);
+  Tracked tracked(mesh);
+  tracked.write();
+  reorder(mesh);
+  tracked.expect_right();
+  reorder(mesh, {.curve = SpaceCurve::kMorton});
+  tracked.expect_right();
+}
+
+TEST(CopyCellData, GivesRegionStatusAndProperties) {
+  TetMesh mesh = test::kuhn_box(1);
+  auto p = mesh.request_cell_property<int>("p", 0);
+  const CellHandle from(2);
+  const CellHandle to(mesh.n_cells());
+  mesh.set_region(from, 5);
+  mesh.set_tagged(from);
+  p[from] = 8;
+  mesh.resize_cells(mesh.n_cells() + 1);
+  mesh.copy_cell_data(from, to);
+  EXPECT_EQ(mesh.region(to), 5);
+  EXPECT_TRUE(mesh.is_tagged(to));
+  EXPECT_FALSE(mesh.is_selected(to));
+  EXPECT_EQ(p[to], 8);
+}
+
+TEST(CopyVertexData, GivesPropertiesAndNoConstraint) {
+  TetMesh mesh = test::single_cell();
+  auto p = mesh.request_vertex_property<int>("p", 0);
+  p[VertexHandle(0)] = 8;
+  mesh.set_fixed(VertexHandle(0));
+  mesh.set_selected(VertexHandle(0));
+  const VertexHandle v = mesh.add_vertex({});
+  mesh.set_tagged(v);
+  mesh.copy_vertex_data(VertexHandle(0), v);
+  EXPECT_EQ(p[v], 8);
+  EXPECT_TRUE(mesh.is_selected(v));
+  EXPECT_FALSE(mesh.is_fixed(v));
+  EXPECT_FALSE(mesh.is_tagged(v));
+}
+
+TEST(CellStatus, BitsAreIndependent) {
+  TetMesh mesh = test::kuhn_box(1);
+  const CellHandle c(1);
+  EXPECT_FALSE(mesh.is_fixed(c) || mesh.is_selected(c) || mesh.is_tagged(c));
+  mesh.set_selected(c);
+  mesh.set_fixed(c);
+  mesh.set_selected(c, false);
+  EXPECT_TRUE(mesh.is_fixed(c));
+  EXPECT_FALSE(mesh.is_selected(c) || mesh.is_tagged(c));
+  EXPECT_FALSE(mesh.is_fixed(CellHandle(0)));
+}
+
+}  // namespace
+}  // namespace hfr
