@@ -10,6 +10,7 @@ install(TARGETS hfremesh EXPORT hfremeshTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${hfr_include_dir}
+  FILE_SET eigen DESTINATION ${hfr_include_dir}
   FILE_SET kernels DESTINATION ${hfr_include_dir}
   FILE_SET generated DESTINATION ${hfr_include_dir})
 install(EXPORT hfremeshTargets NAMESPACE hfremesh:: DESTINATION ${hfr_package_dir})
