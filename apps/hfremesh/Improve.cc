@@ -92,8 +92,10 @@ Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const Comman
                              const CommonOptions& common, const SignalGuard& signals) {
   using Style = ProgressView::Style;
   const bool bar = !common.quiet && stderr_is_terminal();
-  ProgressView view(line.progress ? Style::kLines : bar ? Style::kBar : Style::kNone);
-  options.progress = [&view](const Progress& progress) { view.show(progress); };
+  const Style style = line.progress ? Style::kLines : bar ? Style::kBar : Style::kNone;
+  ProgressView view(style);
+  // Each call costs improve() a look at every cell, so it is asked for only where it is seen.
+  if (style != Style::kNone) options.progress = [&view](const Progress& progress) { view.show(progress); };
   options.cancel = [&signals] { return signals.cancelled(); };
   return improve(mesh, options);
 }

@@ -3,11 +3,26 @@
 #define HFR_OPERATORS_METRICS_HH
 
 #include "Quality/Metrics.hh"
+#include "kernels/untangle.h"
 
-/// Instantiates an operator template for the metrics that runs use: the bulk's, the polish's, and any other
-/// through a callable.
+namespace hfr {
+
+/// What the untangling stage maximises: volume-length of positive cells, volume of the others.
+struct Untangling {
+  double per_volume = 1;  ///< 1 / six times a typical cell volume of the mesh
+
+  double operator()(Vec3 a, Vec3 b, Vec3 c, Vec3 d) const {
+    return hfr_untangle_decision(to_real3(a), to_real3(b), to_real3(c), to_real3(d), per_volume);
+  }
+};
+
+}  // namespace hfr
+
+/// Instantiates an operator template for the metrics that runs use: the untangling's, the bulk's, the
+/// polish's, and any other through a callable.
 #define HFR_INSTANTIATE_FOR_METRICS(Operator) \
   template struct Operator<VolumeLength>;     \
+  template struct Operator<Untangling>;       \
   template struct Operator<MinSine2>;         \
   template struct Operator<MinDihedral>;      \
   template struct Operator<CustomMetric>;

@@ -2,7 +2,7 @@
 // D'Amato & Venere, JPDC 73 (2013), section 3.3: "candidate positions" at radius r round the vertex.
 #include "Operators/SmoothCandidates.hh"
 
-#include <cmath>
+#include <algorithm>
 
 #include "Operators/Metrics.hh"
 #include "Operators/StarForm.hh"
@@ -28,30 +28,48 @@ constexpr std::array<Vec3, 14> kDirections = {{{1, 0, 0},
                                                {kDiagonal, -kDiagonal, -kDiagonal},
                                                {-kDiagonal, -kDiagonal, -kDiagonal}}};
 
-/// Half the mean length of the star's edges; each edge counts once a face that it bounds, which is near
-/// enough.
-double initial_radius(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
+/// Where candidates may lie, relative to the vertex, and at what distance they begin.
+struct Section {
+  double radius = 0;  ///< half the mean length of the star's edges; an edge counts once a face that it bounds
+  Vec3 low, high;     ///< box of the star
+
+  bool contains(Vec3 x) const {
+    return x.x >= low.x && x.x <= high.x && x.y >= low.y && x.y <= high.y && x.z >= low.z && x.z <= high.z;
+  }
+};
+
+Section section_of(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
+  Section section;
   const Vec3 origin = mesh.point(v);
   double sum = 0;
   for (HalfFaceHandle h : link) {
     const auto f = mesh.halfface_vertices(h);
     for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 p = mesh.point(f[i]);
-      sum += std::sqrt(norm2(p - origin)) + std::sqrt(norm2(mesh.point(f[(i + 1) % 3]) - p));
+      const Vec3 p = mesh.point(f[i]) - origin;
+      sum += norm(p) + norm(mesh.point(f[(i + 1) % 3]) - mesh.point(f[i]));
+      for (int d = 0; d < 3; ++d) {
+        section.low[d] = std::min(section.low[d], p[d]);
+        section.high[d] = std::max(section.high[d], p[d]);
+      }
     }
   }
-  return 0.5 * sum / (6.0 * static_cast<double>(link.size()));
+  section.radius = 0.5 * sum / (6.0 * static_cast<double>(link.size()));
+  return section;
 }
 
-/// The search proper. worst(x, floor): smallest decision value with the vertex moved by x.
+/// The search proper. worst(x, floor): smallest decision value with the vertex moved by x. Candidates stay in
+/// the box of the star: outside it no cell can be right, but the quality of an inverted cell may rise on the
+/// way to infinity.
 template <class Worst>
-Vec3 descend(double radius, int halvings, double worst_now, Worst&& worst) {
+Vec3 ascend(const Section& section, int halvings, double worst_now, Worst&& worst) {
   Vec3 place;
+  double radius = section.radius;
   for (int level = 0; level < halvings;) {
     double best = worst_now;
     Vec3 best_place = place;
     for (Vec3 direction : kDirections) {
       const Vec3 candidate = place + radius * direction;
+      if (!section.contains(candidate)) continue;
       const double q = worst(candidate, best);
       if (q > best) {
         best = q;
@@ -77,15 +95,15 @@ std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandl
                                                 std::span<const double> quality) const {
   Move move;
   move.old_worst = worst_of(link, quality);
-  const double radius = initial_radius(mesh, v, link);
+  const Section section = section_of(mesh, v, link);
   const Vec3 origin = mesh.point(v);
   Vec3 place;
   if constexpr (std::is_same_v<Metric, VolumeLength>) {
     StarForm star(mesh, v, link);
     place =
-        descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) { return star.worst(x, floor); });
+        ascend(section, halvings, move.old_worst, [&](Vec3 x, double floor) { return star.worst(x, floor); });
   } else {
-    place = descend(radius, halvings, move.old_worst, [&](Vec3 x, double floor) {
+    place = ascend(section, halvings, move.old_worst, [&](Vec3 x, double floor) {
       return worst_with(mesh, v, link, origin + x, metric, floor);
     });
   }
@@ -102,6 +120,7 @@ std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandl
       const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
       const;
 HFR_INSTANTIATE(VolumeLength)
+HFR_INSTANTIATE(Untangling)
 HFR_INSTANTIATE(MinSine2)
 HFR_INSTANTIATE(MinDihedral)
 HFR_INSTANTIATE(CustomMetric)

@@ -34,6 +34,7 @@ std::optional<Move> LaplacianSearch::operator()(const TetMesh& mesh, VertexHandl
       const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
       const;
 HFR_INSTANTIATE(VolumeLength)
+HFR_INSTANTIATE(Untangling)
 HFR_INSTANTIATE(MinSine2)
 HFR_INSTANTIATE(MinDihedral)
 HFR_INSTANTIATE(CustomMetric)

@@ -143,6 +143,7 @@ Tet StarFromVertex<kCluster, Metric>::identity(const TetMesh& mesh, Seed seed) c
   template struct StarFromVertex<Cluster::kFace, Metric>; \
   template struct StarFromVertex<Cluster::kNode, Metric>;
 HFR_INSTANTIATE(VolumeLength)
+HFR_INSTANTIATE(Untangling)
 HFR_INSTANTIATE(MinSine2)
 HFR_INSTANTIATE(MinDihedral)
 HFR_INSTANTIATE(CustomMetric)

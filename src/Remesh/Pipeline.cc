@@ -27,6 +27,22 @@ constexpr int kMaxPolishIterations = 60;
 constexpr double kPolishGain = 1.01;
 constexpr int kMaxIdle = 2;
 
+/// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
+double typical_six_volume(const TetMesh& mesh) {
+  if (mesh.n_logical_cells() == 0) return 1.0;
+  Vec3 low = mesh.points()[0];
+  Vec3 high = low;
+  for (Vec3 p : mesh.points()) {
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], p[d]);
+      high[d] = std::max(high[d], p[d]);
+    }
+  }
+  const Vec3 size = high - low;
+  const double volume = 6.0 * size.x * size.y * size.z / static_cast<double>(mesh.n_logical_cells());
+  return volume > 0 ? volume : 1.0;
+}
+
 /// Calls f with a metric functor that the operators are instantiated for.
 template <class F>
 void with_stage_metric(Metric metric, F&& f) {
@@ -98,13 +114,18 @@ std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
 }
 
 void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
-  Stage<VolumeLength> stage(mesh, work, options, control, VolumeLength{}, "untangle");
+  Stage<Untangling> stage(mesh, work, options, control, Untangling{1.0 / typical_six_volume(mesh)},
+                          "untangle");
   std::size_t level = 0;
   std::size_t n_invalid = stage.n_invalid();
   double worst = stage.worst();
   int idle = 0;
   for (int i = 1; i <= kMaxUntangleIterations && stage.n_invalid() > 0 && !control.stopped(); ++i) {
-    const std::size_t changes = stage.iterate(i, Focus{kUntangleFocus[level]}, true);
+    const Focus focus{kUntangleFocus[level]};
+    // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
+    std::size_t changes = has(options.ops, Ops::kSmooth) ? stage.smooth_pass(i, focus) : 0;
+    if (stage.n_invalid() == 0) break;
+    changes += stage.iterate(i, focus, true);
     const bool better = stage.n_invalid() < n_invalid || stage.worst() > worst;
     idle = better ? 0 : idle + 1;
     n_invalid = stage.n_invalid();

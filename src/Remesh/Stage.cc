@@ -189,6 +189,7 @@ template std::size_t Stage<VolumeLength>::star_pass<Cluster::kEdge>(int);
 template std::size_t Stage<VolumeLength>::star_pass<Cluster::kFace>(int);
 template std::size_t Stage<VolumeLength>::star_pass<Cluster::kNode>(int);
 template class Stage<VolumeLength>;
+template class Stage<Untangling>;
 template class Stage<MinSine2>;
 template class Stage<MinDihedral>;
 template class Stage<CustomMetric>;

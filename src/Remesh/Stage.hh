@@ -12,6 +12,7 @@
 #include "HalfFace/TetMesh.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/Metrics.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothLaplacian.hh"
 #include "Operators/SmoothNewton.hh"
