@@ -2,7 +2,7 @@
 #include "Remesh/Improve.hh"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "HalfFace/Errors.hh"
 #include "Remesh/Pipeline.hh"
@@ -12,8 +12,13 @@ namespace hfr {
 namespace {
 
 constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
-constexpr double kFirstGoal = 10;      // degrees; where no goal is given, goals rise from here …
-constexpr double kGoalStep = 5;        // … in these steps while they are met
+/// Degrees; where no goal is given, the worst cells are raised from one of these to the next.
+constexpr std::array<double, 10> kLadder = {1, 2, 4, 7, 10, 15, 20, 25, 30, 35};
+/// Rungs missed in a row that end the climb: what holds a cell below one may give way on the next.
+constexpr int kMaxMissed = 2;
+/// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
+/// and going on would only remove vertices.
+constexpr double kLargestShare = 0.1;
 
 void validate(const ImproveOptions& options) {
   HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
@@ -25,15 +30,16 @@ void validate(const ImproveOptions& options) {
   HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
 }
 
-/// Raises the worst dihedral step by step; a goal that is missed is the last. The next goal starts above what
-/// has been reached.
-void polish_upwards(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
-  double goal = kFirstGoal;
-  while (!control.stopped() && goal < kLargestGoal) {
-    const double now = smallest_dihedral(mesh, options.policy);
-    while (goal <= now) goal += kGoalStep;
-    if (!polish(mesh, work, options, control, goal)) return;
-    control.set_fraction(0.5 + 0.5 * goal / kLargestGoal);
+/// Raises the worst dihedral rung by rung. `floor` is where it stood before: the bulk stage, which knows only
+/// volume-length, may have lowered it.
+void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor) {
+  if (smallest_dihedral(mesh, options.policy) < floor) polish(mesh, work, options, control, floor);
+  int missed = 0;
+  for (double rung : kLadder) {
+    if (control.stopped() || missed == kMaxMissed) return;
+    if (smallest_dihedral(mesh, options.policy) >= rung) continue;
+    missed = polish(mesh, work, options, control, rung, kLargestShare) ? 0 : missed + 1;
+    control.set_fraction(0.5 + 0.5 * rung / kLadder.back());
   }
 }
 
@@ -44,6 +50,7 @@ void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control) {
     run_jpdc2013(mesh, work, options, control);
     return;
   }
+  const double floor = std::max(0.0, smallest_dihedral(mesh, options.policy));
   untangle(mesh, work, options, control);
   control.set_fraction(0.1);
   if (options.min_dihedral) {
@@ -52,7 +59,7 @@ void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control) {
   }
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
-  polish_upwards(mesh, work, options, control);
+  climb(mesh, work, options, control, floor);
 }
 
 }  // namespace

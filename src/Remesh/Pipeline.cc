@@ -149,10 +149,13 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
   });
 }
 
-bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal) {
+bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
+            double largest_share) {
   const double decision = dihedral_decision(goal);
   {
     Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "polish");
+    const auto n_poor = static_cast<double>(stage.n_below(decision));
+    if (n_poor > largest_share * static_cast<double>(mesh.n_logical_cells())) return false;
     if (polish_in(stage, options, control, decision)) return true;
   }
   // What is left may be obtuse only, or give way once obtuse angles do not count.

@@ -21,8 +21,10 @@ void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Run
 /// Improves all cells in options.metric, until an iteration gains little.
 void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
 /// Works on cells with a dihedral below `goal` degrees (or above 180 - goal) until there are none or nothing
-/// helps. True when the smallest dihedral meets the goal.
-bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal);
+/// helps. True when the smallest dihedral meets the goal. Not begun when more than `largest_share` of the
+/// cells miss the goal.
+bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
+            double largest_share = 1);
 /// The paper's pipeline in the paper's form: star operators and candidate smoothing over the whole mesh,
 /// edge → face → node → smooth, a fixed number of iterations.
 void run_jpdc2013(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
