@@ -16,7 +16,7 @@ namespace hfr::io {
 /// A user's field on points or cells.
 struct Field {
   std::string name;
-  int components = 1;          ///< 1 scalar, 3 vector, 6 symmetric tensor, 9 tensor
+  int components = 1;          ///< 1 scalar, 3 vector, 6 symmetric tensor (xx yy zz xy yz xz), 9 tensor
   bool integer = false;        ///< the file stored integers: write them as such where the format can
   std::vector<double> values;  ///< components per item, item by item
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "IO/Formats.hh"
 #include "IO/OutputFile.hh"
@@ -23,20 +22,37 @@ struct Numbering {
   std::vector<std::size_t> first;
 };
 
+/// Linear in the number of items: they are sorted by their smallest vertex in one counting pass, and the few
+/// that share it among themselves.
 template <std::size_t N>
-Numbering number_distinct(const std::vector<std::array<Index, N>>& items) {
-  std::vector<std::array<Index, N>> keys = items;
-  for (auto& key : keys) std::sort(key.begin(), key.end());
-  std::vector<std::size_t> order(items.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return keys[a] != keys[b] ? keys[a] < keys[b] : a < b; });
-  // First the item that each one repeats, then numbers for those that repeat themselves.
+Numbering number_distinct(const std::vector<std::array<Index, N>>& items, std::size_t n_points) {
+  struct Entry {
+    std::array<Index, N> key;
+    std::size_t item;
+  };
+  std::vector<std::size_t> begin(n_points + 1, 0);
+  for (const auto& item : items) ++begin[*std::min_element(item.begin(), item.end()) + 1];
+  for (std::size_t i = 0; i < n_points; ++i) begin[i + 1] += begin[i];
+  std::vector<Entry> entries(items.size());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    Entry entry{items[i], i};
+    std::sort(entry.key.begin(), entry.key.end());
+    entries[next[entry.key[0]]++] = entry;
+  }
+  // First the item that each one repeats, then numbers for those that repeat none before them.
   Numbering found;
   found.number.resize(items.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool repeats = i > 0 && keys[order[i]] == keys[order[i - 1]];
-    found.number[order[i]] = repeats ? found.number[order[i - 1]] : order[i];
+  for (std::size_t point = 0; point < n_points; ++point) {
+    const auto first = entries.begin() + static_cast<std::ptrdiff_t>(begin[point]);
+    const auto last = entries.begin() + static_cast<std::ptrdiff_t>(begin[point + 1]);
+    std::sort(first, last, [](const Entry& a, const Entry& b) {
+      return a.key != b.key ? a.key < b.key : a.item < b.item;
+    });
+    for (auto entry = first; entry != last; ++entry) {
+      const bool repeats = entry != first && entry->key == (entry - 1)->key;
+      found.number[entry->item] = repeats ? found.number[(entry - 1)->item] : entry->item;
+    }
   }
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (found.number[i] == i) {
@@ -67,14 +83,14 @@ Skeleton skeleton_of(const MeshData& mesh) {
       found.faces.push_back({cell[seen[0]], cell[seen[1]], cell[seen[2]]});
     }
   }
-  found.face_numbers = number_distinct(found.faces);
+  found.face_numbers = number_distinct(found.faces, mesh.points.size());
   found.edges.reserve(mesh.edges.size() + 3 * found.face_numbers.first.size());
   found.edges.assign(mesh.edges.begin(), mesh.edges.end());
   for (const std::size_t i : found.face_numbers.first) {
     const Triple& face = found.faces[i];
     for (std::size_t k = 0; k < 3; ++k) found.edges.push_back({face[k], face[(k + 1) % 3]});
   }
-  found.edge_numbers = number_distinct(found.edges);
+  found.edge_numbers = number_distinct(found.edges, mesh.points.size());
   return found;
 }
 
