@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "Tool.hh"
+
+namespace hfr::app::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// Hash of a mesh file as `stats` sees it.
+std::string hash_of(Tool& tool, const std::string& file) {
+  const Outcome outcome = tool.run("stats --json - " + file);
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  return nlohmann::json::parse(outcome.out)["meshes"][0]["hash"];
+}
+
+TEST(Commands, HelpNamesEverySubcommandAndOption) {
+  Tool tool;
+  const Outcome all = tool.run("--help");
+  EXPECT_EQ(all.code, 0);
+  EXPECT_THAT(all.out, AllOf(HasSubstr("improve"), HasSubstr("check"), HasSubstr("stats"),
+                             HasSubstr("convert"), HasSubstr("generate")));
+  EXPECT_THAT(all.err, IsEmpty());
+  const Outcome improve = tool.run("improve --help");
+  EXPECT_EQ(improve.code, 0);
+  for (const char* option :
+       {"--output", "--min-dihedral", "--iterations", "--time-limit", "--ops", "--metric", "--threads",
+        "--compat", "--json", "--quiet", "--verbose", "--progress", "--dry-run"})
+    EXPECT_THAT(improve.out, HasSubstr(option));
+  for (const char* command : {"check", "stats", "convert", "generate", "generate cavity", "generate box",
+                              "generate ball", "generate cylinder"})
+    EXPECT_EQ(tool.run(std::string(command) + " --help").code, 0) << command;
+}
+
+TEST(Commands, VersionIsOneLine) {
+  Tool tool;
+  const Outcome outcome = tool.run("--version");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, ::testing::MatchesRegex("hfremesh [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+TEST(Commands, ImproveIsWhatHappensWithoutASubcommand) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 6 6 6 -o in.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o a.mesh").code, 0);
+  ASSERT_EQ(tool.run("improve in.mesh -o b.mesh").code, 0);
+  ASSERT_EQ(tool.run("-q -o c.mesh in.mesh").code, 0);
+  EXPECT_EQ(tool.content("a.mesh"), tool.content("b.mesh"));
+  EXPECT_EQ(tool.content("a.mesh"), tool.content("c.mesh"));
+}
+
+TEST(Commands, ImproveMayOverwriteItsInput) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 6 6 6 -o in.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o other.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o in.mesh").code, 0);
+  EXPECT_EQ(tool.content("in.mesh"), tool.content("other.mesh"));
+  EXPECT_THAT(tool.files(), ElementsAre("in.mesh", "other.mesh"));
+}
+
+TEST(Commands, DryRunWritesNoMesh) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 6 6 6 -o in.mesh").code, 0);
+  const Outcome outcome = tool.run("in.mesh --dry-run");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("nothing was written"));
+  EXPECT_THAT(tool.files(), ElementsAre("in.mesh"));
+}
+
+TEST(Commands, MeshThatMeetsItsGoalIsUnchanged) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 4 4 4 -o in.mesh").code, 0);
+  const Outcome outcome = tool.run("in.mesh -o out.mesh --min-dihedral 20");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("unchanged"));
+  EXPECT_EQ(hash_of(tool, "in.mesh"), hash_of(tool, "out.mesh"));
+}
+
+TEST(Commands, OutputIsTheSameForAnyNumberOfThreads) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 12 12 12 -o in.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o one.mesh -j 1").code, 0);
+  for (const char* threads : {"2", "3", "7"}) {
+    ASSERT_EQ(tool.run(std::string("in.mesh -o many.mesh -j ") + threads).code, 0);
+    EXPECT_TRUE(tool.content("one.mesh") == tool.content("many.mesh")) << threads << " threads";
+  }
+}
+
+TEST(Commands, ImproveKeepsRegions) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 6 6 6 --jitter 0.3 --regions 2 -o in.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o out.mesh --json out.json").code, 0);
+  const auto report = nlohmann::json::parse(tool.content("out.json"));
+  ASSERT_EQ(report["after"]["regions"].size(), 2U);
+  for (int r : {0, 1})
+    EXPECT_NEAR(report["before"]["regions"][r]["volume"], report["after"]["regions"][r]["volume"], 1e-12);
+}
+
+TEST(Commands, ImproveKeepsLabelsNamesAndFields) {
+  Tool tool;
+  tool.write(
+      "in.vtk",
+      "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n0 0 0\n1 0 0\n0 1 "
+      "0\n"
+      "0 0 1\n0.2 0.2 0.1\nCELLS 2 10\n4 0 1 2 3\n4 0 2 1 4\nCELL_TYPES 2\n10 10\nPOINT_DATA 5\n"
+      "SCALARS heat double 1\nLOOKUP_TABLE default\n1 2 3 4 5.5\nVECTORS flow double\n1 0 0\n0 1 0\n0 0 1\n"
+      "1 1 1\n0.5 0.5 0.5\n");
+  ASSERT_EQ(tool.run("in.vtk -o out.vtk").code, 0);
+  const std::string out = tool.content("out.vtk");
+  EXPECT_THAT(out, AllOf(HasSubstr("heat"), HasSubstr("5.5"), HasSubstr("flow"), HasSubstr("0.5 0.5 0.5")));
+}
+
+TEST(Commands, CompatRunsThePaper) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 8 8 8 -o in.mesh").code, 0);
+  const Outcome outcome = tool.run("in.mesh -o out.mesh --compat jpdc2013 --iterations 2 --json out.json -v");
+  EXPECT_TRUE(outcome.code == 0 || outcome.code == 4) << outcome.err;
+  EXPECT_EQ(nlohmann::json::parse(tool.content("out.json"))["options"]["compat"], "jpdc2013");
+}
+
+TEST(Commands, CheckSaysWhatKindOfFaultItIs) {
+  Tool tool;
+  tool.write("good.mesh", kTwoCells);
+  tool.write("flipped.mesh", kFlippedCells);
+  tool.write("folded.mesh", kFoldedCells);
+  tool.write("renumbered.mesh", kRenumberedCells);
+  EXPECT_EQ(tool.run("check good.mesh").code, 0);
+
+  const Outcome flipped = tool.run("check flipped.mesh");
+  EXPECT_EQ(flipped.code, 0) << flipped.err;
+  EXPECT_THAT(flipped.out, HasSubstr("the other way round as a whole, which is no fault"));
+
+  const Outcome folded = tool.run("check folded.mesh --ids ids.txt");
+  EXPECT_EQ(folded.code, 4);
+  EXPECT_THAT(folded.out, HasSubstr("inverted    1: 1"));
+  EXPECT_THAT(folded.out, Not(HasSubstr("overlap     none")));
+  EXPECT_THAT(tool.content("ids.txt"), HasSubstr("\ninverted 1\n"));
+
+  const Outcome renumbered = tool.run("check renumbered.mesh");
+  EXPECT_EQ(renumbered.code, 4);
+  EXPECT_THAT(renumbered.out, HasSubstr("ordered against their neighbours"));
+}
+
+TEST(Commands, CheckFindsAVertexThatHoldsTwoPartsTogether) {
+  Tool tool;
+  tool.write("pinched.mesh",
+             "MeshVersionFormatted 2\nDimension 3\nVertices\n7\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n-1 0 0 "
+             "0\n0 -1 0 0\n"
+             "0 0 -1 0\nTetrahedra\n2\n1 2 3 4 0\n1 6 5 7 0\nEnd\n");
+  const Outcome outcome = tool.run("check pinched.mesh");
+  EXPECT_EQ(outcome.code, 4) << outcome.out << outcome.err;
+  EXPECT_THAT(outcome.out, Not(HasSubstr("structure   ok")));
+}
+
+TEST(Commands, StatsComparesTwoMeshes) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate ball --n 3 -o ball.mesh").code, 0);
+  ASSERT_EQ(tool.run("generate cylinder --n 2 3 --twist 20 -o cylinder.mesh").code, 0);
+  const Outcome outcome = tool.run("stats ball.mesh cylinder.mesh");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("ball.mesh"), HasSubstr("cylinder.mesh"), HasSubstr("540"), HasSubstr("216")));
+  EXPECT_THAT(tool.run("stats -v ball.mesh").out, HasSubstr("dihedral angles of ball.mesh"));
+}
+
+TEST(Commands, ConvertThereAndBackGivesTheSameMesh) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 3 3 3 --jitter 0.1 --regions 2 -o a.mesh").code, 0);
+  for (const char* file : {"b.meshb", "b.vtk", "b.vtu", "b.msh", "b.node", "b.ovm"}) {
+    const Outcome there = tool.run(std::string("convert a.mesh ") + file);
+    ASSERT_EQ(there.code, 0) << file << there.err;
+    ASSERT_EQ(tool.run(std::string("convert ") + file + " c.mesh").code, 0) << file;
+    EXPECT_EQ(hash_of(tool, "a.mesh"), hash_of(tool, "c.mesh")) << file;
+  }
+  EXPECT_EQ(tool.run("convert a.mesh d.vtk --binary").code, 0);
+  EXPECT_EQ(tool.run("convert a.mesh d.msh --variant 2.2").code, 0);
+}
+
+TEST(Commands, GenerateGivesTheSameFileEveryTime) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 5 6 7 --field bulk-shear --amplitude 0.1 -o a.mesh").code, 0);
+  ASSERT_EQ(tool.run("generate cavity --n 5 6 7 --field bulk-shear --amplitude 0.1 -o b.mesh").code, 0);
+  ASSERT_EQ(tool.run("generate cavity --n 5 6 7 --field bulk-shear --amplitude 0.1 --seed 9 -o c.mesh").code,
+            0);
+  EXPECT_EQ(tool.content("a.mesh"), tool.content("b.mesh"));
+  EXPECT_NE(tool.content("a.mesh"), tool.content("c.mesh"));
+  EXPECT_EQ(tool.run("generate box --n 2 2 2 --low -1 -1 -1 --high 1 2 3 -o d.mesh").code, 0);
+}
+
+}  // namespace
+}  // namespace hfr::app::test
