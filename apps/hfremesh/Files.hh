@@ -10,8 +10,8 @@
 #include "IO/MeshFile.hh"
 #include "Options.hh"
 
-/// Reading and writing with the tool's exit codes: what is wrong with an input is a Failure of code 2, an output
-/// that cannot be written one of code 1.
+/// Reading and writing with the tool's exit codes: what is wrong with an input is a Failure of code 2, an
+/// output that cannot be written one of code 1.
 namespace hfr::app {
 
 struct LoadedMesh {
