@@ -19,8 +19,8 @@ struct WriteOptions {
 };
 
 /// Reads a mesh of any known format, chosen by extension and, where extensions collide, by content.
-/// Throws IoError when the file cannot be opened, InvalidInput with "FILE:LINE: …" (text) or "FILE: at byte N: …"
-/// (binary) when what it says is broken or not supported.
+/// Throws IoError when the file cannot be opened, InvalidInput with "FILE:LINE: …" (text) or "FILE: at byte
+/// N: …" (binary) when what it says is broken or not supported.
 MeshData read_mesh(const std::filesystem::path& path);
 
 /// Writes to a temporary file beside `path`, then renames it. Returns one line for each thing that the format

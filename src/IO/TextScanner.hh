@@ -16,13 +16,13 @@ class TextScanner {
   /// `name` is what messages begin with (the path). From `comment` to the end of a line is skipped (0: none).
   TextScanner(std::string_view text, std::string name, char comment = 0);
 
-  bool at_end();                        ///< nothing but white space and comments is left
-  std::string_view word();              ///< next word; throws at the end
-  std::string_view peek_word();         ///< next word without taking it; empty at the end
-  std::string_view rest_of_line();      ///< up to the line's end, trimmed; takes the line break
-  double real();                        ///< finite double ("nan" and "inf" throw); Fortran's 1.0D+3 is read too
-  double field_value();                 ///< as real(), but "nan" and "inf" pass: a field may hold them
-  std::int64_t integer();               ///< decimal integer
+  bool at_end();                    ///< nothing but white space and comments is left
+  std::string_view word();          ///< next word; throws at the end
+  std::string_view peek_word();     ///< next word without taking it; empty at the end
+  std::string_view rest_of_line();  ///< up to the line's end, trimmed; takes the line break
+  double real();                    ///< finite double ("nan" and "inf" throw); Fortran's 1.0D+3 is read too
+  double field_value();             ///< as real(), but "nan" and "inf" pass: a field may hold them
+  std::int64_t integer();           ///< decimal integer
   std::int64_t integer_in(std::int64_t low, std::int64_t high, std::string_view what);
   /// A number of items that follow, each of `words_per_item` words: fails when the rest of the text is too
   /// short to hold them, so that a broken count never makes a reader allocate more than the file's own size.
@@ -35,7 +35,7 @@ class TextScanner {
   const std::string& name() const { return name_; }
   /// False: the file may have been cut in the middle of its last number.
   bool ends_with_line_break() const { return begin_ == end_ || end_[-1] == '\n' || end_[-1] == '\r'; }
-  std::size_t line() const;             ///< 1-based, of the current position; O(bytes before it)
+  std::size_t line() const;  ///< 1-based, of the current position; O(bytes before it)
   [[noreturn]] void fail(std::string_view message) const;
 
  private:
