@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 /// Degrees; where no goal is given, the worst cells are raised from one of these to the next.
-constexpr std::array<double, 10> kLadder = {1, 2, 4, 7, 10, 15, 20, 25, 30, 35};
-/// Rungs missed in a row that end the climb: what holds a cell below one may give way on the next.
-constexpr int kMaxMissed = 2;
+constexpr std::array<double, 8> kLadder = {1, 2, 4, 7, 10, 15, 20, 25};
+/// Degrees below which cells are worked on before the bulk stage.
+constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
 /// and going on would only remove vertices.
 constexpr double kLargestShare = 0.1;
@@ -30,16 +30,15 @@ void validate(const ImproveOptions& options) {
   HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
 }
 
-/// Raises the worst dihedral rung by rung. `floor` is where it stood before: the bulk stage, which knows only
+/// Raises the worst dihedrals rung by rung; one that is missed is no reason to stop, because what holds a
+/// cell below it may give way on the next. `floor` is where it stood before: the bulk stage, which knows only
 /// volume-length, may have lowered it.
 void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor) {
   if (smallest_dihedral(mesh, options.policy) < floor) polish(mesh, work, options, control, floor);
-  int missed = 0;
   for (double rung : kLadder) {
-    if (control.stopped() || missed == kMaxMissed) return;
+    if (control.stopped()) return;
     if (smallest_dihedral(mesh, options.policy) >= rung) continue;
-    missed = polish(mesh, work, options, control, rung, kLargestShare) ? 0 : missed + 1;
-    control.set_fraction(0.5 + 0.5 * rung / kLadder.back());
+    polish(mesh, work, options, control, rung, kLargestShare);
   }
 }
 
@@ -57,6 +56,8 @@ void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control) {
     polish(mesh, work, options, control, *options.min_dihedral);
     return;
   }
+  // The worst angles first: the bulk stage, which knows only volume-length, can box them in.
+  polish(mesh, work, options, control, kEarlyGoal, kLargestShare);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);

@@ -26,6 +26,7 @@ constexpr int kMaxPolishIterations = 60;
 /// idle.
 constexpr double kPolishGain = 1.01;
 constexpr int kMaxIdle = 2;
+constexpr std::size_t kFewPoor = 50;  // cells that the polish may insert vertices for
 
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const TetMesh& mesh) {
@@ -60,21 +61,26 @@ void with_stage_metric(Metric metric, F&& f) {
   }
 }
 
-/// Iterates while it helps. Returns true when no cell is below `goal` any more.
+/// Iterates on cells below `goal` while it helps. Returns true when there are none any more.
 template <class Metric>
 bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& control, double goal) {
   const int limit = options.iterations > 0 ? options.iterations : kMaxPolishIterations;
   std::size_t n_poor = stage.n_below(goal);
   double worst = stage.worst();
   int idle = 0;
-  for (int i = 1; i <= limit && n_poor > 0 && idle < kMaxIdle && !control.stopped(); ++i) {
-    if (stage.iterate(i, Focus{goal}, true) == 0) break;
+  for (int i = 1; i <= limit && n_poor > 0 && !control.stopped(); ++i) {
+    const std::size_t changes = stage.iterate(i, Focus{goal}, true);
     const std::size_t n_poor_now = stage.n_below(goal);
-    const bool better =
-        n_poor_now < n_poor || stage.worst() > worst * kPolishGain || (worst <= 0 && stage.worst() > worst);
-    idle = better ? 0 : idle + 1;
+    const double enough = worst > 0 ? worst * kPolishGain : worst;
+    idle = n_poor_now < n_poor || stage.worst() > enough ? 0 : idle + 1;
     n_poor = n_poor_now;
     worst = stage.worst();
+    if (n_poor == 0 || (changes > 0 && idle < kMaxIdle)) continue;
+    // A few cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex.
+    if (n_poor > kFewPoor || !has(options.ops, Ops::kInsert)) break;
+    stage.look_again();
+    if (stage.insert_pass(i, Focus{goal}) == 0) break;
+    idle = kMaxIdle - 1;
   }
   return n_poor == 0;
 }

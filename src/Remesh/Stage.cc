@@ -158,7 +158,6 @@ std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
   if (has(options_.ops, Ops::kEdge)) changes += edge_pass(iteration, focus);
   if (has(options_.ops, Ops::kFace)) changes += face_pass(iteration, focus);
   if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
-  if (has(options_.ops, Ops::kInsert)) changes += insert_pass(iteration, focus);
   if (has(options_.ops, Ops::kSmooth)) changes += smooth_pass(iteration, focus);
   return changes;
 }
