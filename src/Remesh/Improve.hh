@@ -23,8 +23,8 @@ enum class Ops : unsigned {
   kFace = 2,     ///< 2-3 face swap
   kNode = 4,     ///< vertex removal by collapse onto a neighbour
   kSmooth = 8,   ///< vertex smoothing
-  kInsert = 16,  ///< new vertices in the centre of clusters
-  kDefault = kEdge | kFace | kNode | kSmooth,
+  kInsert = 16,  ///< a new vertex in the middle of a cluster, for the few cells that nothing else mends
+  kDefault = kEdge | kFace | kNode | kSmooth | kInsert,
 };
 constexpr Ops operator|(Ops a, Ops b) {
   return static_cast<Ops>(static_cast<unsigned>(a) | static_cast<unsigned>(b));

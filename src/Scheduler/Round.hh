@@ -98,6 +98,7 @@ class Round {
           if (check) {
             op.commit(mesh_, *plan, cavity);
             if (!admissible(mesh_, cavity, options_.check_links, scratch)) return;
+            if (options_.check_links && makes_more_invalid(op, cavity)) return;
           }
           mine.push_back(*plan);
         });
@@ -114,6 +115,20 @@ class Round {
     const Labels& labels = mesh_.labels();
     return options_.check_links || mesh_.has_regions() || !labels.faces.empty() || !labels.edges.empty() ||
            !labels.vertices.empty();
+  }
+
+  /// A worst cell that rises must not pay for itself with more inverted or flat cells.
+  bool makes_more_invalid(const Op& op, const Cavity& cavity) const {
+    std::ptrdiff_t more = 0;
+    for (const Tet& t : cavity.born) {
+      const auto at = [&](std::size_t i) {
+        return t[i] == Cavity::kNewVertex ? *cavity.new_vertex : mesh_.point(t[i]);
+      };
+      if (!(op.metric(at(0), at(1), at(2), at(3)) > 0)) ++more;
+    }
+    for (CellHandle c : cavity.dead)
+      if (!(work_.quality[c.idx()] > 0)) --more;
+    return more > 0;
   }
 
   void rank_all(const Op& op) {

@@ -12,6 +12,18 @@
 
 namespace hfr {
 
+/// True when more cells of the star would be inverted or flat with v at x than are now.
+template <class Metric>
+bool makes_more_invalid(const TetMesh& mesh, const Workspace& work, const Metric& metric, VertexHandle v,
+                        std::span<const HalfFaceHandle> link, Vec3 x) {
+  std::ptrdiff_t more = 0;
+  for (HalfFaceHandle h : link) {
+    if (!(quality_with(mesh, cell_of(h), v, x, metric) > 0)) ++more;
+    if (!(work.quality[cell_of(h).idx()] > 0)) --more;
+  }
+  return more > 0;
+}
+
 /// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and
 /// moves by itself; a later colour sees the moves of the earlier ones.
 template <class Search, class Metric>
@@ -41,6 +53,8 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
           const std::optional<Move> move =
               search(mesh, v, link, metric, std::span<const double>(work.quality));
           if (!move) return 0;
+          if (!(move->old_worst > 0) && makes_more_invalid(mesh, work, metric, v, link, move->target))
+            return 0;
           mesh.set_point(v, move->target);
           for (HalfFaceHandle h : link) {
             const CellHandle c = cell_of(h);
