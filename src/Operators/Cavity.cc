@@ -2,6 +2,7 @@
 #include "Operators/Cavity.hh"
 
 #include <algorithm>
+#include <limits>
 
 namespace hfr {
 namespace {
@@ -103,6 +104,21 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
     if (mesh.has_face(face[0], face[1], face[2], scratch)) return false;
   }
   return true;
+}
+
+VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity) {
+  VertexHandle nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (CellHandle c : cavity.dead) {
+    for (VertexHandle v : mesh.cell(c).v) {
+      const double distance = norm2(mesh.point(v) - *cavity.new_vertex);
+      if (distance < least || (distance == least && v < nearest)) {
+        least = distance;
+        nearest = v;
+      }
+    }
+  }
+  return nearest;
 }
 
 std::size_t created_simplices(const TetMesh& mesh, const Cavity& cavity, std::span<Simplex> out) {

@@ -76,6 +76,10 @@ struct Cavity {
 ///    the boundary meets itself, so callers leave it out elsewhere).
 bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch);
 
+/// Of the dead cells' vertices the one nearest to the new vertex, which inherits its data. Needs a new
+/// vertex.
+VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity);
+
 /// An edge or a face (third vertex invalid for an edge), vertices ascending.
 using Simplex = std::array<VertexHandle, 3>;
 

@@ -120,7 +120,11 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
   }
   for (std::size_t i = cavity.born.size(); i < slots.size(); ++i) free.push_back(slots[i]);
   slots.resize(cavity.born.size());
-  const VertexHandle new_vertex = cavity.new_vertex ? mesh.add_vertex(*cavity.new_vertex) : VertexHandle();
+  VertexHandle new_vertex;
+  if (cavity.new_vertex) {
+    new_vertex = mesh.add_vertex(*cavity.new_vertex);
+    mesh.copy_vertex_data(nearest_vertex(mesh, cavity), new_vertex);
+  }
   std::vector<OuterFace> notes;
   write_cells(mesh, cavity, slots, new_vertex, notes);
   for (const OuterFace& note : notes)

@@ -52,6 +52,22 @@ void gather(const TetMesh& mesh, Seed seed, Scope& out) {
   }
 }
 
+/// True for an apex that gives the cells that are there already: an end of the edge, a corner of the face.
+/// Rounding differs with the order of vertices, so such a star may look better by the last bit.
+template <Cluster kCluster, class Seed>
+bool rebuilds([[maybe_unused]] const TetMesh& mesh, [[maybe_unused]] Seed seed,
+              [[maybe_unused]] VertexHandle apex) {
+  if constexpr (kCluster == Cluster::kEdge) {
+    const auto& ends = kEdgeCorners[seed.local];
+    const auto& v = mesh.cell(seed.cell).v;
+    return v[ends[0]] == apex || v[ends[1]] == apex;
+  } else if constexpr (kCluster == Cluster::kFace) {
+    return has_vertex(mesh.halfface_vertices(halfface_of(seed.cell, seed.local)), apex);
+  } else {
+    return false;
+  }
+}
+
 }  // namespace
 
 template <Cluster kCluster, class Metric>
@@ -83,26 +99,29 @@ auto StarFromVertex<kCluster, Metric>::evaluate(const TetMesh& mesh, Seed seed) 
   std::sort(vertices.begin(), vertices.end());
   vertices.resize(static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) - vertices.begin()));
 
-  const auto try_apex = [&](VertexHandle apex, Vec3 p) {
+  const auto try_apex = [&](VertexHandle apex, Vec3 p, double floor) {
     double worst = std::numeric_limits<double>::infinity();
     std::uint32_t n_born = 0;
     for (const Face& f : surface) {
       if (has_vertex(f, apex)) continue;
       ++n_born;
       worst = std::min(worst, metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p));
-      if (!(worst > plan.new_worst)) return;
+      if (!(worst > floor)) return;
     }
     if (n_born == 0) return;
     plan.new_worst = worst;
     plan.apex = apex;
     plan.n_born = n_born;
   };
-  if (reconnect)
-    for (VertexHandle apex : vertices) try_apex(apex, mesh.point(apex));
+  if (reconnect) {
+    for (VertexHandle apex : vertices)
+      if (!rebuilds<kCluster>(mesh, seed, apex)) try_apex(apex, mesh.point(apex), plan.new_worst);
+  }
   if (insert) {
     for (VertexHandle v : vertices) plan.middle = plan.middle + mesh.point(v);
     plan.middle = (1.0 / static_cast<double>(vertices.size())) * plan.middle;
-    try_apex(Cavity::kNewVertex, plan.middle);
+    // Smaller inverted cells would look better in some metrics, and be cut again without end.
+    try_apex(Cavity::kNewVertex, plan.middle, std::max(plan.new_worst, 0.0));
   }
   if (!plan.apex.is_valid()) return std::nullopt;
   plan.adds_vertex = plan.apex == Cavity::kNewVertex;

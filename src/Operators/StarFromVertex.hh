@@ -33,7 +33,7 @@ struct StarFromVertex {
   Metric metric;
   std::span<const double> quality;       ///< decision value per cell
   std::span<const std::uint8_t> frozen;  ///< per vertex; a frozen vertex is not removed
-  bool insert = false;                   ///< try the middle
+  bool insert = false;                   ///< try the middle; taken only if all its cells are positive
   bool reconnect = true;                 ///< try the surface vertices
 
   void scope(const TetMesh& mesh, Seed seed, Scope& out) const;

@@ -255,6 +255,7 @@ class Round {
       if (plan.adds_vertex) {
         op.commit(mesh_, plan, cavity);
         winner.new_vertex = mesh_.add_vertex(*cavity.new_vertex);
+        mesh_.copy_vertex_data(nearest_vertex(mesh_, cavity), winner.new_vertex);
       }
     }
     mesh_.resize_cells(n_cells);
