@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Scheduler/StarTable.hh"
+
+#include <gtest/gtest.h>
+
+#include "Operators/Clusters.hh"
+
+namespace hfr::test {
+namespace {
+
+std::vector<HalfFaceHandle> link_by_search(const TetMesh& mesh, VertexHandle v) {
+  std::vector<HalfFaceHandle> link;
+  for (CellHandle c : mesh.cells())
+    if (mesh.cell(c).has(v)) link.push_back(halfface_of(c, mesh.cell(c).corner(v)));
+  return link;
+}
+
+void expect_link(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
+  const auto expected = link_by_search(mesh, v);
+  EXPECT_TRUE(std::equal(link.begin(), link.end(), expected.begin(), expected.end())) << "vertex " << v.idx();
+}
+
+TEST(StarTable, BothBuildersGiveTheCellsRoundTheVertexInOrder) {
+  const TetMesh mesh = jittered(5, 0.3, 1);
+  const auto all = all_vertices(mesh);
+  const StarTable bulk(mesh, all, {});  // one sweep over all cells
+  ASSERT_EQ(bulk.size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) expect_link(mesh, all[i], bulk.link(i));
+  for (std::size_t first = 0; first + 7 < all.size(); first += 7) {  // few: star by star
+    const std::vector<VertexHandle> few(all.begin() + static_cast<std::ptrdiff_t>(first),
+                                        all.begin() + static_cast<std::ptrdiff_t>(first) + 7);
+    ASSERT_LT(few.size(), mesh.n_vertices() / 16);
+    const StarTable table(mesh, few, {});
+    for (std::size_t i = 0; i < few.size(); ++i) expect_link(mesh, few[i], table.link(i));
+  }
+}
+
+TEST(StarTable, StarsTooLargeToHoldAreLeftEmptyByBothBuilders) {
+  const Index n = 150;  // 300 cells round vertex 0
+  std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+  std::vector<Corners> cells;
+  for (Index i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    points.push_back({std::cos(angle), std::sin(angle), 0});
+    cells.push_back({0, 3 + i, 3 + (i + 1) % n, 1});
+    cells.push_back({0, 3 + (i + 1) % n, 3 + i, 2});
+  }
+  const TetMesh mesh = build(points, cells);
+  const auto all = all_vertices(mesh);
+  const StarTable bulk(mesh, all, {});
+  EXPECT_TRUE(bulk.link(0).empty());
+  for (std::size_t i = 1; i < all.size(); ++i) expect_link(mesh, all[i], bulk.link(i));
+  const std::vector<VertexHandle> few = {V(0), V(5)};
+  const StarTable table(mesh, few, {});
+  EXPECT_TRUE(table.link(0).empty());
+  expect_link(mesh, V(5), table.link(1));
+}
+
+TEST(Colouring, NoTwoVerticesOfACellShareAColour) {
+  const TetMesh mesh = jittered(5, 0.3, 2);
+  const auto all = all_vertices(mesh);
+  for (const double share : {1.0, 0.5}) {
+    std::vector<VertexHandle> vertices;
+    for (VertexHandle v : all)
+      if (generate::random_unit(5, v.idx()) < share) vertices.push_back(v);
+    const StarTable stars(mesh, vertices, {});
+    const auto groups = colour_vertices(mesh, vertices, stars);
+    std::vector<int> colour(mesh.n_vertices(), -1);
+    std::size_t n = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      EXPECT_FALSE(groups[g].empty());
+      for (std::uint32_t i : groups[g]) {
+        EXPECT_EQ(colour[vertices[i].idx()], -1) << "a vertex has two colours";
+        colour[vertices[i].idx()] = static_cast<int>(g);
+        ++n;
+      }
+    }
+    EXPECT_EQ(n, vertices.size());
+    EXPECT_LE(groups.size(), 12U) << "first-fit should need about eight";
+    for (CellHandle c : mesh.cells()) {
+      std::set<int> seen;
+      for (VertexHandle v : mesh.cell(c).v)
+        EXPECT_TRUE(colour[v.idx()] < 0 || seen.insert(colour[v.idx()]).second);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hfr::test
