@@ -2,6 +2,27 @@
 #include "HalfFace/TetMesh.hh"
 
 namespace hfr {
+namespace {
+
+/// Cell::corner without branches, for a walk that has other cells to go on with meanwhile.
+unsigned corner_of(const Cell& k, VertexHandle v) {
+  return static_cast<unsigned>(k.v[1] == v) + 2 * static_cast<unsigned>(k.v[2] == v) +
+         3 * static_cast<unsigned>(k.v[3] == v);
+}
+
+/// Enters c; false when it was there.
+bool enter(Star& star, CellHandle c) {
+  constexpr unsigned kMask = 2 * Star::kCapacity - 1;
+  unsigned at = (static_cast<std::uint32_t>(c.idx()) * 0x9e3779b1U >> 16) & kMask;
+  for (; star.slot[at] != c; at = (at + 1) & kMask) {
+    if (star.slot[at].is_valid()) continue;
+    star.slot[at] = c;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 void TetMesh::set_region(CellHandle c, int region) {
   if (regions_.empty()) {
@@ -44,31 +65,23 @@ bool TetMesh::gather_star(VertexHandle v, Star& star) const {
   star.size = 0;
   const CellHandle first = hook(v);
   if (!first.is_valid()) return false;
-  constexpr unsigned kMask = 2 * Star::kCapacity - 1;
-  star.slot.fill(0);
-  const auto insert = [&](CellHandle c) {  // false only when the table is full
-    unsigned at = (static_cast<std::uint32_t>(c.idx()) * 0x9e3779b1U >> 16) & kMask;
-    for (; star.slot[at] != 0; at = (at + 1) & kMask)
-      if (star.cells[star.slot[at] - 1U] == c) return true;
-    if (star.size == Star::kCapacity) return false;
-    star.corners[static_cast<std::size_t>(star.size)] = static_cast<std::uint8_t>(cell(c).corner(v));
-    star.cells[static_cast<std::size_t>(star.size)] = c;
-    star.slot[at] = static_cast<std::uint16_t>(++star.size);
-    return true;
-  };
-  insert(first);
-  for (int i = 0; i < star.size; ++i) {
-    const Cell& k = cell(star.cells[static_cast<std::size_t>(i)]);
-    const int corner = star.corners[static_cast<std::size_t>(i)];
-    for (int f = 0; f < 4; ++f) {
-      const HalfFaceHandle m = k.mate[static_cast<std::size_t>(f)];
-      if (f == corner || !m.is_valid()) continue;
-      if (!insert(cell_of(m))) {
-        star.size = 0;
-        return false;
-      }
+  star.slot.fill(CellHandle());
+  star.cells[0] = first;
+  enter(star, first);
+  unsigned size = 1;
+  for (unsigned i = 0; i < size; ++i) {
+    const Cell& k = cell(star.cells[i]);
+    const unsigned corner = corner_of(k, v);
+    star.corners[i] = static_cast<std::uint8_t>(corner);
+    for (unsigned turn = 1; turn < 4; ++turn) {
+      const HalfFaceHandle m = k.mate[(corner + turn) & 3];
+      if (!m.is_valid() || !enter(star, cell_of(m))) continue;
+      if (size == Star::kCapacity) return false;
+      __builtin_prefetch(&cells_[m.idx() / 4]);  // its turn comes in a few rounds
+      star.cells[size++] = cell_of(m);
     }
   }
+  star.size = static_cast<int>(size);
   return true;
 }
 

@@ -23,7 +23,8 @@ struct Cell {
   std::array<VertexHandle, 4> v;
   std::array<HalfFaceHandle, 4> mate;
 
-  /// Corner of vertex w; 4 when w is none of this cell's.
+  /// Corner of vertex w; 4 when w is none of this cell's. With branches: a walk then runs ahead on the
+  /// predicted corner, which is twice as fast as waiting for the comparisons.
   int corner(VertexHandle w) const {
     for (int i = 0; i < 4; ++i)
       if (v[static_cast<std::size_t>(i)] == w) return i;
@@ -36,9 +37,9 @@ struct Cell {
 struct Star {
   static constexpr int kCapacity = 256;
   int size = 0;
-  std::array<CellHandle, kCapacity> cells;        ///< in order of discovery from the hook
-  std::array<std::uint8_t, kCapacity> corners;    ///< corner of the vertex in each cell
-  std::array<std::uint16_t, 2 * kCapacity> slot;  ///< hash table: 1 + position in cells
+  std::array<CellHandle, kCapacity> cells;      ///< in order of discovery from the hook
+  std::array<std::uint8_t, kCapacity> corners;  ///< corner of the vertex in each cell
+  std::array<CellHandle, 2 * kCapacity> slot;   ///< hash table of them while they are gathered
 };
 
 /// Old handle → new one, by index; invalid where it is gone.
