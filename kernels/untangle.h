@@ -4,10 +4,10 @@
 
 #include "volume_length.h"
 
-/* Volume-length for a positive cell, and for the others 6V over a volume of the mesh's own size. Volume-length of
- * an inverted cell rises towards 0 when a vertex runs off to infinity; a signed volume falls, and over one
- * vertex's position the smallest of them is concave, so that raising it leads out of the inversion (Freitag &
- * Plassmann, Local simplicial mesh improvement via linear programming, 2000). */
+/* Volume-length for a positive cell, and for the others 6V over a volume of the mesh's own size.
+ * Volume-length of an inverted cell rises towards 0 when a vertex runs off to infinity; a signed volume
+ * falls, and over one vertex's position the smallest of them is concave, so that raising it leads out of the
+ * inversion (Freitag & Plassmann, Local simplicial mesh improvement via linear programming, 2000). */
 HFR_FN double hfr_untangle_decision(hfr_real3 a, hfr_real3 b, hfr_real3 c, hfr_real3 d, double per_volume) {
   const hfr_real3 u = hfr_sub3(b, a);
   const hfr_real3 v = hfr_sub3(c, a);

@@ -16,7 +16,7 @@ namespace hfr::par {
 
 /// How a parallel loop runs; passed by value, there is no global state.
 struct Policy {
-  int threads = 1;                ///< ≥ 1; Policy::all() for every core that the process may use
+  int threads = 1;                  ///< ≥ 1; Policy::all() for every core that the process may use
   std::size_t serial_below = 2048;  ///< loops shorter than this stay on the calling thread
 
   static Policy all();
@@ -65,8 +65,8 @@ void for_each(Policy policy, std::size_t n, Body&& body) {
   });
 }
 
-/// Calls body(i) for each i in [0, n) in blocks that free threads take as they come: for items of uneven cost.
-/// The order of calls is not fixed; what body(i) writes must depend on i alone.
+/// Calls body(i) for each i in [0, n) in blocks that free threads take as they come: for items of uneven
+/// cost. The order of calls is not fixed; what body(i) writes must depend on i alone.
 template <class Body>
 void for_each_dynamic(Policy policy, std::size_t n, std::size_t block, Body&& body);
 

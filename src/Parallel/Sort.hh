@@ -16,8 +16,8 @@ struct KeyIndex {
   std::uint32_t index;
 };
 
-/// Stable ascending sort by key. Short inputs use a merge sort, long ones a least-significant-digit radix sort
-/// over the bytes in which keys differ; `scratch` keeps its memory between calls.
+/// Stable ascending sort by key. Short inputs use a merge sort, long ones a least-significant-digit radix
+/// sort over the bytes in which keys differ; `scratch` keeps its memory between calls.
 void stable_sort(Policy policy, std::vector<KeyIndex>& items, std::vector<KeyIndex>& scratch);
 
 }  // namespace hfr::par
