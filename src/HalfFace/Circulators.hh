@@ -11,8 +11,8 @@
 
 /// Ranges over the things of a mesh and over neighbourhoods. All are views in the sense of C++20, forward,
 /// and none allocates: what a star needs is kept inside the range object (4.7 kB for vertex_vertices, 2.4 kB
-/// for other vertex_… ranges), so iterators of those are valid while the range object lives. A range sees the
-/// mesh as it is when it is read; writing to the mesh ends its validity.
+/// for other vertex_… ranges, 0.5 kB for rings), so iterators of those are valid while the range object
+/// lives. A range sees the mesh as it is when it is read; writing to the mesh ends its validity.
 namespace hfr {
 
 /// A few items by value: neighbours of something that has at most N of them.
@@ -158,7 +158,7 @@ class VertexVertices : public PlaceRange<VertexVertices, VertexHandle> {
       neighbours_;  // a further cell brings at most one further vertex
 };
 
-/// Forward iterator round an edge: one cell record a step, nothing kept but where it stands.
+/// Forward iterator over a RingRange.
 template <class Policy>
 class RingIterator {
  public:
@@ -170,20 +170,22 @@ class RingIterator {
   using iterator_concept = std::forward_iterator_tag;
 
   RingIterator() = default;
-  RingIterator(const TetMesh* mesh, const RingStart& start)
-      : mesh_(mesh), cell_(start.cell), first_(start.cell), p_(start.p), q_(start.q), open_(!start.closed) {
-    if (!Policy::has(slot_, open_)) ++*this;
+  RingIterator(const RingRange<Policy>* range, int number) : range_(range), number_(number) {
+    if (!range->is_kept()) large_ = range->places()[0];
+    if (number == 0 && !Policy::has(0, !range->is_closed())) ++*this;
   }
   value_type operator*() const {
-    const Cell& k = mesh_->cell(cell_);
-    return Policy::item(*mesh_, cell_, k, p_, q_, slot_);
+    // By reference: copying a place that was written member by member a moment ago stalls the processor.
+    const RingPlace& at = range_->is_kept() ? range_->places()[number_] : large_;
+    return Policy::item(range_->mesh(), at, slot_);
   }
   RingIterator& operator++() {
     do {
       if (++slot_ < Policy::kSlots) continue;
       slot_ = 0;
-      step();
-    } while (cell_.is_valid() && !Policy::has(slot_, open_ && cell_ == first_));
+      ++number_;
+      if (!range_->is_kept()) large_ = range_->mesh().next_in_ring(large_);
+    } while (number_ < range_->n_cells() && !Policy::has(slot_, false));
     return *this;
   }
   RingIterator operator++(int) {
@@ -192,46 +194,43 @@ class RingIterator {
     return old;
   }
   friend bool operator==(const RingIterator& a, const RingIterator& b) {
-    return a.cell_ == b.cell_ && a.slot_ == b.slot_;
+    return a.number_ == b.number_ && a.slot_ == b.slot_;
   }
 
  private:
-  void step() {
-    const Cell& k = mesh_->cell(cell_);
-    const HalfFaceHandle m = k.mate[static_cast<std::size_t>(k.corner(p_))];
-    if (!m.is_valid() || cell_of(m) == first_) {
-      cell_.reset();
-      return;
-    }
-    cell_ = cell_of(m);
-    p_ = q_;
-    q_ = mesh_->cell(cell_).v[m.idx() % 4];
-  }
-
-  const TetMesh* mesh_ = nullptr;
-  CellHandle cell_, first_;
-  VertexHandle p_, q_;
-  bool open_ = false;
+  const RingRange<Policy>* range_ = nullptr;
+  RingPlace large_;  // where it stands in a ring that is not kept
+  int number_ = 0;   // of the cell, from the first
   int slot_ = 0;
 };
 
-/// What lies round an edge, counter-clockwise seen against its direction. A fan that ends at the boundary
-/// starts there: finding the start walks the ring once beforehand.
+/// What lies round an edge, counter-clockwise about its direction; a fan that ends at the boundary starts
+/// there. The ring is walked once, when the range is made, and kept inside; one with more than
+/// Ring::kCapacity cells is walked again while it is read.
 template <class Policy>
 class RingRange : public std::ranges::view_base {
  public:
   using iterator = RingIterator<Policy>;
-  RingRange(const TetMesh& mesh, const RingStart& start) : mesh_(&mesh), start_(start) {}
-  iterator begin() const { return {mesh_, start_}; }
-  iterator end() const { return {}; }
+  RingRange(const TetMesh& mesh, HalfEdgeHandle e) : mesh_(&mesh) {
+    const bool kept = mesh.gather_ring(mesh.ring_place(e), ring_);
+    n_cells_ = kept ? ring_.size : mesh.start_large_ring(mesh.ring_place(e), ring_);
+  }
+  iterator begin() const { return {this, 0}; }
+  iterator end() const { return {this, n_cells_}; }
   bool empty() const { return false; }
   std::size_t count() const { return static_cast<std::size_t>(std::ranges::distance(begin(), end())); }
   /// True when the cells go all the way round, false when the edge is on the boundary.
-  bool is_closed() const { return start_.closed; }
+  bool is_closed() const { return ring_.closed; }
+
+  const TetMesh& mesh() const { return *mesh_; }
+  int n_cells() const { return n_cells_; }
+  bool is_kept() const { return ring_.size > 0; }
+  const RingPlace* places() const { return ring_.places.data(); }
 
  private:
   const TetMesh* mesh_;
-  RingStart start_;
+  int n_cells_;
+  Ring ring_;
 };
 
 namespace policy {
@@ -296,7 +295,7 @@ struct RingCells {
   using Value = CellHandle;
   static constexpr int kSlots = 1;
   static constexpr bool has(int, bool) { return true; }
-  static Value item(const TetMesh&, CellHandle c, const Cell&, VertexHandle, VertexHandle, int) { return c; }
+  static Value item(const TetMesh&, const RingPlace& at, int) { return at.cell; }
 };
 
 /// Of each cell the half-face that has the edge in its own direction.
@@ -304,9 +303,7 @@ struct RingHalfFaces {
   using Value = HalfFaceHandle;
   static constexpr int kSlots = 1;
   static constexpr bool has(int, bool) { return true; }
-  static Value item(const TetMesh&, CellHandle c, const Cell& k, VertexHandle, VertexHandle q, int) {
-    return halfface_of(c, k.corner(q));
-  }
+  static Value item(const TetMesh&, const RingPlace& at, int) { return halfface_of(at.cell, at.q); }
 };
 
 /// Of each cell both half-faces that have the edge.
@@ -314,8 +311,8 @@ struct RingBothHalfFaces {
   using Value = HalfFaceHandle;
   static constexpr int kSlots = 2;
   static constexpr bool has(int, bool) { return true; }
-  static Value item(const TetMesh&, CellHandle c, const Cell& k, VertexHandle p, VertexHandle q, int slot) {
-    return halfface_of(c, k.corner(slot == 0 ? q : p));
+  static Value item(const TetMesh&, const RingPlace& at, int slot) {
+    return halfface_of(at.cell, slot == 0 ? at.q : at.p);
   }
 };
 
@@ -324,9 +321,8 @@ struct RingFaces {
   using Value = FaceHandle;
   static constexpr int kSlots = 2;
   static constexpr bool has(int slot, bool open_begin) { return slot == 1 || open_begin; }
-  static Value item(const TetMesh& mesh, CellHandle c, const Cell& k, VertexHandle p, VertexHandle q,
-                    int slot) {
-    return mesh.face_handle(halfface_of(c, k.corner(slot == 0 ? q : p)));
+  static Value item(const TetMesh& mesh, const RingPlace& at, int slot) {
+    return mesh.face_handle(halfface_of(at.cell, slot == 0 ? at.q : at.p));
   }
 };
 
@@ -371,19 +367,19 @@ inline StarRange<policy::StarHalfEdges<false>> TetMesh::incoming_halfedges(Verte
 }
 inline VertexVertices TetMesh::vertex_vertices(VertexHandle v) const { return {*this, v}; }
 
-inline RingRange<policy::RingCells> TetMesh::edge_cells(EdgeHandle e) const { return {*this, ring_start(e)}; }
-inline RingRange<policy::RingFaces> TetMesh::edge_faces(EdgeHandle e) const { return {*this, ring_start(e)}; }
+inline RingRange<policy::RingCells> TetMesh::edge_cells(EdgeHandle e) const {
+  return {*this, halfedge_handle(e, 0)};
+}
+inline RingRange<policy::RingFaces> TetMesh::edge_faces(EdgeHandle e) const {
+  return {*this, halfedge_handle(e, 0)};
+}
 inline RingRange<policy::RingBothHalfFaces> TetMesh::edge_halffaces(EdgeHandle e) const {
-  return {*this, ring_start(e)};
+  return {*this, halfedge_handle(e, 0)};
 }
-inline RingRange<policy::RingCells> TetMesh::halfedge_cells(HalfEdgeHandle e) const {
-  return {*this, ring_start(e)};
-}
-inline RingRange<policy::RingFaces> TetMesh::halfedge_faces(HalfEdgeHandle e) const {
-  return {*this, ring_start(e)};
-}
+inline RingRange<policy::RingCells> TetMesh::halfedge_cells(HalfEdgeHandle e) const { return {*this, e}; }
+inline RingRange<policy::RingFaces> TetMesh::halfedge_faces(HalfEdgeHandle e) const { return {*this, e}; }
 inline RingRange<policy::RingHalfFaces> TetMesh::halfedge_halffaces(HalfEdgeHandle e) const {
-  return {*this, ring_start(e)};
+  return {*this, e};
 }
 
 inline FixedList<CellHandle, 4> TetMesh::cell_cells(CellHandle c) const {

@@ -41,8 +41,8 @@ class ResourceLimit : public Error {
 }  // namespace hfr
 
 /// Precondition of a public function; always on; throws hfr::InvalidInput.
-#define HFR_REQUIRE(condition, message) \
-  do {                                  \
+#define HFR_REQUIRE(condition, message)                   \
+  do {                                                    \
     if (!(condition)) throw ::hfr::InvalidInput(message); \
   } while (false)
 

@@ -63,7 +63,8 @@ inline constexpr std::array<std::array<std::uint8_t, 3>, 4> kFaceCorners = {
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> kEdgeCorners = {
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
-/// The other two corners (p, q) of local edge k = (a, b), ordered so that (a, b, p, q) is an even permutation.
+/// The other two corners (p, q) of local edge k = (a, b), ordered so that (a, b, p, q) is an even
+/// permutation.
 inline constexpr std::array<std::array<std::uint8_t, 2>, 6> kEdgeOpposite = {
     {{2, 3}, {3, 1}, {1, 2}, {0, 3}, {2, 0}, {0, 1}}};
 

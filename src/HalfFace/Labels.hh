@@ -14,9 +14,9 @@ namespace hfr {
 /// What a file says of vertices, edges and faces, and the names of such numbers. A labelled face or edge is a
 /// constraint: no operator removes it. A labelled vertex may move but is not removed.
 struct Labels {
-  TupleMap<3, int> faces;      ///< patch label per labelled face: boundary, interface or inside a region
-  TupleMap<2, int> edges;      ///< label per labelled edge
-  std::vector<int> vertices;   ///< label per vertex, 0 = none; empty when no vertex has one
+  TupleMap<3, int> faces;     ///< patch label per labelled face: boundary, interface or inside a region
+  TupleMap<2, int> edges;     ///< label per labelled edge
+  std::vector<int> vertices;  ///< label per vertex, 0 = none; empty when no vertex has one
   std::map<std::pair<int, int>, std::string> names;  ///< (dimension, label or region) → name
 
   int vertex(VertexHandle v) const { return vertices.empty() ? 0 : vertices[v.idx()]; }

@@ -27,27 +27,48 @@ std::size_t TetMesh::memory_bytes() const {
 
 // --- edges ---
 
-RingStart TetMesh::ring_start(CellHandle c, int local_edge, bool reversed) const {
-  const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(local_edge)];
-  const RingStart given{c, cell(c).v[opposite[reversed ? 1 : 0]], cell(c).v[opposite[reversed ? 0 : 1]],
-                        true};
-  RingStart at = given;
-  for (;;) {  // backwards, until the boundary or the cell that it began with
-    const Cell& k = cell(at.cell);
-    const HalfFaceHandle m = k.mate[static_cast<std::size_t>(k.corner(at.q))];
-    if (!m.is_valid()) {
-      at.closed = false;
-      return at;
-    }
-    if (cell_of(m) == c) return given;
-    at.cell = cell_of(m);
-    at.q = at.p;
-    at.p = cell(at.cell).v[m.idx() % 4];
+bool TetMesh::gather_ring(RingPlace start, Ring& ring) const {
+  int size = 0;
+  ring.size = 0;
+  ring.closed = false;
+  for (RingPlace at = start; at.cell.is_valid(); at = next_in_ring(at)) {
+    ring.closed = size > 0 && at.cell == start.cell;
+    if (ring.closed) break;
+    if (size == Ring::kCapacity) return false;
+    ring.places[static_cast<std::size_t>(size++)] = at;
   }
+  if (!ring.closed) {  // the boundary is met: what lies on the other side of the start belongs before it
+    const int n_after = size;
+    for (RingPlace at = previous_in_ring(start); at.cell.is_valid(); at = previous_in_ring(at)) {
+      if (size == Ring::kCapacity) return false;
+      ring.places[static_cast<std::size_t>(size++)] = at;
+    }
+    std::reverse(ring.places.begin() + n_after, ring.places.begin() + size);
+    std::rotate(ring.places.begin(), ring.places.begin() + n_after, ring.places.begin() + size);
+  }
+  ring.size = size;
+  return true;
 }
 
-RingStart TetMesh::ring_start(HalfEdgeHandle e) const {
-  return ring_start(CellHandle(e.idx() / 12), static_cast<int>(e.idx() / 2 % 6), e.idx() % 2 != 0);
+int TetMesh::start_large_ring(RingPlace start, Ring& ring) const {
+  RingPlace first = start;
+  ring.size = 0;
+  for (RingPlace at = previous_in_ring(start); at.cell.is_valid() && at.cell != start.cell;
+       at = previous_in_ring(at))
+    first = at;
+  int n = 1;
+  RingPlace at = next_in_ring(first);
+  for (; at.cell.is_valid() && at.cell != first.cell; at = next_in_ring(at)) ++n;
+  ring.closed = at.cell.is_valid();
+  ring.places[0] = ring.closed ? start : first;
+  return n;
+}
+
+bool TetMesh::is_boundary(HalfEdgeHandle e) const {
+  const RingPlace start = ring_place(e);
+  RingPlace at = next_in_ring(start);
+  while (at.cell.is_valid() && at.cell != start.cell) at = next_in_ring(at);
+  return !at.cell.is_valid();
 }
 
 bool TetMesh::exists(EdgeHandle e) const {

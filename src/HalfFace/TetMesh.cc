@@ -4,12 +4,6 @@
 namespace hfr {
 namespace {
 
-/// Cell::corner without branches, for a walk that has other cells to go on with meanwhile.
-unsigned corner_of(const Cell& k, VertexHandle v) {
-  return static_cast<unsigned>(k.v[1] == v) + 2 * static_cast<unsigned>(k.v[2] == v) +
-         3 * static_cast<unsigned>(k.v[3] == v);
-}
-
 /// Enters c; false when it was there.
 bool enter(Star& star, CellHandle c) {
   constexpr unsigned kMask = 2 * Star::kCapacity - 1;
@@ -71,8 +65,8 @@ bool TetMesh::gather_star(VertexHandle v, Star& star) const {
   unsigned size = 1;
   for (unsigned i = 0; i < size; ++i) {
     const Cell& k = cell(star.cells[i]);
-    const unsigned corner = corner_of(k, v);
-    star.corners[i] = static_cast<std::uint8_t>(corner);
+    const std::uint8_t corner = k.own_corner(v);
+    star.corners[i] = corner;
     for (unsigned turn = 1; turn < 4; ++turn) {
       const HalfFaceHandle m = k.mate[(corner + turn) & 3];
       if (!m.is_valid() || !enter(star, cell_of(m))) continue;

@@ -23,12 +23,17 @@ struct Cell {
   std::array<VertexHandle, 4> v;
   std::array<HalfFaceHandle, 4> mate;
 
-  /// Corner of vertex w; 4 when w is none of this cell's. With branches: a walk then runs ahead on the
-  /// predicted corner, which is twice as fast as waiting for the comparisons.
+  /// Corner of vertex w; 4 when w is none of this cell's.
   int corner(VertexHandle w) const {
     for (int i = 0; i < 4; ++i)
       if (v[static_cast<std::size_t>(i)] == w) return i;
     return 4;
+  }
+  /// The same for a vertex that is this cell's, without branches: in a walk over an irregular mesh, nobody
+  /// can foretell the corner.
+  std::uint8_t own_corner(VertexHandle w) const {
+    return static_cast<std::uint8_t>(static_cast<unsigned>(v[1] == w) + 2 * static_cast<unsigned>(v[2] == w) +
+                                     3 * static_cast<unsigned>(v[3] == w));
   }
   bool has(VertexHandle w) const { return v[0] == w || v[1] == w || v[2] == w || v[3] == w; }
 };
@@ -55,12 +60,20 @@ struct GarbageOptions {
 
 struct ReorderOptions;
 
-/// Where a walk round an edge a→b begins: (a, b, p, q) is positive in the cell, and the walk leaves it by the
-/// face opposite p.
-struct RingStart {
+/// A cell on a walk round an edge a→b: with p and q the corners that are not on the edge, in the order that
+/// makes (a, b, p, q) positive. The next cell counter-clockwise lies behind the face opposite p, the one
+/// before behind that opposite q.
+struct RingPlace {
   CellHandle cell;
-  VertexHandle p, q;
-  bool closed;  ///< the cells go all the way round
+  std::uint8_t p = 0, q = 0;
+};
+
+/// Cells round one edge, gathered once. Fixed memory, reusable; see TetMesh::gather_ring.
+struct Ring {
+  static constexpr int kCapacity = 63;
+  int size = 0;
+  bool closed = false;  ///< the cells go all the way round
+  std::array<RingPlace, kCapacity> places;
 };
 
 // What the queries below return; all are C++20 views that do not allocate, see Circulators.hh.
@@ -146,7 +159,7 @@ class TetMesh {
   VertexVertices vertex_vertices(VertexHandle v) const;
   std::size_t valence(VertexHandle v) const;  ///< number of edges
 
-  // --- round an edge: one cell record a step; a fan starts at the boundary ---
+  // --- round an edge, counter-clockwise; a fan starts at the boundary. One cell record a step ---
   RingRange<policy::RingCells> edge_cells(EdgeHandle e) const;
   RingRange<policy::RingFaces> edge_faces(EdgeHandle e) const;
   RingRange<policy::RingBothHalfFaces> edge_halffaces(EdgeHandle e) const;
@@ -154,8 +167,6 @@ class TetMesh {
   RingRange<policy::RingFaces> halfedge_faces(HalfEdgeHandle e) const;
   /// The half-faces that have the half-edge in its direction, one a cell.
   RingRange<policy::RingHalfFaces> halfedge_halffaces(HalfEdgeHandle e) const;
-  RingStart ring_start(EdgeHandle e) const { return ring_start(HalfEdgeHandle(2 * e.idx())); }
-  RingStart ring_start(HalfEdgeHandle e) const;
   std::size_t valence(EdgeHandle e) const;  ///< number of faces
 
   // --- edges and half-edges ---
@@ -238,8 +249,8 @@ class TetMesh {
 
   // --- on the boundary? ---
   bool is_boundary(VertexHandle v) const;  ///< O(star)
-  bool is_boundary(EdgeHandle e) const { return !ring_start(e).closed; }
-  bool is_boundary(HalfEdgeHandle e) const { return !ring_start(e).closed; }
+  bool is_boundary(EdgeHandle e) const { return is_boundary(halfedge_handle(e, 0)); }
+  bool is_boundary(HalfEdgeHandle e) const;  ///< O(ring)
   bool is_boundary(FaceHandle f) const { return is_boundary(HalfFaceHandle(f.idx())); }
   /// True when nothing lies on the other side.
   bool is_boundary(HalfFaceHandle h) const { return !opposite_halfface(h).is_valid(); }
@@ -377,6 +388,31 @@ class TetMesh {
   /// Fills `star` with the cells that face-connect to the hook of v round v. False, with star.size == 0, when
   /// v has no cell or more than Star::kCapacity.
   bool gather_star(VertexHandle v, Star& star) const;
+  /// Fills `ring` with the cells round a→b, from the cell of `start` when they go all the way round, else
+  /// from the boundary. False, with ring.size == 0, when there are more than Ring::kCapacity.
+  bool gather_ring(RingPlace start, Ring& ring) const;
+  /// For a ring that gather_ring() refuses: puts its first cell, and closed, into `ring`; returns how many
+  /// there are.
+  int start_large_ring(RingPlace start, Ring& ring) const;
+  /// Where the handle of a half-edge begins: with the smallest cell.
+  RingPlace ring_place(HalfEdgeHandle e) const {
+    const auto& opposite = kEdgeOpposite[e.idx() / 2 % 6];
+    return {CellHandle(e.idx() / 12), opposite[e.idx() % 2], opposite[1 - e.idx() % 2]};
+  }
+  /// The next cell counter-clockwise about a→b; an invalid one at the boundary.
+  RingPlace next_in_ring(RingPlace at) const {
+    const Cell& k = cells_[at.cell.idx()];
+    const HalfFaceHandle m = k.mate[at.p];
+    if (!m.is_valid()) return {};
+    return {cell_of(m), cells_[m.idx() / 4].own_corner(k.v[at.q]), static_cast<std::uint8_t>(m.idx() % 4)};
+  }
+  /// The next cell clockwise.
+  RingPlace previous_in_ring(RingPlace at) const {
+    const Cell& k = cells_[at.cell.idx()];
+    const HalfFaceHandle m = k.mate[at.q];
+    if (!m.is_valid()) return {};
+    return {cell_of(m), static_cast<std::uint8_t>(m.idx() % 4), cells_[m.idx() / 4].own_corner(k.v[at.p])};
+  }
   /// The half-face through which a walk round the edge (a, b) leaves cell c counter-clockwise about a→b,
   /// given the vertex p of c such that (a, b, p, q) is positive: the one opposite p. See edge_cells() for a
   /// whole walk.
@@ -447,7 +483,6 @@ class TetMesh {
   VertexHandle end_vertex(HalfEdgeHandle e, Index end) const {
     return cells_[e.idx() / 12].v[kEdgeCorners[e.idx() / 2 % 6][end]];
   }
-  RingStart ring_start(CellHandle c, int local_edge, bool reversed) const;
   template <std::size_t N>
   CellHandle find_cell_with(const std::array<VertexHandle, N>& vertices) const;
 
@@ -499,44 +534,28 @@ TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> ce
 
 template <class Visit>
 bool TetMesh::walk_ring(CellHandle c, int edge, Visit&& visit) const {
-  const Cell* k = &cells_[c.idx()];
   const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(edge)];
-  VertexHandle p = k->v[opposite[0]];
-  VertexHandle q = k->v[opposite[1]];
-  const CellHandle first = c;
-  int exit = opposite[0];
-  for (;;) {
-    if (!visit(c, p, q)) return false;
-    const HalfFaceHandle m = k->mate[static_cast<std::size_t>(exit)];
-    if (!m.is_valid()) return false;
-    c = cell_of(m);
-    if (c == first) return true;
-    k = &cells_[c.idx()];
-    p = q;
-    q = k->v[m.idx() % 4];
-    exit = k->corner(p);
-  }
+  RingPlace at{c, opposite[0], opposite[1]};
+  do {
+    const Cell& k = cells_[at.cell.idx()];
+    if (!visit(at.cell, k.v[at.p], k.v[at.q])) return false;
+    at = next_in_ring(at);
+    if (!at.cell.is_valid()) return false;
+  } while (at.cell != c);
+  return true;
 }
 
 template <class Visit>
 bool TetMesh::walk_ring_back(CellHandle c, int edge, Visit&& visit) const {
-  const Cell* k = &cells_[c.idx()];
   const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(edge)];
-  VertexHandle p = k->v[opposite[0]];
-  VertexHandle q = k->v[opposite[1]];
-  const CellHandle first = c;
-  int exit = opposite[1];
-  for (;;) {
-    if (!visit(c, p, q)) return false;
-    const HalfFaceHandle m = k->mate[static_cast<std::size_t>(exit)];
-    if (!m.is_valid()) return false;
-    c = cell_of(m);
-    if (c == first) return true;
-    k = &cells_[c.idx()];
-    q = p;
-    p = k->v[m.idx() % 4];
-    exit = k->corner(q);
-  }
+  RingPlace at{c, opposite[0], opposite[1]};
+  do {
+    const Cell& k = cells_[at.cell.idx()];
+    if (!visit(at.cell, k.v[at.p], k.v[at.q])) return false;
+    at = previous_in_ring(at);
+    if (!at.cell.is_valid()) return false;
+  } while (at.cell != c);
+  return true;
 }
 
 }  // namespace hfr

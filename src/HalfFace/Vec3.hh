@@ -6,7 +6,8 @@
 
 namespace hfr {
 
-/// Position or direction in space: three doubles without padding, so that arrays of it map onto Eigen matrices.
+/// Position or direction in space: three doubles without padding, so that arrays of it map onto Eigen
+/// matrices.
 struct Vec3 {
   double x = 0.0;
   double y = 0.0;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kUnreachable = -std::numeric_limits<double>::infinity();
 
 /// The ring of an inner edge: vertices counter-clockwise about a→b, and the cells (i, i+1).
-struct Ring {
+struct EdgeRing {
   VertexHandle a, b;
   int size = 0;
   std::array<VertexHandle, 32> vertices;
@@ -22,7 +22,7 @@ struct Ring {
 };
 
 /// False when the edge lies on the boundary or its ring has more than 32 cells.
-bool gather_ring(const TetMesh& mesh, EdgeHandle seed, Ring& ring) {
+bool gather_ring(const TetMesh& mesh, EdgeHandle seed, EdgeRing& ring) {
   const CellHandle c(seed.idx() / 6);
   const int edge = static_cast<int>(seed.idx() % 6);
   const auto& ends = kEdgeCorners[static_cast<std::size_t>(edge)];
@@ -97,7 +97,7 @@ const std::uint8_t* for_triangles(int i, int j, const std::uint8_t* apex, Visit&
 
 template <class Metric>
 void EdgeRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
-  Ring ring;
+  EdgeRing ring;
   out.clear();
   gather_ring(mesh, seed, ring);
   for (int i = 0; i < ring.size; ++i) out.push_back(ring.cells[static_cast<std::size_t>(i)]);
@@ -106,7 +106,7 @@ void EdgeRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) cons
 template <class Metric>
 std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(const TetMesh& mesh,
                                                                                 Seed seed) const {
-  Ring ring;
+  EdgeRing ring;
   if (!gather_ring(mesh, seed, ring)) return std::nullopt;
   const auto n = static_cast<std::size_t>(ring.size);
   double old_worst = std::numeric_limits<double>::infinity();
@@ -141,7 +141,7 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
 
 template <class Metric>
 void EdgeRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-  Ring ring;
+  EdgeRing ring;
   gather_ring(mesh, plan.seed, ring);
   out.clear();
   for (int i = 0; i < ring.size; ++i) out.dead.push_back(ring.cells[static_cast<std::size_t>(i)]);

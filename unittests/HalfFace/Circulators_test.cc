@@ -341,6 +341,25 @@ TEST(LargeStar, VertexWithMoreCellsThanAStarHolds) {
   }
 }
 
+TEST(LargeRing, OpenFanStartsAtTheBoundaryAtAnySize) {
+  for (const Index n : {Index{62}, Index{63}, Index{64}, Index{65}, Index{200}}) {
+    std::vector<Vec3> points = {{0, 0, -1}, {0, 0, 1}};
+    std::vector<test::Corners> cells;
+    for (Index i = 0; i <= n; ++i) points.push_back({std::cos(i * 0.03), std::sin(i * 0.03), 0});
+    for (Index i = 0; i < n; ++i) cells.push_back({0, 1, 2 + i, 3 + i});
+    std::rotate(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(n / 3), cells.end());
+    const TetMesh mesh = build(points, cells);
+    const HalfEdgeHandle e = mesh.find_halfedge(VertexHandle(0), VertexHandle(1));
+    const auto in_order = vector_of(mesh.halfedge_cells(e));
+    ASSERT_EQ(in_order.size(), n);
+    for (Index i = 0; i < n; ++i) EXPECT_TRUE(mesh.cell(in_order[i]).has(VertexHandle(2 + i)));
+    EXPECT_EQ(mesh.halfedge_faces(e).count(), n + 1);
+    EXPECT_EQ(vector_of(mesh.halfedge_cells(mesh.opposite_halfedge(e))).front(), in_order.back());
+    EXPECT_FALSE(mesh.halfedge_cells(e).is_closed());
+    EXPECT_TRUE(mesh.is_boundary(e));
+  }
+}
+
 TEST(Genus, SolidTorusAndBall) {
   EXPECT_EQ(test::kuhn_box(2).genus(), 0);
   generate::Arrays arrays = generate::box({3, 3, 1});
