@@ -76,6 +76,17 @@ bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
   return !cavity.removed.is_valid() || labels.vertex(cavity.removed) == 0;
 }
 
+/// True when some cell has all the vertices. Each of them is asked: the star of a vertex whose cells do not
+/// connect through faces is only known in part.
+bool exists(const TetMesh& mesh, const std::array<VertexHandle, 2>& edge, Star& scratch) {
+  return mesh.has_edge(edge[0], edge[1], scratch) || mesh.has_edge(edge[1], edge[0], scratch);
+}
+bool exists(const TetMesh& mesh, const std::array<VertexHandle, 3>& face, Star& scratch) {
+  return mesh.has_face(face[0], face[1], face[2], scratch) ||
+         mesh.has_face(face[1], face[2], face[0], scratch) ||
+         mesh.has_face(face[2], face[0], face[1], scratch);
+}
+
 }  // namespace
 
 bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch) {
@@ -93,7 +104,7 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
   const SimplexSet<3> old_faces = faces_of(before);
   for (const auto& edge : edges_of(cavity.born)) {
     if (old_edges.has(edge) || edge[1] == Cavity::kNewVertex) continue;
-    if (mesh.has_edge(edge[0], edge[1], scratch)) return false;
+    if (exists(mesh, edge, scratch)) return false;
   }
   for (const auto& face : faces_of(cavity.born)) {
     if (old_faces.has(face) || face[2] == Cavity::kNewVertex) continue;
@@ -101,7 +112,7 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
     if (!old_edges.has({face[0], face[1]}) || !old_edges.has({face[0], face[2]}) ||
         !old_edges.has({face[1], face[2]}))
       continue;
-    if (mesh.has_face(face[0], face[1], face[2], scratch)) return false;
+    if (exists(mesh, face, scratch)) return false;
   }
   return true;
 }

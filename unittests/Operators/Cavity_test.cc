@@ -106,6 +106,18 @@ TEST(Admissible, CollapseThatWouldMakeAFaceTwiceIsRefused) {
   EXPECT_NE(check(mesh).rule, Ok);
 }
 
+TEST(Admissible, EdgeIsFoundFromItsOtherEndWhereOneEndIsPinched) {
+  // Cells 0 and 1 on triangle (0, 1, 2); round vertex 4 a chain leads to cell 4, which has the edge 3-4. At
+  // vertex 3 cell 4 and cell 0 do not connect.
+  const TetMesh mesh = build(
+      {{1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}, {0, 0, 0.2}, {0, 0, -0.2}, {1, -1, -0.5}, {0, -1.5, 0.2}},
+      std::vector<Corners>{{0, 1, 2, 3}, {0, 2, 1, 4}, {0, 4, 2, 5}, {2, 4, 6, 5}, {4, 6, 5, 3}});
+  ASSERT_EQ(mesh.hook(V(3)), C(0));
+  ASSERT_EQ(ring_size(mesh, V(3), V(4)), 1U);
+  ASSERT_FALSE(check(mesh)) << "vertex 3 is meant to be pinched";
+  EXPECT_FALSE(is_admissible(mesh, swap_of(mesh, halfface_between(mesh, C(0), C(1)))));
+}
+
 TEST(Admissible, CavitiesDoNotCrossRegions) {
   TetMesh mesh = bipyramid(0.2);
   const Cavity cavity = swap_of(mesh, halfface_between(mesh, C(0), C(1)));

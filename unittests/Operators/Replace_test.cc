@@ -62,6 +62,24 @@ TEST(Replace, AppendsCellsWhenNoSlotIsFreeAndHandsOnWhatTheyInherit) {
   }
 }
 
+TEST(Replace, NewVertexInheritsTheFieldsOfTheNearestOfItsCluster) {
+  TetMesh mesh = octahedron();
+  auto heat = mesh.request_vertex_property<double>("heat", 0.0);
+  for (VertexHandle v : mesh.vertices()) heat[v] = 100.0 + static_cast<double>(v.idx());
+  Cavity cavity;
+  for (CellHandle c : mesh.cells()) {
+    cavity.dead.push_back(c);
+    const auto f = mesh.halfface_vertices(mesh.vertex_opposite_halfface(c, V(0)));
+    cavity.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+  }
+  cavity.removed = V(0);
+  cavity.new_vertex = Vec3{0.1, -0.6, 0.2};  // next to vertex 4
+  replace(mesh, cavity);
+  ASSERT_EQ(check(mesh), Ok);
+  EXPECT_EQ(mesh.point(V(7)), *cavity.new_vertex);
+  EXPECT_EQ(heat[V(7)], 104.0);
+}
+
 TEST(Replace, HooksPointToLiveCellsOfTheirVertex) {
   TetMesh mesh = jittered(3, 0.35, 2);
   int committed = 0;

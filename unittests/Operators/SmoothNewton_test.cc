@@ -16,13 +16,14 @@ TEST(SmoothNewton, CentreOfAnOctahedronReturnsToTheMiddle) {
   EXPECT_LT(norm(mesh.point(V(0))), 1e-3);
 }
 
-TEST(SmoothNewton, GainIsNearThatOfTheCandidateSearch) {
+TEST(SmoothNewton, GainIsMostOfThatOfTheCandidateSearch) {
+  // The norm weighs the cells that are nearly as bad as the worst: about four fifths of the gain of the
+  // search for the worst alone, star by star. Sharper norms come within 3 % and leave worse meshes behind.
   const SmoothTally newton = smooth_stars(NewtonSearch{}, VolumeLength{}, 0.25, 20);
   const SmoothTally candidates = smooth_stars(CandidateSearch{}, VolumeLength{}, 0.25, 20);
   ASSERT_GT(newton.moved, 400);
-  RecordProperty("newton_over_candidates_percent",
-                 static_cast<int>(100 * newton.sum_gain / candidates.sum_gain));
-  EXPECT_GT(newton.sum_gain, 0.8 * candidates.sum_gain);  // 0.86 where this was written
+  EXPECT_GT(newton.moved, 0.97 * candidates.moved);
+  EXPECT_GT(newton.sum_gain, 0.75 * candidates.sum_gain);
 }
 
 TEST(SmoothNewton, InvertedStarsGoThroughTheCandidateSearch) {
