@@ -156,6 +156,7 @@ class MeshBuilder {
   }
 
   void copy_cells() {
+    mesh_.cells_.reserve(n_cells() + n_cells() / TetMesh::kHeadroom);  // not touched until it is used
     mesh_.cells_.resize(n_cells());
     const std::size_t bad = first_bad(n_cells(), [&](std::size_t i) {
       const Corners& c = input_[i];

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HalfFace/TetMesh.hh"
 
+#include <algorithm>
+
 namespace hfr {
 namespace {
 
-/// Enters c; false when it was there.
-bool enter(Star& star, CellHandle c) {
-  constexpr unsigned kMask = 2 * Star::kCapacity - 1;
-  unsigned at = (static_cast<std::uint32_t>(c.idx()) * 0x9e3779b1U >> 16) & kMask;
-  for (; star.slot[at] != c; at = (at + 1) & kMask) {
+constexpr unsigned kSmallStar = 64;  // cells; most stars have fewer, and a smaller table is sooner cleared
+
+/// Enters c into the first mask + 1 slots; false when it was there.
+bool enter(Star& star, unsigned mask, CellHandle c) {
+  unsigned at = (static_cast<std::uint32_t>(c.idx()) * 0x9e3779b1U >> 16) & mask;
+  for (; star.slot[at] != c; at = (at + 1) & mask) {
     if (star.slot[at].is_valid()) continue;
     star.slot[at] = c;
     return true;
   }
   return false;
+}
+
+/// Clears the first mask + 1 slots and enters the first `size` cells.
+void enter_all(Star& star, unsigned mask, unsigned size) {
+  std::fill_n(star.slot.begin(), mask + 1, CellHandle());
+  for (unsigned i = 0; i < size; ++i) enter(star, mask, star.cells[i]);
 }
 
 }  // namespace
@@ -42,6 +51,8 @@ void TetMesh::resize_cells(std::size_t n) {
 }
 
 void TetMesh::grow_cells(std::size_t n) {
+  // A doubled vector of cells would cost more memory, and time to copy it, than all of a small repair.
+  if (n > cells_.capacity()) cells_.reserve(n + n / kHeadroom + kHeadroom);
   cells_.resize(n);
   if (!regions_.empty()) regions_.resize(n, 0);
   if (!cell_status_.empty()) cell_status_.resize(n, 0);
@@ -59,20 +70,21 @@ bool TetMesh::gather_star(VertexHandle v, Star& star) const {
   star.size = 0;
   const CellHandle first = hook(v);
   if (!first.is_valid()) return false;
-  star.slot.fill(CellHandle());
   star.cells[0] = first;
-  enter(star, first);
   unsigned size = 1;
+  unsigned mask = 2 * kSmallStar - 1;
+  enter_all(star, mask, size);
   for (unsigned i = 0; i < size; ++i) {
     const Cell& k = cell(star.cells[i]);
     const std::uint8_t corner = k.own_corner(v);
     star.corners[i] = corner;
     for (unsigned turn = 1; turn < 4; ++turn) {
       const HalfFaceHandle m = k.mate[(corner + turn) & 3];
-      if (!m.is_valid() || !enter(star, cell_of(m))) continue;
+      if (!m.is_valid() || !enter(star, mask, cell_of(m))) continue;
       if (size == Star::kCapacity) return false;
       __builtin_prefetch(&cells_[m.idx() / 4]);  // its turn comes in a few rounds
       star.cells[size++] = cell_of(m);
+      if (size == kSmallStar) enter_all(star, mask = 2 * Star::kCapacity - 1, size);
     }
   }
   star.size = static_cast<int>(size);

@@ -12,6 +12,7 @@
 #include "HalfFace/Handles.hh"
 #include "HalfFace/Labels.hh"
 #include "HalfFace/Properties.hh"
+#include "HalfFace/RawArray.hh"
 #include "HalfFace/Vec3.hh"
 #include "Parallel/Parallel.hh"
 
@@ -42,9 +43,9 @@ struct Cell {
 struct Star {
   static constexpr int kCapacity = 256;
   int size = 0;
-  std::array<CellHandle, kCapacity> cells;      ///< in order of discovery from the hook
-  std::array<std::uint8_t, kCapacity> corners;  ///< corner of the vertex in each cell
-  std::array<CellHandle, 2 * kCapacity> slot;   ///< hash table of them while they are gathered
+  RawArray<CellHandle, kCapacity> cells;      ///< in order of discovery from the hook
+  RawArray<std::uint8_t, kCapacity> corners;  ///< corner of the vertex in each cell
+  RawArray<CellHandle, 2 * kCapacity> slot;   ///< hash table of them while they are gathered
 };
 
 /// Old handle → new one, by index; invalid where it is gone.
@@ -73,7 +74,7 @@ struct Ring {
   static constexpr int kCapacity = 63;
   int size = 0;
   bool closed = false;  ///< the cells go all the way round
-  std::array<RingPlace, kCapacity> places;
+  RawArray<RingPlace, kCapacity> places;
 };
 
 // What the queries below return; all are C++20 views that do not allocate, see Circulators.hh.
@@ -468,6 +469,7 @@ class TetMesh {
  private:
   friend class MeshBuilder;
   friend GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options);
+  static constexpr std::size_t kHeadroom = 16;  // cells per spare slot
   enum StatusBit : std::uint8_t { kDeleted = 1, kFixed = 2, kSelected = 4, kTagged = 8 };
   static void set_bit(std::uint8_t& bits, std::uint8_t bit, bool on) {
     bits = static_cast<std::uint8_t>(on ? bits | bit : bits & ~bit);

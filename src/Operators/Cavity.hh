@@ -36,7 +36,7 @@ class FixedVector {
 
  private:
   std::size_t size_ = 0;
-  std::array<T, N> items_;
+  RawArray<T, N> items_;
 };
 
 /// Cells that an operator may write, all of them.

@@ -17,8 +17,8 @@ constexpr double kUnreachable = -std::numeric_limits<double>::infinity();
 struct EdgeRing {
   VertexHandle a, b;
   int size = 0;
-  std::array<VertexHandle, 32> vertices;
-  std::array<CellHandle, 32> cells;
+  RawArray<VertexHandle, 32> vertices;
+  RawArray<CellHandle, 32> cells;
 };
 
 /// False when the edge lies on the boundary or its ring has more than 32 cells.
@@ -110,7 +110,7 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
   if (!gather_ring(mesh, seed, ring)) return std::nullopt;
   const auto n = static_cast<std::size_t>(ring.size);
   double old_worst = std::numeric_limits<double>::infinity();
-  std::array<Vec3, 32> p;
+  RawArray<Vec3, 32> p;
   for (std::size_t i = 0; i < n; ++i) {
     old_worst = std::min(old_worst, quality[ring.cells[i].idx()]);
     p[i] = mesh.point(ring.vertices[i]);

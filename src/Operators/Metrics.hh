@@ -2,6 +2,7 @@
 #ifndef HFR_OPERATORS_METRICS_HH
 #define HFR_OPERATORS_METRICS_HH
 
+#include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 #include "kernels/untangle.h"
 
@@ -15,6 +16,15 @@ struct Untangling {
     return hfr_untangle_decision(to_real3(a), to_real3(b), to_real3(c), to_real3(d), per_volume);
   }
 };
+
+/// Most cells are positive, and then it is volume-length.
+inline void block_decisions(const Untangling& metric, const CornerBlock& block, CornerBlock::Lane& out) {
+  block_decisions(VolumeLength{}, block, out);
+  for (std::size_t i = 0; i < CornerBlock::kSize; ++i) {
+    const auto at = [&](std::size_t k) { return Vec3{block.x[k][i], block.y[k][i], block.z[k][i]}; };
+    if (!(out[i] > 0)) out[i] = metric(at(0), at(1), at(2), at(3));
+  }
+}
 
 }  // namespace hfr
 

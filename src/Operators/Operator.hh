@@ -47,7 +47,15 @@ concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
 };
 
 /// Per-vertex byte: 1 where the vertex must stay: boundary, interface between regions, on a labelled face
-/// inside or a labelled edge, fixed, or a vertex whose cells do not connect through faces.
+/// inside or a labelled edge, or fixed.
+std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy policy = {});
+/// Number of cells of each vertex.
+std::vector<std::uint32_t> star_sizes(const TetMesh& mesh);
+/// True when the cells of v do not connect through faces, or are too many for a Star: an operator that walks
+/// its star would miss some. `star_size`: all cells of v.
+bool is_pinched(const TetMesh& mesh, VertexHandle v, std::uint32_t star_size, Star& scratch);
+/// constrained_vertices() and those that are pinched. Walks every star; a run asks for the few vertices that
+/// it comes upon instead.
 std::vector<std::uint8_t> frozen_vertices(const TetMesh& mesh, par::Policy policy = {});
 
 }  // namespace hfr

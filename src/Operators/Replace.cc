@@ -45,8 +45,8 @@ class OpenFaces {
   static constexpr std::size_t kMaxSize = 8192;
   static constexpr std::int32_t kTaken = -2;
   std::size_t mask_;
-  std::array<std::int32_t, kMaxSize> value_;
-  std::array<std::array<VertexHandle, 3>, kMaxSize> key_;
+  RawArray<std::int32_t, kMaxSize> value_;
+  RawArray<std::array<VertexHandle, 3>, kMaxSize> key_;
 };
 
 bool is_dead(const Cavity& cavity, CellHandle c) {

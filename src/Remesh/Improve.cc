@@ -42,15 +42,15 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   }
 }
 
-void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control) {
+void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first) {
   Workspace work;
   work.attach(mesh, options.policy);
   if (options.compat == Compat::kJpdc2013) {
     run_jpdc2013(mesh, work, options, control);
     return;
   }
-  const double floor = std::max(0.0, smallest_dihedral(mesh, options.policy));
-  untangle(mesh, work, options, control);
+  const double floor = report_value(Metric::kMinDihedral, std::clamp(at_first.worst, 0.0, 8.0 / 9.0));
+  if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
   control.set_fraction(0.1);
   if (options.min_dihedral) {
     polish(mesh, work, options, control, *options.min_dihedral);
@@ -70,18 +70,20 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   Result result;
   if (options.statistics) result.before = statistics(mesh, options.policy);
   RunControl control(options);
-  const auto goal_met = [&] {
-    if (options.min_dihedral) return smallest_dihedral(mesh, options.policy) >= *options.min_dihedral;
-    return invalid_cells(mesh, options.policy).empty();
-  };
-  const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && goal_met();
-  if (!nothing_to_do) run(mesh, options, control);
+  const double goal = options.min_dihedral ? dihedral_decision(*options.min_dihedral) : 0.0;
+  const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
+  Survey found = survey(mesh, options.policy);
+  const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && meets_goal(found);
+  if (!nothing_to_do) run(mesh, options, control, found);
   result.passes = std::move(control.passes());
   result.changed = std::any_of(result.passes.begin(), result.passes.end(),
                                [](const PassReport& pass) { return pass.winners > 0; });
-  if (result.changed) mesh.collect_garbage();
-  result.invalid_cells = invalid_cells(mesh, options.policy);
-  result.goal_reached = result.invalid_cells.empty() && (nothing_to_do || goal_met());
+  if (result.changed) {
+    mesh.collect_garbage();
+    found = survey(mesh, options.policy);
+  }
+  if (found.n_invalid > 0) result.invalid_cells = invalid_cells(mesh, options.policy);
+  result.goal_reached = meets_goal(found);
   result.stop = control.reason().value_or(result.goal_reached && options.min_dihedral ? Stop::kGoal
                                           : options.iterations > 0                    ? Stop::kIterations
                                                                                       : Stop::kNoProgress);

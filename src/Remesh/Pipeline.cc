@@ -44,6 +44,11 @@ double typical_six_volume(const TetMesh& mesh) {
   return volume > 0 ? volume : 1.0;
 }
 
+bool is_invalid(const TetMesh& mesh, CellHandle c) {
+  const auto& v = mesh.cell(c).v;
+  return orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) <= 0;
+}
+
 /// Calls f with a metric functor that the operators are instantiated for.
 template <class F>
 void with_stage_metric(Metric metric, F&& f) {
@@ -92,26 +97,34 @@ double dihedral_decision(double degrees) {
   return sine * sine;
 }
 
+Survey survey(const TetMesh& mesh, par::Policy policy) {
+  const std::size_t n = mesh.n_cells();
+  const int n_parts = par::thread_count(policy, n);
+  std::vector<Survey> found(static_cast<std::size_t>(n_parts));
+  par::parts(n_parts, [&](int part) {
+    Survey mine{std::numeric_limits<double>::infinity(), 0};
+    for_decisions(mesh, MinDihedral{}, par::part_begin(n, n_parts, part),
+                  par::part_begin(n, n_parts, part + 1), [&](std::size_t i, double value) {
+                    if (value < mine.worst) mine.worst = value;
+                    if (!(value > 0) && is_invalid(mesh, CellHandle(i))) ++mine.n_invalid;
+                  });
+    found[static_cast<std::size_t>(part)] = mine;
+  });
+  Survey all{std::numeric_limits<double>::infinity(), 0};
+  for (const Survey& part : found) {
+    all.worst = std::min(all.worst, part.worst);
+    all.n_invalid += part.n_invalid;
+  }
+  return all;
+}
+
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
-  const MinDihedral metric;
-  const double worst = par::reduce(
-      policy, mesh.n_cells(), std::numeric_limits<double>::infinity(),
-      [&](std::size_t i) {
-        const CellHandle c(i);
-        if (mesh.is_deleted(c)) return std::numeric_limits<double>::infinity();
-        const auto& v = mesh.cell(c).v;
-        return metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
-      },
-      [](double a, double b) { return std::min(a, b); });
-  return report_value(Metric::kMinDihedral, std::min(worst, 8.0 / 9.0));
+  return report_value(Metric::kMinDihedral, std::min(survey(mesh, policy).worst, 8.0 / 9.0));
 }
 
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
   const auto indices = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
-    const CellHandle c(i);
-    if (mesh.is_deleted(c)) return false;
-    const auto& v = mesh.cell(c).v;
-    return orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) <= 0;
+    return !mesh.is_deleted(CellHandle(i)) && is_invalid(mesh, CellHandle(i));
   });
   std::vector<CellHandle> cells;
   cells.reserve(indices.size());

@@ -11,6 +11,12 @@ namespace hfr {
 
 /// sin² of an angle in degrees: what the dihedral metrics call their decision value.
 double dihedral_decision(double degrees);
+/// The mesh in two numbers, from one pass over its cells.
+struct Survey {
+  double worst = 0;           ///< smallest decision value of MinDihedral; infinity without cells
+  std::size_t n_invalid = 0;  ///< cells whose volume is not positive beyond rounding
+};
+Survey survey(const TetMesh& mesh, par::Policy policy);
 /// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
 /// Cells whose volume is not positive beyond rounding, ascending.

@@ -14,6 +14,52 @@ constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/k
 }  // namespace
 
 template <class Metric>
+std::span<const Index> Stage<Metric>::poor(double value) {
+  const auto& quality = work_.quality;
+  if (work_.all_touched || value != poor_below_) {
+    poor_ = par::compact<Index>(options_.policy, quality.size(),
+                                [&](std::size_t i) { return quality[i] < value; });
+  } else if (!work_.touched.empty()) {
+    std::erase_if(poor_, [&](Index c) { return !(quality[c] < value); });
+    for (Index c : work_.touched)
+      if (quality[c] < value) poor_.push_back(c);
+    std::sort(poor_.begin(), poor_.end());
+    poor_.erase(std::unique(poor_.begin(), poor_.end()), poor_.end());
+  }
+  poor_below_ = value;
+  work_.clear_touched();
+  return poor_;
+}
+
+template <class Metric>
+void Stage<Metric>::count(Focus focus) {
+  struct Sum {
+    std::size_t invalid = 0;
+    double worst = std::numeric_limits<double>::infinity();
+  };
+  const auto& quality = work_.quality;
+  const auto sum_over = [&](std::size_t n, auto&& cell) {
+    return par::reduce(
+        options_.policy, n, Sum{},
+        [&](std::size_t i) {
+          const double q = quality[cell(i)];
+          return Sum{static_cast<std::size_t>(q > 0 ? 0 : 1), q};
+        },
+        [](Sum a, Sum b) {
+          return Sum{a.invalid + b.invalid, std::min(a.worst, b.worst)};
+        });
+  };
+  Sum sum;
+  if (!focus.everything() && focus.below > 0) {
+    const auto cells = poor(focus.below);
+    sum = sum_over(cells.size(), [&](std::size_t i) { return cells[i]; });
+  }
+  if (!(sum.worst < focus.below)) sum = sum_over(quality.size(), [](std::size_t i) { return i; });
+  n_invalid_ = sum.invalid;
+  worst_ = sum.worst;
+}
+
+template <class Metric>
 template <class MakeOp, class RunRound>
 std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op,
                                   RunRound&& run_round) {
@@ -27,11 +73,11 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     Round<Op> round(mesh_, work_, {options_.policy, n_invalid_ > 0, options_.seed});
     const RoundCounts counts = run_round(round, make_op(), list);
     total += counts;
-    if (n_invalid_ > 0) count();
+    if (n_invalid_ > 0) count(focus);
     if (r == 0) first = counts.winners;
     if (counts.winners * kLittle <= first) break;
   }
-  count();
+  count(focus);
   report(kind, iteration, total, control_.seconds() - start);
   return total.winners;
 }
@@ -65,15 +111,20 @@ std::size_t Stage<Metric>::face_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
+std::vector<VertexHandle> Stage<Metric>::removable(const Worklist& list) const {
+  std::vector<VertexHandle> vertices = vertex_seeds(mesh_, list, work_.frozen, options_.policy);
+  drop_pinched(mesh_, work_.star_size, vertices, options_.policy);
+  return vertices;
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
   return rounds(
       kNode, iteration, focus,
       [&] {
         return VertexRemoval<Metric>{metric_, work_.quality, work_.frozen};
       },
-      [&](auto& round, const auto& op, const Worklist& list) {
-        return round.run(op, vertex_seeds(mesh_, list, work_.frozen, options_.policy));
-      });
+      [&](auto& round, const auto& op, const Worklist& list) { return round.run(op, removable(list)); });
 }
 
 template <class Metric>
@@ -101,7 +152,7 @@ std::size_t Stage<Metric>::star_rounds(Kind kind, int iteration, Focus focus, bo
       [&](auto& round, const auto& op, const Worklist& list) {
         if constexpr (kCluster == Cluster::kNode) {
           std::vector<Seed> seeds;
-          for (VertexHandle v : vertex_seeds(mesh_, list, work_.frozen, options_.policy))
+          for (VertexHandle v : removable(list))
             seeds.push_back({mesh_.hook(v), static_cast<std::uint8_t>(mesh_.cell(mesh_.hook(v)).corner(v))});
           return round.run(op, seeds);
         } else {
@@ -147,7 +198,7 @@ std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
         break;
     }
   }
-  count();
+  count(focus);
   report(kSmooth, iteration, counts, control_.seconds() - start);
   return counts.winners;
 }

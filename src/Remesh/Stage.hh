@@ -49,17 +49,14 @@ class Stage {
         name_(std::move(name)) {
     work_.set_qualities(mesh_, metric_, options_.policy);
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
-    count();
+    work_.all_touched = true;
+    count(Focus{});
   }
 
   std::size_t n_invalid() const { return n_invalid_; }
   /// Smallest decision value of the mesh.
   double worst() const { return worst_; }
-  std::size_t n_below(double value) const {
-    return par::reduce(
-        options_.policy, work_.quality.size(), std::size_t{0},
-        [&](std::size_t i) -> std::size_t { return work_.quality[i] < value ? 1 : 0; }, std::plus<>{});
-  }
+  std::size_t n_below(double value) { return poor(value).size(); }
 
   /// Forgets what was looked at, so that a pass with a wider focus or other operators sees every cell again.
   void look_again() {
@@ -96,13 +93,15 @@ class Stage {
     }
     const std::uint32_t since = looked_[kind];
     looked_[kind] = work_.clock;
-    return Worklist(mesh_, options_.policy, [&](CellHandle c) {
-      if (!(work_.quality[c.idx()] < focus.below)) return false;
+    return Worklist(mesh_, options_.policy, poor(focus.below), [&](CellHandle c) {
       for (VertexHandle v : mesh_.cell(c).v)
         if (work_.changed[v.idx()] > since) return true;
       return false;
     });
   }
+
+  /// Vertices of the listed cells that an operator may take out.
+  std::vector<VertexHandle> removable(const Worklist& list) const;
 
   /// Rounds of one operator until they bring little, then a line in the report.
   template <class MakeOp, class RunRound>
@@ -110,23 +109,12 @@ class Stage {
   template <Cluster kCluster>
   std::size_t star_rounds(Kind kind, int iteration, Focus focus, bool reconnect, bool insert);
 
-  void count() {
-    struct Sum {
-      std::size_t invalid = 0;
-      double worst = std::numeric_limits<double>::infinity();
-    };
-    const Sum sum = par::reduce(
-        options_.policy, work_.quality.size(), Sum{},
-        [&](std::size_t i) {
-          const double q = work_.quality[i];
-          return Sum{static_cast<std::size_t>(q > 0 ? 0 : 1), q};
-        },
-        [](Sum a, Sum b) {
-          return Sum{a.invalid + b.invalid, std::min(a.worst, b.worst)};
-        });
-    n_invalid_ = sum.invalid;
-    worst_ = sum.worst;
-  }
+  /// Cells whose decision value is below `value`, ascending. Asked again with the same value, it looks only
+  /// at what has been written since.
+  std::span<const Index> poor(double value);
+
+  /// Brings n_invalid_ and worst_ up to date. With a focus that holds a cell, both are found inside it.
+  void count(Focus focus);
 
   void report(Kind kind, int iteration, const RoundCounts& counts, double seconds);
 
@@ -138,6 +126,8 @@ class Stage {
   std::string name_;
   std::size_t n_invalid_ = 0;
   double worst_ = 0;
+  std::vector<Index> poor_;  // below poor_below_, but for what work_ has as touched
+  double poor_below_ = -std::numeric_limits<double>::infinity();
   std::array<std::uint32_t, kKinds> looked_{};
 };
 

@@ -202,10 +202,12 @@ class Round {
         first.push_back(mine.size());
         const Plan& plan = candidates_[winners_[w].candidate];
         op.commit(mesh_, plan, cavity);
-        if (cavity.moved.is_valid())
+        if (cavity.moved.is_valid()) {
           mesh_.set_point(cavity.moved, cavity.target);
-        else
+        } else {
+          count_stars(cavity, winners_[w].new_vertex);
           write_cells(mesh_, cavity, slots_of(w), winners_[w].new_vertex, mine);
+        }
         winners_[w].removed = cavity.removed;
       }
       first.push_back(mine.size());
@@ -214,6 +216,17 @@ class Round {
     });
     for_winners([&](std::size_t, std::size_t w) { mend_mates(w); });
     refresh(op, for_winners);
+  }
+
+  /// Keeps star_size right; winners share vertices.
+  void count_stars(const Cavity& cavity, VertexHandle new_vertex) {
+    const auto add = [&](VertexHandle v, std::uint32_t n) {
+      std::atomic_ref(work_.star_size[v.idx()]).fetch_add(n, std::memory_order_relaxed);
+    };
+    for (CellHandle c : cavity.dead)
+      for (VertexHandle v : mesh_.cell(c).v) add(v, static_cast<std::uint32_t>(-1));
+    for (const Tet& t : cavity.born)
+      for (VertexHandle v : t) add(v == Cavity::kNewVertex ? new_vertex : v, 1);
   }
 
   std::span<const CellHandle> slots_of(std::size_t w) const {
@@ -311,6 +324,13 @@ class Round {
       for (CellHandle c : slots_of(w))
         for (VertexHandle u : mesh_.cell(c).v) lower_hook(u, c);
     });
+    work_.touch(slots_);
+    for (const Winner& winner : winners_) {
+      if (candidates_[winner.candidate].n_dead != 0) continue;
+      Scope star;
+      op.scope(mesh_, candidates_[winner.candidate].seed, star);
+      work_.touch(star);
+    }
     for (CellHandle c : freed_) {
       work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
       work_.claim[c.idx()] = Workspace::kUnclaimed;

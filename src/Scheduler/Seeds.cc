@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scheduler/Seeds.hh"
 
+#include "Operators/Operator.hh"
+
 namespace hfr {
 namespace {
 
@@ -46,6 +48,20 @@ std::vector<VertexHandle> vertex_seeds(const TetMesh& mesh, const Worklist& list
   std::vector<VertexHandle> vertices(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) vertices[i] = VertexHandle(indices[i]);
   return vertices;
+}
+
+void drop_pinched(const TetMesh& mesh, std::span<const std::uint32_t> star_size,
+                  std::vector<VertexHandle>& vertices, par::Policy policy) {
+  std::vector<std::uint8_t> pinched(vertices.size(), 0);
+  par::for_ranges(policy, vertices.size(), [&](std::size_t begin, std::size_t end) {
+    Star scratch;
+    for (std::size_t i = begin; i < end; ++i)
+      pinched[i] = is_pinched(mesh, vertices[i], star_size[vertices[i].idx()], scratch);
+  });
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    if (!pinched[i]) vertices[n++] = vertices[i];
+  vertices.resize(n);
 }
 
 }  // namespace hfr

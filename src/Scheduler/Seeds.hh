@@ -24,6 +24,19 @@ class Worklist {
     });
   }
 
+  /// The same for the cells of an ascending list.
+  template <class Keep>
+  Worklist(const TetMesh& mesh, par::Policy policy, std::span<const Index> list, Keep&& keep)
+      : listed_(mesh.n_cells(), 0) {
+    cells_ = par::compact<Index>(policy, list.size(), [&](std::size_t i) {
+      const CellHandle c(list[i]);
+      if (mesh.is_deleted(c) || !keep(c)) return false;
+      listed_[c.idx()] = 1;
+      return true;
+    });
+    for (Index& c : cells_) c = list[c];
+  }
+
   std::span<const Index> cells() const { return cells_; }
   bool has(CellHandle c) const { return listed_[c.idx()] != 0; }
 
@@ -60,6 +73,9 @@ std::vector<HalfFaceHandle> face_seeds(const TetMesh& mesh, const Worklist& list
 /// Vertices of the listed cells that are not frozen, ascending.
 std::vector<VertexHandle> vertex_seeds(const TetMesh& mesh, const Worklist& list,
                                        std::span<const std::uint8_t> frozen, par::Policy policy);
+/// Takes out the vertices whose cells a walk round them would miss in part; see is_pinched().
+void drop_pinched(const TetMesh& mesh, std::span<const std::uint32_t> star_size,
+                  std::vector<VertexHandle>& vertices, par::Policy policy);
 
 }  // namespace hfr
 

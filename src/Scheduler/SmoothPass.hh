@@ -38,10 +38,11 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
   counts.seeds = vertices.size();
   ++work.clock;
   auto start = Clock::now();
-  const StarTable stars(mesh, vertices, policy);
+  const StarTable stars(mesh, vertices, work.star_size);
   const auto groups = colour_vertices(mesh, vertices, stars);
   counts.seconds_select = since(start);
   start = Clock::now();
+  std::vector<std::uint8_t> moved(vertices.size(), 0);
   for (const auto& group : groups) {
     counts.winners += par::reduce(
         policy, group.size(), std::size_t{0},
@@ -56,6 +57,7 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
           if (!(move->old_worst > 0) && makes_more_invalid(mesh, work, metric, v, link, move->target))
             return 0;
           mesh.set_point(v, move->target);
+          moved[i] = 1;
           for (HalfFaceHandle h : link) {
             const CellHandle c = cell_of(h);
             work.quality[c.idx()] = quality_with(mesh, c, v, move->target, metric);
@@ -66,6 +68,13 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
           return 1;
         },
         [](std::size_t a, std::size_t b) { return a + b; });
+  }
+  std::vector<CellHandle> cells;
+  for (std::size_t i = 0; i < vertices.size() && !work.all_touched; ++i) {
+    if (!moved[i]) continue;
+    cells.clear();
+    for (HalfFaceHandle h : stars.link(i)) cells.push_back(cell_of(h));
+    work.touch(cells);
   }
   counts.candidates = counts.winners;
   counts.seconds_evaluate = since(start);

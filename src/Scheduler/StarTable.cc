@@ -20,50 +20,62 @@ std::vector<std::uint32_t> numbers_of(std::size_t n_vertices, std::span<const Ve
 
 }  // namespace
 
-StarTable::StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy)
+StarTable::StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices,
+                     std::span<const std::uint32_t> star_size)
     : begin_(vertices.size() + 1, 0) {
-  (void)policy;
-  // A few vertices walk their stars; many are cheaper to serve by one sweep over all cells.
-  if (vertices.size() < mesh.n_vertices() / 16) {
-    Star star;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      begin_[i] = links_.size();
-      mesh.gather_star(vertices[i], star);
-      for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k)
-        links_.push_back(halfface_of(star.cells[k], star.corners[k]));
-      std::sort(links_.begin() + static_cast<std::ptrdiff_t>(begin_[i]), links_.end());
-    }
-    begin_.back() = links_.size();
-    return;
-  }
-  const std::vector<std::uint32_t> number = numbers_of(mesh.n_vertices(), vertices);
-  const auto for_corners = [&](auto&& visit) {
-    for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
-      const Cell& cell = mesh.cell(CellHandle(i));
-      if (!cell.v[0].is_valid()) continue;
-      for (int k = 0; k < 4; ++k) {
-        const std::uint32_t at = number[cell.v[static_cast<std::size_t>(k)].idx()];
-        if (at != kNotListed) visit(at, halfface_of(CellHandle(i), k));
-      }
-    }
-  };
-  for_corners([&](std::uint32_t at, HalfFaceHandle) { ++begin_[at]; });
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    if (begin_[i] > Star::kCapacity) begin_[i] = 0;
   std::size_t sum = 0;
-  std::vector<std::size_t> next(vertices.size());
-  std::vector<std::uint8_t> served(vertices.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    served[i] = begin_[i] > 0;
-    const std::size_t count = begin_[i];
-    begin_[i] = next[i] = sum;
-    sum += count;
+    begin_[i] = sum;
+    const std::size_t size = star_size[vertices[i].idx()];
+    if (size <= Star::kCapacity) sum += size;
   }
   begin_.back() = sum;
   links_.resize(sum);
-  for_corners([&](std::uint32_t at, HalfFaceHandle h) {
-    if (served[at]) links_[next[at]++] = h;
-  });
+  // A few vertices walk their stars; many are cheaper to serve by one sweep over all cells.
+  if (vertices.size() < mesh.n_vertices() / 16)
+    walk_stars(mesh, vertices);
+  else
+    sweep_cells(mesh, vertices);
+}
+
+void StarTable::walk_stars(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
+  Star star;
+  std::vector<VertexHandle> in_parts;  // vertices whose cells do not connect through faces: rare
+  std::vector<std::size_t> number;     // of those
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::size_t size = begin_[i + 1] - begin_[i];
+    if (size == 0) continue;
+    if (!mesh.gather_star(vertices[i], star) || static_cast<std::size_t>(star.size) != size) {
+      in_parts.push_back(vertices[i]);
+      number.push_back(i);
+      continue;
+    }
+    const auto first = links_.begin() + static_cast<std::ptrdiff_t>(begin_[i]);
+    for (std::size_t k = 0; k < size; ++k)
+      links_[begin_[i] + k] = halfface_of(star.cells[k], star.corners[k]);
+    std::sort(first, first + static_cast<std::ptrdiff_t>(size));
+  }
+  for (std::size_t n = 0; n < in_parts.size(); ++n) {
+    std::size_t at = begin_[number[n]];
+    for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+      const int corner = mesh.cell(CellHandle(c)).corner(in_parts[n]);
+      if (corner < 4) links_[at++] = halfface_of(CellHandle(c), corner);
+    }
+  }
+}
+
+void StarTable::sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
+  const std::vector<std::uint32_t> number = numbers_of(mesh.n_vertices(), vertices);
+  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+    const Cell& cell = mesh.cell(CellHandle(i));
+    if (!cell.v[0].is_valid()) continue;
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t at = number[cell.v[static_cast<std::size_t>(k)].idx()];
+      if (at != kNotListed && begin_[at + 1] != begin_[at])
+        links_[next[at]++] = halfface_of(CellHandle(i), k);
+    }
+  }
 }
 
 std::vector<std::vector<std::uint32_t>> colour_vertices(const TetMesh& mesh,

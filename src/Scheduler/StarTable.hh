@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
-#include "Parallel/Parallel.hh"
 
 namespace hfr {
 
@@ -15,8 +14,10 @@ namespace hfr {
 /// thrown away after (the paper's "generated at the time of use").
 class StarTable {
  public:
-  /// `vertices` ascending. A star is left empty when it has more than Star::kCapacity cells.
-  StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
+  /// `vertices` ascending; `star_size` as star_sizes() has it. A star is left empty when it has more than
+  /// Star::kCapacity cells.
+  StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices,
+            std::span<const std::uint32_t> star_size);
 
   std::size_t size() const { return begin_.size() - 1; }
   /// Half-faces opposite vertex number i, one a cell of its star, ascending.
@@ -25,6 +26,9 @@ class StarTable {
   }
 
  private:
+  void walk_stars(const TetMesh& mesh, std::span<const VertexHandle> vertices);
+  void sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> vertices);
+
   std::vector<std::size_t> begin_;
   std::vector<HalfFaceHandle> links_;
 };

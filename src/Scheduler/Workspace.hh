@@ -9,26 +9,35 @@
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Operator.hh"
 #include "Parallel/Parallel.hh"
+#include "Quality/Decisions.hh"
 
 namespace hfr {
 
-/// What rounds keep about the mesh between them: 13 bytes a cell, 5 a vertex.
+/// What rounds keep about the mesh between them: 13 bytes a cell, 9 a vertex.
 struct Workspace {
   static constexpr std::uint32_t kUnclaimed = 0xffffffffU;
 
-  std::vector<double> quality;         ///< per cell slot: decision value in the metric of the stage
-  std::vector<std::uint32_t> claim;    ///< per cell slot: the winner that holds it in this round
-  std::vector<std::uint8_t> pending;   ///< per cell slot: one bit an operator that has not looked at it yet
-  std::vector<std::uint8_t> frozen;    ///< per vertex
-  std::vector<std::uint32_t> changed;  ///< per vertex: clock of the last change of its star
-  std::uint32_t clock = 1;             ///< counts rounds
+  std::vector<double> quality;           ///< per cell slot: decision value in the metric of the stage
+  std::vector<std::uint32_t> claim;      ///< per cell slot: the winner that holds it in this round
+  std::vector<std::uint8_t> pending;     ///< per cell slot: one bit an operator that has not looked at it yet
+  std::vector<std::uint8_t> frozen;      ///< per vertex; see constrained_vertices()
+  std::vector<std::uint32_t> star_size;  ///< per vertex: number of its cells
+  std::vector<std::uint32_t> changed;    ///< per vertex: clock of the last change of its star
+  std::uint32_t clock = 1;               ///< counts rounds
+  std::vector<Index> touched;            ///< cell slots written since clear_touched(), some more than once
+  bool all_touched = true;               ///< more than are worth a list
 
   /// Sizes everything for the mesh, all cells pending. Qualities are left to set_qualities().
   void attach(const TetMesh& mesh, par::Policy policy) {
+    const std::size_t room = mesh.n_cells() + mesh.n_cells() / 16;  // as the mesh has
+    quality.reserve(room);
+    claim.reserve(room);
+    pending.reserve(room);
     quality.assign(mesh.n_cells(), 0.0);
     claim.assign(mesh.n_cells(), kUnclaimed);
     pending.assign(mesh.n_cells(), 0xff);
-    frozen = frozen_vertices(mesh, policy);
+    frozen = constrained_vertices(mesh, policy);
+    star_size = star_sizes(mesh);
     changed.assign(mesh.n_vertices(), clock);
   }
 
@@ -38,20 +47,27 @@ struct Workspace {
     claim.resize(mesh.n_cells(), kUnclaimed);
     pending.resize(mesh.n_cells(), 0);
     frozen.resize(mesh.n_vertices(), 0);
+    star_size.resize(mesh.n_vertices(), 0);
     changed.resize(mesh.n_vertices(), clock);
+  }
+
+  void touch(std::span<const CellHandle> cells) {
+    if (all_touched || touched.size() + cells.size() > quality.size() / 8) {
+      all_touched = true;
+      return;
+    }
+    for (CellHandle c : cells) touched.push_back(c.idx());
+  }
+  void clear_touched() {
+    touched.clear();
+    all_touched = false;
   }
 
   /// Decision value of every live cell; +infinity in deleted slots.
   template <class Metric>
   void set_qualities(const TetMesh& mesh, const Metric& metric, par::Policy policy) {
-    par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
-      const CellHandle c(i);
-      if (mesh.is_deleted(c)) {
-        quality[i] = std::numeric_limits<double>::infinity();
-        return;
-      }
-      const auto& v = mesh.cell(c).v;
-      quality[i] = metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+    par::for_ranges(policy, mesh.n_cells(), [&](std::size_t begin, std::size_t end) {
+      for_decisions(mesh, metric, begin, end, [&](std::size_t i, double value) { quality[i] = value; });
     });
   }
 };

@@ -62,7 +62,7 @@ TEST(Reports, JsonOfImproveHasEveryKey) {
   EXPECT_EQ(report["exit_code"], 0);
   EXPECT_EQ(report["options"]["min_dihedral"], 12.0);
   expect_keys(report["input"], {"file", "flipped", "reoriented"});
-  expect_keys(report["seconds"], {"read", "build", "improve", "write"});
+  expect_keys(report["seconds"], {"read", "build", "improve", "statistics", "write"});
   expect_keys(report["output"], {"file", "vertices", "cells", "triangles", "edges", "hash"});
   expect_keys(report["result"], {"changed", "goal_reached", "stop", "n_invalid_cells", "invalid_cells"});
   ASSERT_FALSE(report["passes"].empty());

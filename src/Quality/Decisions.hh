@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_QUALITY_DECISIONS_HH
+#define HFR_QUALITY_DECISIONS_HH
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "HalfFace/TetMesh.hh"
+#include "Quality/Metrics.hh"
+
+namespace hfr {
+
+/// Coordinates of a few cells, gathered so that the compiler makes vector instructions of a kernel's formula.
+struct CornerBlock {
+  static constexpr std::size_t kSize = 32;
+  using Lane = std::array<double, kSize>;
+  std::array<Lane, 4> x{}, y{}, z{};  // by corner
+
+  void set(std::size_t i, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const std::array<Vec3, 4> p = {a, b, c, d};
+    for (std::size_t k = 0; k < 4; ++k) {
+      x[k][i] = p[k].x;
+      y[k][i] = p[k].y;
+      z[k][i] = p[k].z;
+    }
+  }
+};
+
+/// Decision values of all cells of a block: the bits that the metric gives cell by cell, with the widest
+/// vectors that the processor has.
+void block_decisions(const VolumeLength&, const CornerBlock& block, CornerBlock::Lane& out);
+void block_decisions(const MinSine2&, const CornerBlock& block, CornerBlock::Lane& out);
+void block_decisions(const MinDihedral&, const CornerBlock& block, CornerBlock::Lane& out);
+
+template <class Metric>
+concept HasBlockForm = requires(const Metric& metric, const CornerBlock& block, CornerBlock::Lane& out) {
+  block_decisions(metric, block, out);
+};
+
+/// visit(i, decision value) for the cell slots i in [begin, end), ascending; +infinity for deleted ones.
+template <class Metric, class Visit>
+void for_decisions(const TetMesh& mesh, const Metric& metric, std::size_t begin, std::size_t end,
+                   Visit&& visit) {
+  constexpr double kDeleted = std::numeric_limits<double>::infinity();
+  if constexpr (HasBlockForm<Metric>) {
+    CornerBlock block;
+    CornerBlock::Lane value{};
+    for (std::size_t first = begin; first < end; first += CornerBlock::kSize) {
+      const std::size_t n = end - first < CornerBlock::kSize ? end - first : CornerBlock::kSize;
+      for (std::size_t i = 0; i < n; ++i) {
+        const auto& v = mesh.cell(CellHandle(first + i)).v;
+        if (v[0].is_valid())
+          block.set(i, mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+      }
+      block_decisions(metric, block, value);
+      for (std::size_t i = 0; i < n; ++i)
+        visit(first + i, mesh.is_deleted(CellHandle(first + i)) ? kDeleted : value[i]);
+    }
+  } else {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& v = mesh.cell(CellHandle(i)).v;
+      visit(i, mesh.is_deleted(CellHandle(i))
+                   ? kDeleted
+                   : metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])));
+    }
+  }
+}
+
+}  // namespace hfr
+
+#endif
