@@ -4,6 +4,7 @@
 #include "HalfFace/Reorder.hh"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -101,6 +102,35 @@ std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, st
   return spread(x) << 2 | spread(y) << 1 | spread(z);
 }
 
+void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy) {
+  GarbageMap map;
+  map.vertices.resize(mesh.n_vertices());
+  for (std::size_t i = 0; i < mesh.n_vertices(); ++i) map.vertices[i] = VertexHandle(i);
+  map.cells.resize(mesh.n_cells());
+  std::size_t n = 0;
+  for (CellHandle c : went_to)
+    if (c.is_valid()) map.cells[c.idx()] = CellHandle(n++);
+  HFR_REQUIRE(n == mesh.n_cells(), "restore_cell_order: cells were made or deleted since");
+  mesh.renumber(map, mesh.n_vertices(), n, policy);
+}
+
+bool is_scattered(const TetMesh& mesh, par::Policy policy) {
+  constexpr std::size_t kFar = 65536;  // cell records: 2 MiB, what a second-level cache holds
+  if (mesh.n_cells() <= kFar) return false;
+  const std::size_t n_far = par::reduce(
+      policy, mesh.n_cells(), std::size_t{0},
+      [&](std::size_t i) {
+        std::size_t n = 0;
+        for (HalfFaceHandle m : mesh.cell(CellHandle(i)).mate) {
+          const std::size_t other = cell_of(m).idx();
+          n += m.is_valid() && (other > i ? other - i : i - other) >= kFar ? 1 : 0;
+        }
+        return n;
+      },
+      std::plus<>{});
+  return n_far > mesh.n_cells();
+}
+
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
   const Grid grid(mesh, options.curve);
   GarbageMap map;
@@ -109,7 +139,9 @@ GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
   map.vertices = sorted_places<VertexHandle>(
       options.policy, mesh.n_vertices(), n_vertices,
       [&](std::size_t i) { return !mesh.is_deleted(VertexHandle(i)); },
-      [&](std::size_t i) { return grid.place(mesh.point(VertexHandle(i))); });
+      [&](std::size_t i) -> std::uint64_t {
+        return options.vertices ? grid.place(mesh.point(VertexHandle(i))) : 0;
+      });
   map.cells = sorted_places<CellHandle>(
       options.policy, mesh.n_cells(), n_cells, [&](std::size_t i) { return !mesh.is_deleted(CellHandle(i)); },
       [&](std::size_t i) {

@@ -14,6 +14,7 @@ enum class SpaceCurve {
 
 struct ReorderOptions {
   SpaceCurve curve = SpaceCurve::kHilbert;
+  bool vertices = true;  ///< false: vertices keep their order, and only cells are renumbered
   par::Policy policy = {};
 };
 
@@ -22,6 +23,14 @@ struct ReorderOptions {
 /// Returns where each vertex and cell went. Ties keep the old order, so the result depends on mesh and curve
 /// alone.
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options = {});
+
+/// Puts cells back into the order that they had before a reorder() of cells alone; `went_to` as that returned
+/// it. Needs that no cell was made or deleted since.
+void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy = {});
+
+/// True when walks over the mesh would miss the cache at most steps: more than a quarter of the neighbours of
+/// cells are 65,536 or more cells away.
+bool is_scattered(const TetMesh& mesh, par::Policy policy = {});
 
 /// Place on the curve of the point whose coordinates are x, y, z: 21 bits each.
 std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, std::uint32_t z);

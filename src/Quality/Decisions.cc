@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Quality/Decisions.hh"
 
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
 #include "kernels/dihedral.h"
 #include "kernels/volume_length.h"
 
@@ -31,20 +35,46 @@ __attribute__((target("avx2"))) void evaluate_avx2(const CornerBlock& block, Lan
 }
 template <Formula kFormula>
 void evaluate(const CornerBlock& block, Lane& out) {
+  switch (widest_vectors()) {
+    case Vectors::kAvx512:
+      return evaluate_avx512<kFormula>(block, out);
+    case Vectors::kAvx2:
+      return evaluate_avx2<kFormula>(block, out);
+    case Vectors::kBaseline:
+      return evaluate_all<kFormula>(block, out);
+  }
+}
+
+Vectors vectors_of_processor() {
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
-    return evaluate_avx512<kFormula>(block, out);
-  if (__builtin_cpu_supports("avx2")) return evaluate_avx2<kFormula>(block, out);
-  evaluate_all<kFormula>(block, out);
+    return Vectors::kAvx512;
+  return __builtin_cpu_supports("avx2") ? Vectors::kAvx2 : Vectors::kBaseline;
 }
 #else
 template <Formula kFormula>
 void evaluate(const CornerBlock& block, Lane& out) {
   evaluate_all<kFormula>(block, out);
 }
+
+Vectors vectors_of_processor() { return Vectors::kBaseline; }
 #endif
 
+Vectors allowed_vectors() {
+  const char* const name = std::getenv("HFR_VECTORS");
+  const std::string_view wish = name ? name : "";
+  const Vectors wished = wish == "baseline" ? Vectors::kBaseline
+                         : wish == "avx2"   ? Vectors::kAvx2
+                                            : Vectors::kAvx512;
+  return std::min(wished, vectors_of_processor());
+}
+
 }  // namespace
+
+Vectors widest_vectors() {
+  static const Vectors vectors = allowed_vectors();
+  return vectors;
+}
 
 void block_decisions(const VolumeLength&, const CornerBlock& block, Lane& out) {
   evaluate<hfr_volume_length_decision>(block, out);

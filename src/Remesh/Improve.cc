@@ -5,6 +5,7 @@
 #include <array>
 
 #include "HalfFace/Errors.hh"
+#include "HalfFace/Reorder.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/RunControl.hh"
 
@@ -42,25 +43,30 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   }
 }
 
-void run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first) {
+/// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
+/// reordered.
+bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first,
+         std::vector<CellHandle>& cell_order) {
+  // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
+  if (!options.min_dihedral && is_scattered(mesh, options.policy))
+    cell_order =
+        reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
   Workspace work;
   work.attach(mesh, options.policy);
   if (options.compat == Compat::kJpdc2013) {
     run_jpdc2013(mesh, work, options, control);
-    return;
+    return false;
   }
   const double floor = report_value(Metric::kMinDihedral, std::clamp(at_first.worst, 0.0, 8.0 / 9.0));
   if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
   control.set_fraction(0.1);
-  if (options.min_dihedral) {
-    polish(mesh, work, options, control, *options.min_dihedral);
-    return;
-  }
+  if (options.min_dihedral) return polish(mesh, work, options, control, *options.min_dihedral);
   // The worst angles first: the bulk stage, which knows only volume-length, can box them in.
   polish(mesh, work, options, control, kEarlyGoal, kLargestShare);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);
+  return false;
 }
 
 }  // namespace
@@ -74,16 +80,20 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
   Survey found = survey(mesh, options.policy);
   const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && meets_goal(found);
-  if (!nothing_to_do) run(mesh, options, control, found);
+  std::vector<CellHandle> cell_order;
+  const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order);
   result.passes = std::move(control.passes());
   result.changed = std::any_of(result.passes.begin(), result.passes.end(),
                                [](const PassReport& pass) { return pass.winners > 0; });
-  if (result.changed) {
+  if (result.changed)
     mesh.collect_garbage();
-    found = survey(mesh, options.policy);
+  else if (!cell_order.empty())
+    restore_cell_order(mesh, cell_order, options.policy);
+  if (!known_to_meet) {
+    if (result.changed) found = survey(mesh, options.policy);
+    if (found.n_invalid > 0) result.invalid_cells = invalid_cells(mesh, options.policy);
   }
-  if (found.n_invalid > 0) result.invalid_cells = invalid_cells(mesh, options.policy);
-  result.goal_reached = meets_goal(found);
+  result.goal_reached = known_to_meet || meets_goal(found);
   result.stop = control.reason().value_or(result.goal_reached && options.min_dihedral ? Stop::kGoal
                                           : options.iterations > 0                    ? Stop::kIterations
                                                                                       : Stop::kNoProgress);

@@ -21,9 +21,11 @@ std::span<const Index> Stage<Metric>::poor(double value) {
                                 [&](std::size_t i) { return quality[i] < value; });
   } else if (!work_.touched.empty()) {
     std::erase_if(poor_, [&](Index c) { return !(quality[c] < value); });
+    const auto n_old = static_cast<std::ptrdiff_t>(poor_.size());
     for (Index c : work_.touched)
       if (quality[c] < value) poor_.push_back(c);
-    std::sort(poor_.begin(), poor_.end());
+    std::sort(poor_.begin() + n_old, poor_.end());
+    std::inplace_merge(poor_.begin(), poor_.begin() + n_old, poor_.end());
     poor_.erase(std::unique(poor_.begin(), poor_.end()), poor_.end());
   }
   poor_below_ = value;

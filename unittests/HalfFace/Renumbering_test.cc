@@ -176,6 +176,40 @@ TEST(Reorder, SameForAnyNumberOfThreadsAndOnceIsEnough) {
   for (std::size_t c = 0; c < map.cells.size(); ++c) EXPECT_EQ(map.cells[c], CellHandle(c));
 }
 
+TEST(Reorder, CellsAloneLeaveVerticesWhereTheyAreAndCanBePutBack) {
+  TetMesh mesh = test::kuhn_box(4);
+  const TetMesh before = mesh;
+  const GarbageMap map = reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false});
+  EXPECT_EQ(check(mesh, {.last = Rule::kDuplicateEdge}), Ok);
+  for (VertexHandle v : mesh.vertices()) EXPECT_EQ(mesh.point(v), before.point(v));
+  std::size_t moved = 0;
+  for (CellHandle c : before.cells()) {
+    EXPECT_EQ(mesh.cell(map.cells[c.idx()]).v, before.cell(c).v);
+    moved += map.cells[c.idx()] != c ? 1 : 0;
+  }
+  EXPECT_GT(moved, mesh.n_cells() / 4);
+  restore_cell_order(mesh, map.cells);
+  for (CellHandle c : before.cells()) {
+    EXPECT_EQ(mesh.cell(c).v, before.cell(c).v);
+    EXPECT_EQ(mesh.cell(c).mate, before.cell(c).mate);
+  }
+  mesh.delete_cell(CellHandle(0));
+  mesh.collect_garbage();
+  EXPECT_THROW(restore_cell_order(mesh, map.cells), InvalidInput);
+}
+
+TEST(IsScattered, TellsARandomOrderFromThatOfACurve) {
+  generate::Arrays box = generate::box({40, 40, 40});
+  EXPECT_FALSE(is_scattered(build(box.points, box.cells)));
+  for (std::size_t i = box.cells.size(); i > 1; --i)
+    std::swap(box.cells[i - 1],
+              box.cells[static_cast<std::size_t>(generate::random_unit(1, i) * static_cast<double>(i))]);
+  TetMesh mesh = build(box.points, box.cells);
+  for (int threads : {1, 3}) EXPECT_TRUE(is_scattered(mesh, {.threads = threads}));
+  reorder(mesh, {.vertices = false});
+  EXPECT_FALSE(is_scattered(mesh));
+}
+
 TEST(Reorder, MeshWithoutExtent) {
   TetMesh mesh = build(std::vector<Vec3>(4), std::vector<test::Corners>{{0, 1, 2, 3}});
   EXPECT_NO_THROW(reorder(mesh));

@@ -94,6 +94,16 @@ TEST(Commands, OutputIsTheSameForAnyNumberOfThreads) {
   }
 }
 
+TEST(Commands, OutputIsTheSameWithAnyVectorInstructions) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 12 12 12 -o in.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o widest.mesh").code, 0);
+  for (const char* vectors : {"baseline", "avx2"}) {
+    ASSERT_EQ(tool.shell(std::string("HFR_VECTORS=") + vectors + " $TOOL in.mesh -o other.mesh").code, 0);
+    EXPECT_TRUE(tool.content("widest.mesh") == tool.content("other.mesh")) << vectors;
+  }
+}
+
 TEST(Commands, ImproveKeepsRegions) {
   Tool tool;
   ASSERT_EQ(tool.run("generate box --n 6 6 6 --jitter 0.3 --regions 2 -o in.mesh").code, 0);
