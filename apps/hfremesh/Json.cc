@@ -106,6 +106,7 @@ Json to_json(const PassReport& pass) {
   json["op"] = pass.op;
   json["iteration"] = pass.iteration;
   json["rounds"] = pass.rounds;
+  json["sub_rounds"] = pass.sub_rounds;
   json["seeds"] = pass.seeds;
   json["candidates"] = pass.candidates;
   json["winners"] = pass.winners;

@@ -79,6 +79,7 @@ struct PassReport {
   std::size_t seeds = 0;       ///< looked at
   std::size_t candidates = 0;  ///< that would improve their cluster
   std::size_t winners = 0;     ///< committed
+  std::size_t sub_rounds = 0;  ///< of the selections; as many as rounds where one thread marks
   std::size_t n_inverted = 0;  ///< after the pass
   double worst = 0;            ///< smallest decision value of the pass's metric after it
   double seconds = 0;

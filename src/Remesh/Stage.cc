@@ -225,6 +225,7 @@ void Stage<Metric>::report(Kind kind, int iteration, const RoundCounts& counts, 
   pass.seeds = counts.seeds;
   pass.candidates = counts.candidates;
   pass.winners = counts.winners;
+  pass.sub_rounds = counts.sub_rounds;
   pass.n_inverted = n_invalid_;
   pass.worst = worst_;
   pass.seconds = seconds;

@@ -16,6 +16,7 @@
 #include "Operators/Replace.hh"
 #include "Parallel/Parallel.hh"
 #include "Scheduler/Rank.hh"
+#include "Scheduler/Select.hh"
 #include "Scheduler/Workspace.hh"
 
 namespace hfr {
@@ -58,7 +59,7 @@ class Round {
     counts.seconds_evaluate = since(start);
     start = Clock::now();
     rank_all(op);
-    select(op);
+    counts.sub_rounds = select(op);
     counts.winners = winners_.size();
     counts.seconds_select = since(start);
     start = Clock::now();
@@ -72,6 +73,7 @@ class Round {
   using Plan = typename Op::Plan;
   struct Winner {
     std::uint32_t candidate = 0;
+    std::uint32_t rank = 0;
     VertexHandle new_vertex, removed;
     std::size_t first_slot = 0;
     std::span<OuterFace> notes;
@@ -142,22 +144,25 @@ class Round {
     rank(options_.policy, keys_, scratch_, identities_);
   }
 
-  /// The paper's ASSIGNMENT: in rank order, a candidate wins when no cell of its scope is taken.
-  void select(const Op& op) {
-    winners_.clear();
-    Scope scope;
-    Cavity cavity;
-    std::unordered_set<std::uint64_t> created;
-    for (const par::KeyIndex& key : keys_) {
-      const Plan& plan = candidates_[key.index];
-      op.scope(mesh_, plan.seed, scope);
-      bool free = true;
-      for (CellHandle c : scope) free = free && work_.claim[c.idx()] == Workspace::kUnclaimed;
-      if (!free || !creates_nothing_twice(op, plan, cavity, created)) continue;
-      const auto winner = static_cast<std::uint32_t>(winners_.size());
-      for (CellHandle c : scope) work_.claim[c.idx()] = winner;
-      winners_.push_back({key.index, {}, {}, 0, {}});
+  /// In rank order, a candidate wins when no cell of its scope is taken.
+  std::size_t select(const Op& op) {
+    scopes_ = ScopeList(options_.policy, keys_.size(), [&](std::size_t i, Scope& out) {
+      op.scope(mesh_, candidates_[keys_[i].index].seed, out);
+    });
+    std::size_t sub_rounds = 1;
+    std::vector<std::uint32_t> ranks;
+    if (options_.check_links) {
+      Cavity cavity;
+      std::unordered_set<std::uint64_t> created;
+      ranks = select_by_marking(scopes_, work_.claim, [&](std::size_t i) {
+        return creates_nothing_twice(op, candidates_[keys_[i].index], cavity, created);
+      });
+    } else {
+      ranks = hfr::select(options_.policy, scopes_, work_.claim, &sub_rounds);
     }
+    winners_.clear();
+    for (std::uint32_t r : ranks) winners_.push_back({keys_[r].index, r, {}, {}, 0, {}});
+    return sub_rounds;
   }
 
   /// Two winners that share no cell could still make the same edge in a folded mesh; the later one is
@@ -242,13 +247,12 @@ class Round {
     std::size_t n_cells = mesh_.n_cells();
     std::vector<std::pair<CellHandle, CellHandle>>
         fresh;  // a dead cell of the cavity, a slot that it extends to
-    Scope scope;
     Cavity cavity;
     for (Winner& winner : winners_) {
       const Plan& plan = candidates_[winner.candidate];
+      const auto scope = scopes_[winner.rank];
       winner.first_slot = slots_.size();
       if (plan.n_dead == 0) continue;
-      op.scope(mesh_, plan.seed, scope);
       HFR_ASSERT(scope.size() == plan.n_dead);
       for (std::uint32_t i = 0; i < plan.n_dead; ++i) {
         if (i < plan.n_born)
@@ -283,7 +287,7 @@ class Round {
     for (const OuterFace& note : winners_[w].notes) {
       if (!note.behind.is_valid()) continue;
       const std::uint32_t other = work_.claim[cell_of(note.behind).idx()];
-      if (other == Workspace::kUnclaimed || winners_[other].notes.empty()) {
+      if (other == kUnclaimed || winners_[other].notes.empty()) {
         mesh_.set_mate(note.behind, note.after);
         continue;
       }
@@ -301,21 +305,17 @@ class Round {
     };
     for_winners([&](std::size_t, std::size_t w) {
       const Winner& winner = winners_[w];
-      Scope moved_star;
-      std::span<const CellHandle> cells = slots_of(w);
-      if (candidates_[winner.candidate].n_dead == 0) {
-        op.scope(mesh_, candidates_[winner.candidate].seed, moved_star);
-        cells = moved_star;
-      }
+      const bool moves = candidates_[winner.candidate].n_dead == 0;
+      const std::span<const CellHandle> cells = moves ? scopes_[winner.rank] : slots_of(w);
       for (CellHandle c : cells) {
         const auto& v = mesh_.cell(c).v;
         work_.quality[c.idx()] =
             op.metric(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
         work_.pending[c.idx()] = 0xff;
-        work_.claim[c.idx()] = Workspace::kUnclaimed;
+        work_.claim[c.idx()] = kUnclaimed;
         for (VertexHandle u : v) {
           store(work_.changed[u.idx()], work_.clock);
-          if (candidates_[winner.candidate].n_dead != 0) store(mesh_.mutable_hook(u), CellHandle());
+          if (!moves) store(mesh_.mutable_hook(u), CellHandle());
         }
       }
     });
@@ -326,14 +326,11 @@ class Round {
     });
     work_.touch(slots_);
     for (const Winner& winner : winners_) {
-      if (candidates_[winner.candidate].n_dead != 0) continue;
-      Scope star;
-      op.scope(mesh_, candidates_[winner.candidate].seed, star);
-      work_.touch(star);
+      if (candidates_[winner.candidate].n_dead == 0) work_.touch(scopes_[winner.rank]);
     }
     for (CellHandle c : freed_) {
       work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
-      work_.claim[c.idx()] = Workspace::kUnclaimed;
+      work_.claim[c.idx()] = kUnclaimed;
     }
     for (const Winner& winner : winners_)
       if (winner.removed.is_valid()) mesh_.mark_deleted(winner.removed);
@@ -352,6 +349,7 @@ class Round {
   std::vector<Plan> candidates_;
   std::vector<Tet> identities_;
   std::vector<par::KeyIndex> keys_, scratch_;
+  ScopeList scopes_;  // of the candidates, by rank
   std::vector<Winner> winners_;
   std::vector<CellHandle> slots_, freed_;
 };

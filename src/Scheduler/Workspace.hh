@@ -10,17 +10,16 @@
 #include "Operators/Operator.hh"
 #include "Parallel/Parallel.hh"
 #include "Quality/Decisions.hh"
+#include "Scheduler/Select.hh"
 
 namespace hfr {
 
 /// What rounds keep about the mesh between them: 13 bytes a cell, 9 a vertex.
 struct Workspace {
-  static constexpr std::uint32_t kUnclaimed = 0xffffffffU;
-
-  std::vector<double> quality;           ///< per cell slot: decision value in the metric of the stage
-  std::vector<std::uint32_t> claim;      ///< per cell slot: the winner that holds it in this round
-  std::vector<std::uint8_t> pending;     ///< per cell slot: one bit an operator that has not looked at it yet
-  std::vector<std::uint8_t> frozen;      ///< per vertex; see constrained_vertices()
+  std::vector<double> quality;        ///< per cell slot: decision value in the metric of the stage
+  std::vector<std::uint32_t> claim;   ///< per cell slot: the winner that holds it in this round; see select()
+  std::vector<std::uint8_t> pending;  ///< per cell slot: one bit an operator that has not looked at it yet
+  std::vector<std::uint8_t> frozen;   ///< per vertex; see constrained_vertices()
   std::vector<std::uint32_t> star_size;  ///< per vertex: number of its cells
   std::vector<std::uint32_t> changed;    ///< per vertex: clock of the last change of its star
   std::uint32_t clock = 1;               ///< counts rounds
@@ -78,6 +77,7 @@ struct RoundCounts {
   std::size_t seeds = 0;       ///< looked at
   std::size_t candidates = 0;  ///< that would improve their cluster
   std::size_t winners = 0;     ///< committed
+  std::size_t sub_rounds = 0;  ///< of the selection: 1 a round when it is one marking loop
   double seconds_evaluate = 0;
   double seconds_select = 0;
   double seconds_commit = 0;
@@ -87,6 +87,7 @@ struct RoundCounts {
     seeds += o.seeds;
     candidates += o.candidates;
     winners += o.winners;
+    sub_rounds += o.sub_rounds;
     seconds_evaluate += o.seconds_evaluate;
     seconds_select += o.seconds_select;
     seconds_commit += o.seconds_commit;

@@ -187,7 +187,7 @@ int adjacent_pairs(const TetMesh& mesh, const std::vector<Candidate>& winners) {
 void expect_sound(const TetMesh& mesh, const Workspace& work) {
   ASSERT_EQ(check(mesh), Ok);
   EXPECT_EQ(work.quality, qualities(mesh, VolumeLength{}));
-  for (std::uint32_t claim : work.claim) ASSERT_EQ(claim, Workspace::kUnclaimed);
+  for (std::uint32_t claim : work.claim) ASSERT_EQ(claim, kUnclaimed);
   for (VertexHandle v : mesh.vertices()) {
     ASSERT_TRUE(mesh.hook(v).is_valid());
     ASSERT_TRUE(mesh.cell(mesh.hook(v)).has(v));

@@ -67,8 +67,8 @@ TEST(Reports, JsonOfImproveHasEveryKey) {
   expect_keys(report["result"], {"changed", "goal_reached", "stop", "n_invalid_cells", "invalid_cells"});
   ASSERT_FALSE(report["passes"].empty());
   for (const json& pass : report["passes"])
-    expect_keys(pass, {"stage", "op", "iteration", "rounds", "seeds", "candidates", "winners", "inverted",
-                       "worst", "seconds"});
+    expect_keys(pass, {"stage", "op", "iteration", "rounds", "sub_rounds", "seeds", "candidates", "winners",
+                       "inverted", "worst", "seconds"});
   for (const char* key : kStatisticsKeys) {
     EXPECT_TRUE(report["before"].contains(key)) << key;
     EXPECT_TRUE(report["after"].contains(key)) << key;
