@@ -81,25 +81,24 @@ void StarTable::sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> v
 std::vector<std::vector<std::uint32_t>> colour_vertices(const TetMesh& mesh,
                                                         std::span<const VertexHandle> vertices,
                                                         const StarTable& stars) {
-  const std::vector<std::uint32_t> number = numbers_of(mesh.n_vertices(), vertices);
-  constexpr std::uint8_t kNone = 0xff;
-  std::vector<std::uint8_t> colour(vertices.size(), kNone);
+  // By vertex of the mesh, so that a neighbour's colour is one read; a byte each stays in the cache.
+  constexpr std::uint8_t kNone = 63;
+  std::vector<std::uint8_t> colour(mesh.n_vertices(), kNone);
   std::vector<std::vector<std::uint32_t>> groups;
-  std::vector<std::uint32_t> alone;  // what would need a 65th colour gets a group of its own
+  std::vector<std::uint32_t> alone;  // what would need a 64th colour gets a group of its own
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     std::uint64_t used = 0;
     for (HalfFaceHandle h : stars.link(i)) {
-      for (VertexHandle v : mesh.cell(cell_of(h)).v) {
-        const std::uint32_t other = number[v.idx()];
-        if (other != kNotListed && colour[other] != kNone) used |= std::uint64_t{1} << colour[other];
-      }
+      const auto& v = mesh.cell(cell_of(h)).v;
+      used |= (std::uint64_t{1} << colour[v[0].idx()] | std::uint64_t{1} << colour[v[1].idx()]) |
+              (std::uint64_t{1} << colour[v[2].idx()] | std::uint64_t{1} << colour[v[3].idx()]);
     }
-    const int first = std::countr_one(used);
-    if (first >= 64) {
+    const int first = std::countr_one(used & ~(std::uint64_t{1} << kNone));
+    if (first >= kNone) {
       alone.push_back(static_cast<std::uint32_t>(i));
       continue;
     }
-    colour[i] = static_cast<std::uint8_t>(first);
+    colour[vertices[i].idx()] = static_cast<std::uint8_t>(first);
     if (static_cast<std::size_t>(first) == groups.size()) groups.emplace_back();
     groups[static_cast<std::size_t>(first)].push_back(static_cast<std::uint32_t>(i));
   }
