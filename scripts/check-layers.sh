@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Checks the rules between the folders of src/ (docs/building.md names them):
 #   - a folder includes only itself and the folders before it;
-#   - only src/Parallel knows OpenMP;
+#   - only src/Parallel knows OpenMP and oneTBB;
 #   - nothing in src/ prints, exits or aborts;
 #   - every header in kernels/ is listed in kernels/CMakeLists.txt, every source in its folder's CMakeLists.txt;
 #   - apps/ and examples/ use public headers only.
@@ -45,8 +45,8 @@ done
 
 for file in $(sources src kernels apps); do
   case $file in src/Parallel/*) continue ;; esac
-  { grep -nE '^ *# *(include *[<"]omp\.h|pragma +omp)|omp_[a-z_]+\(' "$file" || true; } |
-    sed -E "s|^([0-9]+):(.*)|$file:\1: only src/Parallel knows OpenMP: \2|" >> "$faults"
+  { grep -nE '^ *# *(include *[<"](omp\.h|tbb/|oneapi/tbb)|pragma +omp)|omp_[a-z_]+\(|tbb::' "$file" || true; } |
+    sed -E "s|^([0-9]+):(.*)|$file:\1: only src/Parallel knows the thread library: \2|" >> "$faults"
 done
 
 prints='(std::|[^A-Za-z0-9_:.>]|^)(cout|cerr|clog|printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror)[^A-Za-z0-9_]|fmt::print'

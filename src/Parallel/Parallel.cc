@@ -3,46 +3,35 @@
 
 #include <atomic>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+#include "Parallel/Backend.hh"
 
 namespace hfr::par {
 
 Policy Policy::all() {
   Policy policy;
-#ifdef _OPENMP
-  policy.threads = omp_get_max_threads();
-#endif
+  policy.threads = std::max(1, detail::backend_threads());
   return policy;
 }
 
 int thread_count(Policy policy, std::size_t n) {
-#ifdef _OPENMP
-  if (n < policy.serial_below || policy.threads <= 1) return 1;
-  return policy.threads;
-#else
-  (void)policy;
-  (void)n;
-  return 1;
-#endif
+  const bool serial = n < policy.serial_below || policy.threads <= 1 || detail::backend_threads() == 0;
+  return serial ? 1 : policy.threads;
 }
 
 namespace detail {
 
 void run_parts(int parts, void (*body)(void*, int), void* context) {
   std::vector<std::exception_ptr> failed(static_cast<std::size_t>(parts));
-#ifdef _OPENMP
-// One iteration a part, so that the result never depends on how many threads the runtime really grants.
-#pragma omp parallel for num_threads(parts) schedule(static, 1)
-#endif
-  for (int part = 0; part < parts; ++part) {
+  auto run_part = [&](int part) {
     try {
       body(context, part);
     } catch (...) {
       failed[static_cast<std::size_t>(part)] = std::current_exception();
     }
-  }
+  };
+  using RunPart = decltype(run_part);
+  backend_parts(
+      parts, [](void* run, int part) { (*static_cast<RunPart*>(run))(part); }, &run_part);
   for (const std::exception_ptr& error : failed)
     if (error) std::rethrow_exception(error);
 }

@@ -37,9 +37,9 @@ expect_fault 'src/HalfFace/Mesh.cc:3: HalfFace stands below'
 echo '#include <Quality/Metrics.hh>' >> "$tree/kernels/base.h"
 expect_fault 'kernels/base.h:1: kernels stand below'
 echo '  #pragma omp atomic' >> "$tree/src/IO/Read.cc"
-expect_fault 'src/IO/Read.cc:3: only src/Parallel knows OpenMP'
+expect_fault 'src/IO/Read.cc:3: only src/Parallel knows the thread library'
 echo '#include <omp.h>' >> "$tree/apps/hfremesh/main.cc"
-expect_fault 'apps/hfremesh/main.cc:4: only src/Parallel knows OpenMP'
+expect_fault 'apps/hfremesh/main.cc:4: only src/Parallel knows the thread library'
 echo 'void f() { std::cerr << "no"; }' >> "$tree/src/IO/Read.cc"
 expect_fault 'src/IO/Read.cc:3: src/ neither prints'
 echo 'void f() { fprintf(stderr, "no"); }' >> "$tree/src/IO/Read.cc"

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The same for every thread library: one that is compiled has to pass all of it.
+#include "Parallel/Parallel.hh"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+
+namespace hfr::par {
+namespace {
+
+class Threads : public testing::TestWithParam<int> {
+ protected:
+  Policy policy() const { return {GetParam(), 1}; }
+};
+INSTANTIATE_TEST_SUITE_P(Parallel, Threads, testing::Values(1, 2, 3, 7, 16));
+
+TEST_P(Threads, ForEachVisitsEachItemOnce) {
+  for (const std::size_t n : {0U, 1U, 2U, 5U, 16U, 1000U}) {
+    std::vector<std::atomic<int>> visits(n);
+    for_each(policy(), n, [&](std::size_t i) { ++visits[i]; });
+    for_each_dynamic(policy(), n, 3, [&](std::size_t i) { ++visits[i]; });
+    for (const auto& count : visits) EXPECT_EQ(count, 2);
+  }
+}
+
+TEST_P(Threads, PartsAreContiguousAndEven) {
+  const int n_parts = GetParam();
+  for (const std::size_t n : {0U, 3U, 100U, 101U}) {
+    EXPECT_EQ(part_begin(n, n_parts, 0), 0U);
+    EXPECT_EQ(part_begin(n, n_parts, n_parts), n);
+    for (int p = 0; p < n_parts; ++p) {
+      const std::size_t size = part_begin(n, n_parts, p + 1) - part_begin(n, n_parts, p);
+      EXPECT_LE(size, n / static_cast<std::size_t>(n_parts) + 1);
+      EXPECT_GE(size, n / static_cast<std::size_t>(n_parts));
+    }
+  }
+}
+
+TEST_P(Threads, ReduceGivesTheSerialResult) {
+  const auto value = [](std::size_t i) { return (i * 7919) % 1009; };
+  std::size_t sum = 0;
+  std::size_t most = 0;
+  for (std::size_t i = 0; i < 5000; ++i) {
+    sum += value(i);
+    most = std::max(most, value(i));
+  }
+  EXPECT_EQ(reduce(policy(), 5000, std::size_t{0}, value, std::plus<>{}), sum);
+  EXPECT_EQ(reduce(policy(), 5000, std::size_t{0}, value,
+                   [](std::size_t a, std::size_t b) { return std::max(a, b); }),
+            most);
+  EXPECT_EQ(reduce(policy(), 0, std::size_t{0}, value, std::plus<>{}), 0U);
+}
+
+TEST_P(Threads, CompactKeepsTheOrder) {
+  const auto kept = compact<std::uint32_t>(policy(), 1000, [](std::size_t i) { return i % 3 == 1; });
+  ASSERT_EQ(kept.size(), 333U);
+  for (std::size_t k = 0; k < kept.size(); ++k) EXPECT_EQ(kept[k], 3 * k + 1);
+}
+
+TEST_P(Threads, ExceptionOfTheFirstPartThatFailsArrives) {
+  std::atomic<int> others{0};
+  const auto run = [&] {
+    parts(8, [&](int part) {
+      if (part == 2 || part == 5) throw std::runtime_error(std::to_string(part));
+      ++others;
+    });
+  };
+  try {
+    run();
+    FAIL() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "2");
+  }
+  EXPECT_EQ(others, 6);
+}
+
+TEST(ThreadCount, ShortLoopsStayOnTheCaller) {
+  EXPECT_EQ(thread_count({4, 100}, 99), 1);
+  EXPECT_EQ(thread_count({1, 1}, 1000), 1);
+  const int many = thread_count({4, 100}, 100);
+  EXPECT_TRUE(many == 4 || many == 1);  // 1 where the library was built without threads
+  EXPECT_GE(Policy::all().threads, 1);
+}
+
+TEST(ExclusiveScan, SumsWhatStandsBefore) {
+  std::vector<std::size_t> values = {3, 0, 4, 1};
+  EXPECT_EQ(exclusive_scan(std::span(values)), 8U);
+  EXPECT_EQ(values, (std::vector<std::size_t>{0, 3, 3, 7}));
+}
+
+}  // namespace
+}  // namespace hfr::par
