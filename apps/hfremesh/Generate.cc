@@ -55,13 +55,21 @@ generate::Arrays make_box(const GenerateOptions& options) {
 
 generate::Arrays make_cylinder(const GenerateOptions& options) {
   const auto n = counts<2>(options, {4, 12});
-  return generate::cylinder(n[0], n[1], options.radius, options.height, options.twist);
+  generate::Arrays mesh = generate::cylinder(n[0], n[1], options.radius, options.height, options.twist);
+  if (options.jitter != 0) generate::jitter_inner(mesh, options.jitter, options.seed);
+  return mesh;
+}
+
+generate::Arrays make_ball(const GenerateOptions& options) {
+  generate::Arrays mesh = generate::ball(counts<1>(options, {8})[0], options.radius);
+  if (options.jitter != 0) generate::jitter_inner(mesh, options.jitter, options.seed);
+  return mesh;
 }
 
 generate::Arrays make(const std::string& shape, const GenerateOptions& options) {
   if (shape == "cavity") return make_cavity(options);
   if (shape == "box") return make_box(options);
-  if (shape == "ball") return generate::ball(counts<1>(options, {8})[0], options.radius);
+  if (shape == "ball") return make_ball(options);
   return make_cylinder(options);
 }
 
@@ -123,6 +131,10 @@ Run add_generate(CLI::App& app, CommonOptions& common) {
   cylinder->add_option("--radius", options->radius, "Radius");
   cylinder->add_option("--height", options->height, "Height");
   cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned");
+  for (CLI::App* shape : {ball, cylinder}) {
+    shape->add_option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges");
+    shape->add_option("--seed", options->seed, "Seed of the jitter");
+  }
   for (CLI::App* shape : {cavity, box})
     shape->add_option("--n", options->counts, "Grid cubes along x, y and z")
         ->type_name("NX NY NZ")

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <unordered_map>
 
 #include "HalfFace/Errors.hh"
+#include "HalfFace/TetMesh.hh"
 #include "HalfFace/TupleMap.hh"
 
 namespace hfr::generate {
@@ -299,6 +301,32 @@ Arrays cylinder(Index n_radial, Index n_axial, double radius, double height, dou
       }
     }
   return mesh;
+}
+
+void jitter_inner(Arrays& mesh, double jitter, std::uint64_t seed) {
+  HFR_REQUIRE(std::isfinite(jitter), "the jitter must be a finite number");
+  const TetMesh built = build(mesh.points, mesh.cells);
+  std::vector<double> shortest2(mesh.points.size(), std::numeric_limits<double>::infinity());
+  std::vector<bool> stays(mesh.points.size(), false);
+  for (CellHandle c : built.cells()) {
+    const auto& v = built.cell(c).v;
+    for (const auto& [i, j] : kEdgeCorners) {
+      const Vec3 edge = built.point(v[j]) - built.point(v[i]);
+      const double length2 = dot(edge, edge);
+      shortest2[v[i].idx()] = std::min(shortest2[v[i].idx()], length2);
+      shortest2[v[j].idx()] = std::min(shortest2[v[j].idx()], length2);
+    }
+    for (int k = 0; k < 4; ++k) {
+      if (!built.is_boundary(halfface_of(c, k))) continue;
+      for (VertexHandle w : built.halfface_vertices(halfface_of(c, k))) stays[w.idx()] = true;
+    }
+  }
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (stays[v] || !(shortest2[v] < std::numeric_limits<double>::infinity())) continue;
+    const double reach = jitter * std::sqrt(shortest2[v]);
+    for (int d = 0; d < 3; ++d)
+      mesh.points[v][d] += reach * (2 * random_unit(seed, 3 * v + static_cast<std::size_t>(d)) - 1);
+  }
 }
 
 }  // namespace hfr::generate

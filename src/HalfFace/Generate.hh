@@ -70,6 +70,10 @@ Arrays ball(Index n, double radius = 1);
 /// axis. Cross sections are turned about the axis in proportion to z, the top by `twist` degrees.
 Arrays cylinder(Index n_radial, Index n_axial, double radius = 1, double height = 2, double twist = 0);
 
+/// Moves every vertex inside, each coordinate by jitter·l·(2r-1), l being the vertex's shortest edge and r
+/// random_unit(seed, 3·vertex + axis). Vertices of the boundary stay.
+void jitter_inner(Arrays& mesh, double jitter, std::uint64_t seed);
+
 }  // namespace hfr::generate
 
 #endif

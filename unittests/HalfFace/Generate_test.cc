@@ -212,6 +212,21 @@ TEST(Generate, CavityRefusesAWidthOfZero) {
   EXPECT_THROW(cavity(options), InvalidInput);
 }
 
+TEST(Generate, InnerJitterMovesWhatIsInsideAndNothingElse) {
+  const generate::Arrays before = generate::ball(4);
+  generate::Arrays after = before;
+  generate::jitter_inner(after, 0.3, 5);
+  std::size_t n_moved = 0;
+  for (std::size_t v = 0; v < before.points.size(); ++v) {
+    const bool on_sphere = norm(before.points[v]) > 1 - 1e-12;
+    EXPECT_EQ(after.points[v] == before.points[v], on_sphere);
+    EXPECT_LT(norm(after.points[v] - before.points[v]), 0.3 * std::sqrt(3.0) * 0.4);
+    n_moved += on_sphere ? 0 : 1;
+  }
+  EXPECT_GT(n_moved, 100U);
+  EXPECT_THROW(generate::jitter_inner(after, NAN, 5), InvalidInput);
+}
+
 TEST(Generate, BallIsRoundAndItsCellsAreGood) {
   for (const Index n : {1U, 2U, 3U, 8U}) {
     const Arrays mesh = ball(n, 2);
