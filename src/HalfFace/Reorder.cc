@@ -115,7 +115,7 @@ void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par:
 }
 
 bool is_scattered(const TetMesh& mesh, par::Policy policy) {
-  constexpr std::size_t kFar = 65536;  // cell records: 2 MiB, what a second-level cache holds
+  constexpr std::size_t kFar = 16384;  // cell records: half a mebibyte, besides what else a walk reads
   if (mesh.n_cells() <= kFar) return false;
   const std::size_t n_far = par::reduce(
       policy, mesh.n_cells(), std::size_t{0},
@@ -128,7 +128,7 @@ bool is_scattered(const TetMesh& mesh, par::Policy policy) {
         return n;
       },
       std::plus<>{});
-  return n_far > mesh.n_cells();
+  return n_far > mesh.n_cells() / 2;
 }
 
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {

@@ -28,8 +28,8 @@ GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options = {});
 /// it. Needs that no cell was made or deleted since.
 void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy = {});
 
-/// True when walks over the mesh would miss the cache at most steps: more than a quarter of the neighbours of
-/// cells are 65,536 or more cells away.
+/// True when walks over the mesh would often miss the cache: more than an eighth of the neighbours of
+/// cells are 16,384 or more cells away.
 bool is_scattered(const TetMesh& mesh, par::Policy policy = {});
 
 /// Place on the curve of the point whose coordinates are x, y, z: 21 bits each.
