@@ -11,6 +11,8 @@
 #include "HalfFace/Generate.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/TetMesh.hh"
+#include "Operators/Operator.hh"
+#include "Scheduler/StarTable.hh"
 
 namespace hfr {
 namespace {
@@ -148,6 +150,39 @@ void StarWalk(benchmark::State& state) {
   per(state, "per_visit", static_cast<double>(visits));
 }
 
+StarTable table_of(const TetMesh& mesh) {
+  const std::vector<VertexHandle> all(mesh.vertices().begin(), mesh.vertices().end());
+  return StarTable(mesh, all, star_sizes(mesh));
+}
+
+void MakeStarTable(benchmark::State& state) {
+  const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
+  for (auto _ : state) {
+    const StarTable table = table_of(mesh);
+    benchmark::DoNotOptimize(table.link(0).data());
+  }
+  per(state, "per_cell", static_cast<double>(mesh.n_cells()));
+}
+
+/// The cells of every vertex from the table that is made while topology stands still, reading their records.
+void StarTableWalk(benchmark::State& state) {
+  const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
+  const StarTable table = table_of(mesh);
+  std::size_t visits = 0;
+  for (auto _ : state) {
+    visits = 0;
+    Index sum = 0;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      for (HalfFaceHandle h : table.link(i)) {
+        sum += mesh.cell(cell_of(h)).v[h.idx() % 4].idx();
+        ++visits;
+      }
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  per(state, "per_visit", static_cast<double>(visits));
+}
+
 void VertexNeighbours(benchmark::State& state) {
   const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
   std::size_t visits = 0;
@@ -223,6 +258,8 @@ BENCHMARK(Build)
 BENCHMARK(RingWalk)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(benchmark::kMillisecond);
 BENCHMARK(RingWalkCallback)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(benchmark::kMillisecond);
 BENCHMARK(StarWalk)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(benchmark::kMillisecond);
+BENCHMARK(MakeStarTable)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(benchmark::kMillisecond);
+BENCHMARK(StarTableWalk)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(benchmark::kMillisecond);
 BENCHMARK(VertexNeighbours)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
 BENCHMARK(AllEdges)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
 BENCHMARK(CheckAll)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);

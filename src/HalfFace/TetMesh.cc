@@ -6,17 +6,22 @@
 namespace hfr {
 namespace {
 
-constexpr unsigned kSmallStar = 64;  // cells; most stars have fewer, and a smaller table is sooner cleared
+constexpr unsigned kSmallStar = 64;   // cells; most stars have fewer, and a smaller table is sooner cleared
+constexpr unsigned kSmallMask = 255;  // their table has few collisions
+constexpr unsigned kMask = 2 * Star::kCapacity - 1;
 
-/// Enters c into the first mask + 1 slots; false when it was there.
-bool enter(Star& star, unsigned mask, CellHandle c) {
-  unsigned at = (static_cast<std::uint32_t>(c.idx()) * 0x9e3779b1U >> 16) & mask;
-  for (; star.slot[at] != c; at = (at + 1) & mask) {
-    if (star.slot[at].is_valid()) continue;
-    star.slot[at] = c;
-    return true;
-  }
-  return false;
+unsigned place_of(CellHandle c, unsigned mask) {
+  return (static_cast<std::uint32_t>(c.idx()) * 0x9e3779b1U >> 16) & mask;
+}
+
+/// 1 when c was entered into the first mask + 1 slots, 0 when it was there. Without a branch that depends on
+/// the answer, which nobody can foretell.
+unsigned enter(Star& star, unsigned mask, CellHandle c) {
+  unsigned at = place_of(c, mask);
+  while (star.slot[at].is_valid() && star.slot[at] != c) at = (at + 1) & mask;
+  const unsigned is_new = star.slot[at].is_valid() ? 0 : 1;
+  star.slot[at] = c;
+  return is_new;
 }
 
 /// Clears the first mask + 1 slots and enters the first `size` cells.
@@ -72,7 +77,7 @@ bool TetMesh::gather_star(VertexHandle v, Star& star) const {
   if (!first.is_valid()) return false;
   star.cells[0] = first;
   unsigned size = 1;
-  unsigned mask = 2 * kSmallStar - 1;
+  unsigned mask = kSmallMask;
   enter_all(star, mask, size);
   for (unsigned i = 0; i < size; ++i) {
     const Cell& k = cell(star.cells[i]);
@@ -80,12 +85,14 @@ bool TetMesh::gather_star(VertexHandle v, Star& star) const {
     star.corners[i] = corner;
     for (unsigned turn = 1; turn < 4; ++turn) {
       const HalfFaceHandle m = k.mate[(corner + turn) & 3];
-      if (!m.is_valid() || !enter(star, mask, cell_of(m))) continue;
-      if (size == Star::kCapacity) return false;
-      __builtin_prefetch(&cells_[m.idx() / 4]);  // its turn comes in a few rounds
-      star.cells[size++] = cell_of(m);
-      if (size == kSmallStar) enter_all(star, mask = 2 * Star::kCapacity - 1, size);
+      if (!m.is_valid()) continue;
+      const CellHandle c = cell_of(m);
+      __builtin_prefetch(&cells_[c.idx()]);  // its turn comes in a few rounds
+      star.cells[size] = c;                  // kept if it is new
+      size += enter(star, mask, c);
+      if (size > Star::kCapacity) return false;
     }
+    if (size > kSmallStar && mask == kSmallMask) enter_all(star, mask = kMask, size);
   }
   star.size = static_cast<int>(size);
   return true;
