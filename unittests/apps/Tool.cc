@@ -33,6 +33,9 @@ pid_t Tool::spawn(const std::vector<std::string>& words) {
   const pid_t child = fork();
   if (child < 0) throw std::runtime_error("fork failed");
   if (child > 0) return child;
+  // Fresh files, here and in write(): some file systems wait for the disk when a file is cut to nothing.
+  unlink(".out");
+  unlink(".err");
   const auto redirect = [](const char* file, int flags, int to) {
     const int from = open(file, flags, 0644);
     if (from < 0 || dup2(from, to) < 0) _exit(126);
@@ -41,6 +44,7 @@ pid_t Tool::spawn(const std::vector<std::string>& words) {
   redirect("/dev/null", O_RDONLY, STDIN_FILENO);
   redirect(".out", O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
   redirect(".err", O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
+  alarm(limit_seconds_);  // outlives execv
   execv(argv[0], argv.data());
   _exit(127);
 }
@@ -66,6 +70,7 @@ Outcome Tool::shell(const std::string& command) {
 }
 
 void Tool::write(const std::string& name, const std::string& text) const {
+  fs::remove(path(name));
   std::ofstream(path(name), std::ios::binary) << text;
 }
 

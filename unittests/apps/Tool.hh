@@ -30,6 +30,9 @@ class Tool {
   /// Runs a shell command with the program's path in $TOOL.
   Outcome shell(const std::string& command);
 
+  /// Ends every program started from now on by SIGALRM when it runs this long: for tests that look for hangs.
+  void limit_seconds(unsigned seconds) { limit_seconds_ = seconds; }
+
   /// Starts the program; wait for it with finish().
   pid_t start(const std::string& arguments);
   Outcome finish(pid_t child);
@@ -46,6 +49,7 @@ class Tool {
   pid_t spawn(const std::vector<std::string>& words);
 
   std::filesystem::path folder_;
+  unsigned limit_seconds_ = 0;  // 0: none
 };
 
 /// ASCII .mesh files of 5 vertices and 2 cells on a common face.
