@@ -24,7 +24,8 @@ constexpr std::uint64_t quality_bucket(double old_worst) {
 /// the seed, salted by the round, so that neighbours in storage are no neighbours in rank.
 constexpr std::uint64_t priority(double old_worst, const Tet& identity, std::uint64_t salt) {
   std::uint64_t h = mix64(salt + 0x9e3779b97f4a7c15ULL);
-  for (VertexHandle v : identity) h = mix64(h ^ v.idx());
+  // Seeds of fewer vertices are padded: the padding counts the same for indices of either width.
+  for (VertexHandle v : identity) h = mix64(h ^ (v.is_valid() ? v.idx() : 0xffffffffULL));
   return quality_bucket(old_worst) << 60 | h >> 4;
 }
 
