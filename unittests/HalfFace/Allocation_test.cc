@@ -57,7 +57,7 @@ TEST(Allocation, CounterCounts) {
 TEST(Allocation, NoQueryAllocates) {
   for (const auto& [name, mesh] : test::suite()) {
     std::size_t total = 0;
-    EXPECT_EQ(allocations([&] { walk_everything(mesh, total); }), 0U) << name;
+    EXPECT_EQ(allocations([&, &mesh = mesh] { walk_everything(mesh, total); }), 0U) << name;
     EXPECT_GT(total, 0U);
   }
 }
