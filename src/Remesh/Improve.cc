@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 /// Degrees; where no goal is given, the worst cells are raised from one of these to the next.
-constexpr std::array<double, 8> kLadder = {1, 2, 4, 7, 10, 15, 20, 25};
+constexpr std::array<double, 13> kLadder = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,

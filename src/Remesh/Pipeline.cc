@@ -26,7 +26,9 @@ constexpr int kMaxPolishIterations = 60;
 /// idle.
 constexpr double kPolishGain = 1.01;
 constexpr int kMaxIdle = 2;
-constexpr std::size_t kFewPoor = 50;  // cells that the polish may insert vertices for
+// Cells that the polish may insert vertices for: at most so many, or one in so many.
+constexpr std::size_t kFewPoor = 50;
+constexpr std::size_t kPoorShare = 50;
 
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const TetMesh& mesh) {
@@ -73,7 +75,8 @@ void with_stage_metric(Metric metric, F&& f) {
 
 /// Iterates on cells below `goal` while it helps. Returns true when there are none any more.
 template <class Metric>
-bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& control, double goal) {
+bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& control, double goal,
+               std::size_t few) {
   const int limit = options.iterations > 0 ? options.iterations : kMaxPolishIterations;
   std::size_t n_poor = stage.n_below(goal);
   double worst = stage.worst();
@@ -87,9 +90,8 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     worst = stage.worst();
     if (n_poor == 0 || (changes > 0 && idle < kMaxIdle)) continue;
     // A few cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex.
-    if (n_poor > kFewPoor || !has(options.ops, Ops::kInsert)) break;
-    stage.look_again();
-    if (stage.insert_pass(i, Focus{goal}) == 0) break;
+    if (n_poor > few || !has(options.ops, Ops::kInsert)) break;
+    if (stage.dig_pass(i, Focus{goal}) == 0) break;
     idle = kMaxIdle - 1;
   }
   return n_poor == 0;
@@ -179,15 +181,16 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share) {
   const double decision = dihedral_decision(goal);
+  const std::size_t few = std::max(kFewPoor, mesh.n_logical_cells() / kPoorShare);
   {
     Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "polish");
     const auto n_poor = static_cast<double>(stage.n_below(decision));
     if (n_poor > largest_share * static_cast<double>(mesh.n_logical_cells())) return false;
-    if (polish_in(stage, options, control, decision)) return true;
+    if (polish_in(stage, options, control, decision, few)) return true;
   }
   // What is left may be obtuse only, or give way once obtuse angles do not count.
   Stage<MinDihedral> stage(mesh, work, options, control, MinDihedral{}, "finish");
-  return polish_in(stage, options, control, decision);
+  return polish_in(stage, options, control, decision, few);
 }
 
 }  // namespace hfr

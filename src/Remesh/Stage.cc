@@ -8,6 +8,10 @@
 namespace hfr {
 namespace {
 
+/// Metrics that measure dihedral angles.
+template <class Metric>
+constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
+
 constexpr int kMaxRounds = 12;        // of one operator in one pass
 constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/kLittle of the first one
 
@@ -130,6 +134,37 @@ std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
+std::size_t Stage<Metric>::multi_face_pass(int iteration, Focus focus) {
+  using Op = MultiFaceRemoval<Metric>;
+  return rounds(
+      kMultiFace, iteration, focus,
+      [&] {
+        return Op{metric_, work_.quality};
+      },
+      [&](auto& round, const auto& op, const Worklist& list) {
+        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+          visit_face_seeds(mesh_, list, CellHandle(list.cells()[i]),
+                           [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+        });
+      });
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::dig_pass(int iteration, Focus focus) {
+  using Op = VertexInsertion<Metric>;
+  return rounds(
+      kDig, iteration, focus,
+      [&] {
+        return Op{metric_, work_.quality};
+      },
+      [&](auto& round, const auto& op, const Worklist& list) {
+        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+          visit(typename Op::Seed(CellHandle(list.cells()[i])));
+        });
+      });
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
   return star_rounds<Cluster::kEdge>(kInsert, iteration, focus, false, true);
 }
@@ -186,7 +221,11 @@ std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
   if (!vertices.empty()) {
     switch (options_.compat == Compat::kJpdc2013 ? Smoother::kCandidates : options_.smoother) {
       case Smoother::kNewton:
-        run(NewtonSearch{});
+        // Towards an angle, the angles themselves; volume-length only stands in for them.
+        if constexpr (kMeasuresAngles<Metric>)
+          run(MaxMinSearch{});
+        else
+          run(NewtonSearch{});
         break;
       case Smoother::kCandidates:
         run(CandidateSearch{});
@@ -209,7 +248,8 @@ template <class Metric>
 std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
   std::size_t changes = 0;
   if (has(options_.ops, Ops::kEdge)) changes += edge_pass(iteration, focus);
-  if (has(options_.ops, Ops::kFace)) changes += face_pass(iteration, focus);
+  if (has(options_.ops, Ops::kFace))
+    changes += kMeasuresAngles<Metric> ? multi_face_pass(iteration, focus) : face_pass(iteration, focus);
   if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
   if (has(options_.ops, Ops::kSmooth)) changes += smooth_pass(iteration, focus);
   return changes;

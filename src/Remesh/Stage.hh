@@ -13,10 +13,13 @@
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/Metrics.hh"
+#include "Operators/MultiFaceRemoval.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothLaplacian.hh"
+#include "Operators/SmoothMaxMin.hh"
 #include "Operators/SmoothNewton.hh"
 #include "Operators/StarFromVertex.hh"
+#include "Operators/VertexInsertion.hh"
 #include "Operators/VertexRemoval.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/RunControl.hh"
@@ -71,15 +74,20 @@ class Stage {
   std::size_t edge_pass(int iteration, Focus focus);
   std::size_t face_pass(int iteration, Focus focus);
   std::size_t node_pass(int iteration, Focus focus);
+  /// Face swap and its extension to several faces; more than face_pass finds, at three times its cost.
+  std::size_t multi_face_pass(int iteration, Focus focus);
   std::size_t insert_pass(int iteration, Focus focus);
+  /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass.
+  std::size_t dig_pass(int iteration, Focus focus);
   std::size_t smooth_pass(int iteration, Focus focus);
   /// The paper's star form of an operator over all cells that are pending.
   template <Cluster kCluster>
   std::size_t star_pass(int iteration);
 
  private:
-  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kKinds };
-  static constexpr std::array<const char*, kKinds> kNames = {"edge", "face", "node", "insert", "smooth"};
+  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kDig, kKinds };
+  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face",       "node", "insert",
+                                                             "smooth", "multi-face", "dig"};
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Klingner & Shewchuk, Aggressive tetrahedral mesh improvement, 2007: their insertion, with a greedy dig in
+// place of their search for the best cavity. A cavity whose outer faces all make positive cells with one
+// point is star-shaped, so it is a ball that these cells fill.
+#include "Operators/VertexInsertion.hh"
+
+#include <algorithm>
+#include <limits>
+
+#include "Operators/MaxMinForm.hh"
+#include "Operators/Metrics.hh"
+
+namespace hfr {
+namespace {
+
+constexpr int kMaxDigs = 4;            // with a move of the new vertex after each
+constexpr int kAscent = 12;            // steps of one such move
+constexpr std::size_t kPatience = 12;  // cells dug without finding a better cavity
+
+/// A cavity, the place of the new vertex, and what they would be worth.
+struct Site {
+  Growth growth;
+  Vec3 place;
+  double old_worst = 0;
+  double new_worst = -std::numeric_limits<double>::infinity();
+};
+
+template <class Metric>
+class Digger {
+ public:
+  Digger(const TetMesh& mesh, const Metric& metric, std::span<const double> quality, std::size_t max_cells)
+      : mesh_(mesh), metric_(metric), quality_(quality), max_cells_(max_cells) {}
+
+  /// Digs from the cells given, moves the vertex, and digs on, until it brings no more. Nothing in
+  /// site.new_worst unless all its cells are positive.
+  Site search(GrownCells cells, Vec3 place) const {
+    Site best = dig(cells, place);
+    for (int i = 1; i < kMaxDigs && best.new_worst > 0; ++i) {
+      const GrownCells now = replay(best.growth);
+      MaxMinForm form(best.place, MaxMinForm::kAnglesOf<Metric>);
+      for (HalfFaceHandle h : now.outer()) {
+        const auto f = mesh_.halfface_vertices(h);
+        form.add(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]));
+      }
+      const Vec3 moved = form.ascend(best.place, kAscent);
+      if (moved == best.place) break;
+      const Site next = dig(now, moved);
+      if (!(next.new_worst > best.new_worst)) break;
+      best = next;
+    }
+    return best;
+  }
+
+ private:
+  double value(HalfFaceHandle h, Vec3 p) const {
+    const auto f = mesh_.halfface_vertices(h);
+    return metric_(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]), p);
+  }
+
+  GrownCells replay(const Growth& growth) const {
+    GrownCells cells(mesh_, growth.first);
+    for (std::size_t i = 0; i < growth.n_steps; ++i)
+      cells.grow(halfface_of(cells.cells()[growth.steps[i] / 4U], growth.steps[i] % 4));
+    return cells;
+  }
+
+  /// The best cavity on the way of digging behind the worst outer face until that is not possible.
+  Site dig(GrownCells cells, Vec3 place) const {
+    Site best;
+    double old_worst = std::numeric_limits<double>::infinity();
+    for (CellHandle c : cells.cells()) old_worst = std::min(old_worst, quality_[c.idx()]);
+    for (std::size_t idle = 0; idle < kPatience; ++idle) {
+      HalfFaceHandle worst_face;
+      double worst = std::numeric_limits<double>::infinity();
+      for (HalfFaceHandle h : cells.outer()) {
+        const double q = value(h, place);
+        if (q < worst) {
+          worst = q;
+          worst_face = h;
+        }
+      }
+      if (worst > best.new_worst) {
+        best = {cells.growth(), place, old_worst, worst};
+        idle = 0;
+      }
+      if (cells.cells().size() >= max_cells_ || !worst_face.is_valid() || !cells.grow(worst_face)) break;
+      old_worst = std::min(old_worst, quality_[cells.cells()[cells.cells().size() - 1].idx()]);
+    }
+    return best;
+  }
+
+  const TetMesh& mesh_;
+  const Metric& metric_;
+  std::span<const double> quality_;
+  std::size_t max_cells_;
+};
+
+}  // namespace
+
+template <class Metric>
+void VertexInsertion<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope& out) const {
+  seed.growth.cells(mesh, out);
+}
+
+template <class Metric>
+auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
+  const Digger<Metric> digger(mesh, metric, quality, std::min(max_cells, Growth::kMaxCells));
+  Site best;
+  const auto try_from = [&](const GrownCells& cells, Vec3 place) {
+    const Site site = digger.search(cells, place);
+    if (site.new_worst > best.new_worst && site.new_worst > std::max(gain * site.old_worst, site.old_worst))
+      best = site;
+  };
+  const Cell& cell = mesh.cell(seed.cell);
+  const GrownCells alone(mesh, seed.cell);
+  const auto at = [&](std::size_t i) { return mesh.point(cell.v[i]); };
+  try_from(alone, 0.25 * ((at(0) + at(1)) + (at(2) + at(3))));
+  for (int k = 0; k < 4; ++k) {
+    GrownCells pair = alone;
+    if (!pair.grow(halfface_of(seed.cell, k))) continue;
+    const auto f = mesh.halfface_vertices(halfface_of(seed.cell, k));
+    try_from(pair, (1.0 / 3.0) * ((mesh.point(f[0]) + mesh.point(f[1])) + mesh.point(f[2])));
+  }
+  for (int e = 0; e < 6; ++e) {
+    GrownCells ring = alone;
+    RingPlace start{seed.cell, kEdgeOpposite[static_cast<std::size_t>(e)][0],
+                    kEdgeOpposite[static_cast<std::size_t>(e)][1]};
+    bool inside = true;
+    for (RingPlace r = start; inside;) {
+      const HalfFaceHandle h = halfface_of(r.cell, r.p);
+      r = mesh.next_in_ring(r);
+      if (!r.cell.is_valid()) inside = false;
+      if (!inside || r.cell == seed.cell) break;
+      inside = ring.grow(h);
+    }
+    const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
+    if (inside) try_from(ring, 0.5 * (at(ends[0]) + at(ends[1])));
+  }
+  // Smaller inverted cells would look better in some metrics, and be cut again without end.
+  if (!(best.new_worst > 0)) return std::nullopt;
+  Plan plan;
+  plan.seed = seed;
+  plan.seed.growth = best.growth;
+  plan.place = best.place;
+  plan.old_worst = best.old_worst;
+  plan.new_worst = best.new_worst;
+  Cavity cavity;
+  commit(mesh, plan, cavity);
+  plan.n_dead = static_cast<std::uint32_t>(cavity.dead.size());
+  plan.n_born = static_cast<std::uint32_t>(cavity.born.size());
+  plan.adds_vertex = true;
+  return plan;
+}
+
+template <class Metric>
+void VertexInsertion<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  Scope cells;
+  plan.seed.growth.cells(mesh, cells);
+  out.clear();
+  for (CellHandle c : cells) out.dead.push_back(c);
+  for (CellHandle c : cells) {
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(c, k);
+      const HalfFaceHandle m = mesh.opposite_halfface(h);
+      if (m.is_valid() && std::find(cells.begin(), cells.end(), cell_of(m)) != cells.end()) continue;
+      const auto f = mesh.halfface_vertices(h);
+      out.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+    }
+  }
+  out.new_vertex = plan.place;
+}
+
+template <class Metric>
+Tet VertexInsertion<Metric>::identity(const TetMesh& mesh, const Seed& seed) const {
+  Tet names = mesh.cell(seed.cell).v;
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+HFR_INSTANTIATE_FOR_METRICS(VertexInsertion)
+
+}  // namespace hfr

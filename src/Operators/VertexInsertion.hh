@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_OPERATORS_VERTEX_INSERTION_HH
+#define HFR_OPERATORS_VERTEX_INSERTION_HH
+
+#include <optional>
+#include <span>
+
+#include "HalfFace/TetMesh.hh"
+#include "Operators/GrownCells.hh"
+#include "Operators/Operator.hh"
+
+namespace hfr {
+
+/// A new vertex in or near a poor cell. From several places (the middles of the cell, of its inner faces and
+/// of its inner edges) a cavity is dug: always behind the outer face that makes the worst cell with the new
+/// vertex. The best cavity on the way is kept, the vertex moved to where the smallest dihedral of its cells
+/// is largest, and the digging goes on from there. Expensive, and it adds cells: for those few that nothing
+/// else mends. No face that is constrained vanishes, and no vertex.
+template <class Metric>
+struct VertexInsertion {
+  /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
+  struct Seed {
+    CellHandle cell;
+    Growth growth;
+
+    Seed() = default;
+    explicit Seed(CellHandle c) : cell(c) { growth.first = c; }
+  };
+  struct Plan : PlanBase {
+    Seed seed;
+    Vec3 place;
+  };
+
+  Metric metric;
+  std::span<const double> quality;  ///< decision value per cell
+  double gain = 1.0;                ///< a new worst value must be more than this many times the old one
+  std::size_t max_cells = 48;       ///< of the cavity, at most Growth::kMaxCells
+
+  /// The cell, or for the seed of a plan all that go.
+  void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
+  std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
+  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  Tet identity(const TetMesh& mesh, const Seed& seed) const;
+};
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Operators/VertexInsertion.hh"
+
+#include <gtest/gtest.h>
+
+#include "HalfFace/Check.hh"
+#include "Operators/Clusters.hh"
+
+namespace hfr::test {
+namespace {
+
+static_assert(LocalOperator<VertexInsertion<VolumeLength>>);
+static_assert(LocalOperator<VertexInsertion<MinSine2>>);
+
+template <class Metric>
+using Seed = typename VertexInsertion<Metric>::Seed;
+
+/// Outer half-faces by comparing vertices only.
+std::set<std::array<VertexHandle, 3>> faces_by_vertices(const TetMesh& mesh,
+                                                        const std::vector<CellHandle>& cells) {
+  std::set<std::array<VertexHandle, 3>> set;
+  for (const auto& f : outer_faces(mesh, cells)) set.insert(f);
+  return set;
+}
+
+TEST(GrownCells, OuterFacesAreThoseOfTheCellsAndNoVertexGoesUnder) {
+  Engine engine(4);
+  int grown = 0;
+  int refused = 0;
+  for (std::uint64_t s = 1; s <= 30; ++s) {
+    const TetMesh mesh = jittered(4, 0.2, s);
+    GrownCells cells(mesh, C(engine() % mesh.n_cells()));
+    std::set<VertexHandle> seen;
+    for (int i = 0; i < 200; ++i) {
+      const HalfFaceHandle h = cells.outer()[engine() % cells.outer().size()];
+      const std::size_t n = cells.cells().size();
+      const bool can = cells.grow(h);
+      can ? ++grown : ++refused;
+      EXPECT_EQ(cells.cells().size(), n + (can ? 1 : 0));
+    }
+    const std::vector<CellHandle> list(cells.cells().begin(), cells.cells().end());
+    const std::set<CellHandle> distinct(list.begin(), list.end());
+    EXPECT_EQ(distinct.size(), list.size());
+    std::set<std::array<VertexHandle, 3>> outer;
+    for (HalfFaceHandle h : cells.outer()) outer.insert(mesh.halfface_vertices(h));
+    EXPECT_TRUE(outer == faces_by_vertices(mesh, list));
+    EXPECT_EQ(outer.size(), cells.outer().size());
+    std::set<VertexHandle> on_surface, all;
+    for (const auto& f : outer) on_surface.insert(f.begin(), f.end());
+    for (CellHandle c : list)
+      for (VertexHandle v : mesh.cell(c).v) all.insert(v);
+    EXPECT_TRUE(on_surface == all);
+    Scope scope;
+    cells.growth().cells(mesh, scope);
+    EXPECT_TRUE(std::equal(scope.begin(), scope.end(), list.begin(), list.end()));
+  }
+  EXPECT_GT(grown, 500);
+  EXPECT_GT(refused, 200);
+}
+
+template <class Metric>
+class VertexInsertionMetrics : public testing::Test {};
+using AllMetrics = testing::Types<VolumeLength, MinSine2, MinDihedral>;
+TYPED_TEST_SUITE(VertexInsertionMetrics, AllMetrics);
+
+TYPED_TEST(VertexInsertionMetrics, AcceptedCavitiesKeepVolumeAndRaiseTheWorst) {
+  const TypeParam metric;
+  int accepted = 0;
+  int dug = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = jittered(4, 0.35, s);
+    const auto boundary = boundary_of(mesh);
+    for (std::size_t i = 0; i < mesh.n_cells() && i < 384; i += 3) {
+      if (mesh.is_deleted(C(i))) continue;
+      const auto quality = qualities(mesh, metric);
+      const double before = volume(mesh);
+      const VertexInsertion<TypeParam> op{metric, quality};
+      const auto plan = op.evaluate(mesh, Seed<TypeParam>(C(i)));
+      if (!plan) continue;
+      Cavity cavity;
+      op.commit(mesh, *plan, cavity);
+      Scope scope;
+      op.scope(mesh, plan->seed, scope);
+      ASSERT_EQ(cavity.dead.size(), plan->n_dead);
+      ASSERT_EQ(cavity.born.size(), plan->n_born);
+      ASSERT_TRUE(std::equal(scope.begin(), scope.end(), cavity.dead.begin(), cavity.dead.end()));
+      double old_worst = std::numeric_limits<double>::infinity();
+      for (CellHandle c : cavity.dead) old_worst = std::min(old_worst, quality[c.idx()]);
+      EXPECT_EQ(plan->old_worst, old_worst);
+      EXPECT_GT(plan->new_worst, plan->old_worst);
+      const VertexHandle fresh(mesh.n_vertices());
+      Star scratch;
+      if (!admissible(mesh, cavity, true, scratch)) continue;
+      ++accepted;
+      dug += plan->n_dead > 1 ? 1 : 0;
+      replace(mesh, cavity);
+      double new_worst = std::numeric_limits<double>::infinity();
+      std::size_t n_born = 0;
+      for (CellHandle c : mesh.cells()) {
+        if (!mesh.cell(c).has(fresh)) continue;
+        ++n_born;
+        new_worst = std::min(new_worst, quality_of(mesh, mesh.cell(c).v, metric));
+      }
+      EXPECT_EQ(n_born, plan->n_born);
+      EXPECT_EQ(new_worst, plan->new_worst) << "the plan is not what it claims";
+      const CheckResult result = check(mesh);
+      EXPECT_EQ(result, Ok);
+      if (!result) return;
+      EXPECT_NEAR(volume(mesh), before, 1e-12);
+      EXPECT_TRUE(boundary_of(mesh) == boundary);
+    }
+  }
+  EXPECT_GT(accepted, 60);
+  EXPECT_GT(dug, 50);
+}
+
+TEST(VertexInsertion, SliverBetweenTwoFrozenEdgesIsMended) {
+  // Four vertices all but in one plane, inside an octahedron of others: only a new vertex helps.
+  TetMesh mesh =
+      build({{-1, 0, 0.05}, {1, 0, 0.05}, {0, -1, -0.05}, {0, 1, -0.05}, {0, 0, 1.2}, {0, 0, -1.2}},
+            std::vector<Corners>{{0, 1, 3, 2}, {0, 3, 1, 4}, {0, 1, 2, 4}, {2, 3, 0, 5}, {3, 2, 1, 5}});
+  ASSERT_EQ(check(mesh), Ok);
+  auto quality = qualities(mesh, MinSine2{});
+  const CellHandle worst(
+      static_cast<std::size_t>(std::min_element(quality.begin(), quality.end()) - quality.begin()));
+  ASSERT_GT(quality[worst.idx()], 0);
+  const double before = quality[worst.idx()];
+  ASSERT_TRUE(apply(VertexInsertion<MinSine2>{{}, quality}, mesh, Seed<MinSine2>(worst)));
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_GT(worst_quality(mesh, MinSine2{}), 10 * before);
+}
+
+TEST(VertexInsertion, InterfacesAreNotDugThrough) {
+  int accepted = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    TetMesh mesh = jittered(4, 0.35, s);
+    for (CellHandle c : mesh.cells()) mesh.set_region(c, static_cast<int>(c.idx() % 7 == 0));
+    const auto quality = qualities(mesh, MinSine2{});
+    const VertexInsertion<MinSine2> op{{}, quality};
+    for (CellHandle c : mesh.cells()) {
+      const auto plan = op.evaluate(mesh, Seed<MinSine2>(c));
+      if (!plan) continue;
+      ++accepted;
+      Scope scope;
+      op.scope(mesh, plan->seed, scope);
+      for (CellHandle d : scope) EXPECT_EQ(mesh.region(d), mesh.region(c));
+    }
+  }
+  EXPECT_GT(accepted, 30);
+}
+
+TEST(VertexInsertion, NothingIsGainedNoPlan) {
+  const TetMesh mesh = jittered(3, 0.2, 1);
+  const std::vector<double> quality(mesh.n_cells(), 0.9);  // better than any cell
+  const VertexInsertion<MinSine2> op{{}, quality};
+  for (CellHandle c : mesh.cells()) EXPECT_FALSE(op.evaluate(mesh, Seed<MinSine2>(c)));
+}
+
+}  // namespace
+}  // namespace hfr::test
