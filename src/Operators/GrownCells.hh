@@ -38,11 +38,16 @@ class GrownCells {
     growth_.first = first;
     cells_.push_back(first);
     for (int k = 0; k < 4; ++k) outer_.push_back(halfface_of(first, k));
+    values_.resize(4);
   }
 
   const Growth& growth() const { return growth_; }
   const FixedVector<CellHandle, Growth::kMaxCells>& cells() const { return cells_; }
   const FixedVector<HalfFaceHandle, kMaxFaces>& outer() const { return outer_; }
+  /// A number per outer half-face, for the caller's use; grow() takes it along.
+  double& value(std::size_t i) { return values_[i]; }
+  /// Outer half-faces from this one on came with the last step.
+  std::size_t n_kept() const { return n_kept_; }
   bool has(CellHandle c) const { return std::find(cells_.begin(), cells_.end(), c) != cells_.end(); }
 
   /// Takes in the cell behind an outer half-face. False, with nothing changed, when there is none, the face
@@ -69,10 +74,16 @@ class GrownCells {
     growth_.steps[growth_.n_steps++] = static_cast<std::uint8_t>(4 * index + h.idx() % 4);
     cells_.push_back(c);
     std::size_t n = 0;
-    for (HalfFaceHandle o : outer_)
-      if (!contains(closed, o)) outer_[n++] = o;
+    for (std::size_t i = 0; i < outer_.size(); ++i) {
+      if (contains(closed, outer_[i])) continue;
+      values_[n] = values_[i];
+      outer_[n++] = outer_[i];
+    }
+    n_kept_ = n;
     outer_.resize(n);
+    values_.resize(n);
     for (HalfFaceHandle f : fresh) outer_.push_back(f);
+    values_.resize(outer_.size());
     return true;
   }
 
@@ -97,6 +108,8 @@ class GrownCells {
   Growth growth_;
   FixedVector<CellHandle, Growth::kMaxCells> cells_;
   FixedVector<HalfFaceHandle, kMaxFaces> outer_;
+  FixedVector<double, kMaxFaces> values_;
+  std::size_t n_kept_ = 0;
 };
 
 }  // namespace hfr

@@ -16,9 +16,10 @@ namespace {
 constexpr double kFirstReach = 0.1;      // u in squared mean edges
 constexpr double kSmallestReach = 1e-5;  // the ascent ends here
 constexpr double kEnough = 2e-3;         // share of the value that a further step must promise
-constexpr double kFarAbove = 3;  // functions above this many times the smallest do not hold a step back
-constexpr double kFarAboveFloor = 0.1;
-constexpr int kMaxExchanges = 48;  // between weights, for one step
+constexpr double kLevel = 0.1;           // of the promised gain: models this close to each other are level
+constexpr double kFarAbove = 2;  // functions above this many times the smallest do not hold a step back
+constexpr double kFarAboveFloor = 0.05;
+constexpr int kMaxExchanges = 32;  // between weights, for one step
 
 /// A step, and the smallest value that the linear models promise after it.
 struct Step {
@@ -66,7 +67,9 @@ Step proximal_step(const Slopes& f, double u) {
       }
     }
     const double gap = high_value - low_value;
-    if (k == kMaxExchanges || !(gap > 0.02 * kEnough * std::abs(f[least].value))) return step;
+    const double now = f[least].value;
+    const double gain = low_value - now;
+    if (k == kMaxExchanges || !(gap > kLevel * gain && gap > kLevel * kEnough * now)) return step;
     const Vec3 across = f[low].gradient - f[high].gradient;
     const double curvature = u * norm2(across);
     const double share = gap < curvature * weight[high] ? gap / curvature : weight[high];

@@ -69,21 +69,23 @@ class Digger {
     Site best;
     double old_worst = std::numeric_limits<double>::infinity();
     for (CellHandle c : cells.cells()) old_worst = std::min(old_worst, quality_[c.idx()]);
+    std::size_t n_valued = 0;
     for (std::size_t idle = 0; idle < kPatience; ++idle) {
+      for (std::size_t i = n_valued; i < cells.outer().size(); ++i)
+        cells.value(i) = value(cells.outer()[i], place);
       HalfFaceHandle worst_face;
       double worst = std::numeric_limits<double>::infinity();
-      for (HalfFaceHandle h : cells.outer()) {
-        const double q = value(h, place);
-        if (q < worst) {
-          worst = q;
-          worst_face = h;
-        }
+      for (std::size_t i = 0; i < cells.outer().size(); ++i) {
+        if (!(cells.value(i) < worst)) continue;
+        worst = cells.value(i);
+        worst_face = cells.outer()[i];
       }
       if (worst > best.new_worst) {
         best = {cells.growth(), place, old_worst, worst};
         idle = 0;
       }
       if (cells.cells().size() >= max_cells_ || !worst_face.is_valid() || !cells.grow(worst_face)) break;
+      n_valued = cells.n_kept();
       old_worst = std::min(old_worst, quality_[cells.cells()[cells.cells().size() - 1].idx()]);
     }
     return best;
