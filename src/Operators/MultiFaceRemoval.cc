@@ -11,6 +11,10 @@
 namespace hfr {
 namespace {
 
+/// Faces looked at for one seed. A tree has each once, but where the faces close round a vertex they are met
+/// again on every way that leads there.
+constexpr int kMaxVisits = 64;
+
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// The half-face behind edge i of a sandwiched face, in the cell of a and between the same apexes; invalid
@@ -89,7 +93,8 @@ class Programme {
     if (!next.is_valid()) return {kNone, stop};
     // Two ways round a vertex meet: it would be left without a cell.
     if (has(next)) return {kNone, -kNone};
-    if (faces_.full() || mesh_.is_constrained(next)) return {kNone, stop};
+    if (faces_.full() || n_visits_ == kMaxVisits || mesh_.is_constrained(next)) return {kNone, stop};
+    ++n_visits_;
     const std::size_t mark = faces_.size();
     const std::uint8_t n_steps = tree_.n_steps;
     tree_.steps[tree_.n_steps++] = static_cast<std::uint8_t>(3 * parent + edge);
@@ -112,6 +117,7 @@ class Programme {
   VertexHandle a_, b_;
   FaceTree tree_;
   Faces faces_;
+  int n_visits_ = 0;
 };
 
 }  // namespace

@@ -81,6 +81,9 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
   std::size_t n_poor = stage.n_below(goal);
   double worst = stage.worst();
   int idle = 0;
+  bool has_dug = false;
+  std::size_t n_poor_dug = 0;  // when vertices were last inserted
+  double worst_dug = 0;
   for (int i = 1; i <= limit && n_poor > 0 && !control.stopped(); ++i) {
     const std::size_t changes = stage.iterate(i, Focus{goal}, true);
     const std::size_t n_poor_now = stage.n_below(goal);
@@ -91,6 +94,11 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     if (n_poor == 0 || (changes > 0 && idle < kMaxIdle)) continue;
     // A few cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex.
     if (n_poor > few || !has(options.ops, Ops::kInsert)) break;
+    // Where the last ones have not paid, more of them would only fill the place with poor cells.
+    if (has_dug && 10 * n_poor > 9 * n_poor_dug && !(worst > worst_dug * kPolishGain)) break;
+    has_dug = true;
+    n_poor_dug = n_poor;
+    worst_dug = worst;
     if (stage.dig_pass(i, Focus{goal}) == 0) break;
     idle = kMaxIdle - 1;
   }

@@ -12,6 +12,7 @@ namespace {
 template <class Metric>
 constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
 
+constexpr double kLeastGain = 1.02;   // in sin² of the worst, of a cavity that costs a vertex and cells
 constexpr int kMaxRounds = 12;        // of one operator in one pass
 constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/kLittle of the first one
 
@@ -155,7 +156,7 @@ std::size_t Stage<Metric>::dig_pass(int iteration, Focus focus) {
   return rounds(
       kDig, iteration, focus,
       [&] {
-        return Op{metric_, work_.quality};
+        return Op{metric_, work_.quality, kLeastGain};
       },
       [&](auto& round, const auto& op, const Worklist& list) {
         return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {

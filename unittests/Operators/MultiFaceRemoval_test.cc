@@ -200,7 +200,9 @@ TEST(MultiFaceRemoval, ConstrainedFacesStay) {
   for (HalfFaceHandle h : mesh.halffaces())
     if (!mesh.is_boundary(h)) inner = h;
   for (HalfFaceHandle h : mesh.halffaces())
-    if (mesh.is_boundary(h)) EXPECT_FALSE(op.evaluate(mesh, Seed(h)));
+    if (mesh.is_boundary(h)) {
+      EXPECT_FALSE(op.evaluate(mesh, Seed(h)));
+    }
   EXPECT_TRUE(op.evaluate(mesh, Seed(inner)));
   mesh.set_region(C(1), 7);
   EXPECT_FALSE(op.evaluate(mesh, Seed(inner)));
