@@ -13,9 +13,9 @@
 namespace hfr {
 namespace {
 
-constexpr double kFirstReach = 0.1;      // u in squared mean edges
+constexpr double kFirstReach = 0.5;      // u in squared mean edges
 constexpr double kSmallestReach = 1e-5;  // the ascent ends here
-constexpr double kEnough = 2e-3;         // share of the value that a further step must promise
+constexpr double kEnough = 2e-4;         // share of the value that a further step must promise
 constexpr double kLevel = 0.1;           // of the promised gain: models this close to each other are level
 constexpr double kFarAbove = 2;  // functions above this many times the smallest do not hold a step back
 constexpr double kFarAboveFloor = 0.05;
