@@ -24,6 +24,7 @@ struct CommandLine {
   bool dry_run = false;
   bool progress = false;
   std::string ops, metric, smoother, compat;
+  bool no_insert = false;
   double time_limit = 0;  ///< 0 = none
   io::WriteOptions write;
   ImproveOptions improve;
@@ -32,6 +33,7 @@ struct CommandLine {
 ImproveOptions improve_options(const CommandLine& line, const CommonOptions& common) {
   ImproveOptions options = line.improve;
   if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
+  if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
   if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
@@ -183,6 +185,7 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->check(CLI::PositiveNumber);
   command->add_option("--ops", line->ops, "Operators, comma-separated: edge, face, node, smooth, insert")
       ->type_name("LIST");
+  command->add_flag("--no-insert", line->no_insert, "No new vertices");
   command->add_option("--metric", line->metric, "Quality metric of the bulk passes; volume-length by default")
       ->type_name("NAME");
   command->add_option("--smoother", line->smoother, "newton, candidates, laplacian or taubin")

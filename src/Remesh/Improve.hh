@@ -20,14 +20,17 @@ namespace hfr {
 enum class Ops : unsigned {
   kNone = 0,
   kEdge = 1,     ///< edge removal
-  kFace = 2,     ///< 2-3 face swap
+  kFace = 2,     ///< 2-3 face swap; towards an angle, also removal of several faces
   kNode = 4,     ///< vertex removal by collapse onto a neighbour
   kSmooth = 8,   ///< vertex smoothing
-  kInsert = 16,  ///< a new vertex in the middle of a cluster, for the few cells that nothing else mends
+  kInsert = 16,  ///< a new vertex in a dug cavity, for the few cells that nothing else mends
   kDefault = kEdge | kFace | kNode | kSmooth | kInsert,
 };
 constexpr Ops operator|(Ops a, Ops b) {
   return static_cast<Ops>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr Ops without(Ops set, Ops op) {
+  return static_cast<Ops>(static_cast<unsigned>(set) & ~static_cast<unsigned>(op));
 }
 constexpr bool has(Ops set, Ops op) { return (static_cast<unsigned>(set) & static_cast<unsigned>(op)) != 0; }
 /// From a comma-separated list such as "edge,face,node,smooth"; throws InvalidInput that lists the names.

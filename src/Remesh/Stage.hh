@@ -86,8 +86,9 @@ class Stage {
 
  private:
   enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kDig, kKinds };
-  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face",       "node", "insert",
-                                                             "smooth", "multi-face", "dig"};
+  /// As in a list of operators: variants of one are reported as one.
+  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face", "node",  "insert",
+                                                             "smooth", "face", "insert"};
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {

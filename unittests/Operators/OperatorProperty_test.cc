@@ -6,6 +6,7 @@
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/MultiFaceRemoval.hh"
 #include "Operators/StarFromVertex.hh"
 #include "Operators/VertexRemoval.hh"
 
@@ -20,6 +21,9 @@ struct Tally {
 bool is_gone(const TetMesh& mesh, EdgeHandle e) { return mesh.is_deleted(C(e.idx() / 6)); }
 bool is_gone(const TetMesh& mesh, HalfFaceHandle h) { return mesh.is_deleted(cell_of(h)); }
 bool is_gone(const TetMesh& mesh, VertexHandle v) { return mesh.is_deleted(v); }
+bool is_gone(const TetMesh& mesh, const MultiFaceRemoval<VolumeLength>::Seed& seed) {
+  return mesh.is_deleted(cell_of(seed.halfface));
+}
 template <class Seed>
 bool is_gone(const TetMesh& mesh, const Seed& seed) {
   return mesh.is_deleted(seed.cell);
@@ -80,6 +84,19 @@ TEST_P(OperatorProperty, EdgeRemovalKeepsTheMeshWhole) {
 TEST_P(OperatorProperty, FaceSwapKeepsTheMeshWhole) {
   const auto make = [](const auto& quality, const auto&) { return FaceSwap<VolumeLength>{{}, quality}; };
   const Tally tally = apply_everywhere(GetParam(), 30, make, all_faces);
+  EXPECT_GT(tally.accepted, GetParam() > 0.4 ? 200 : 10);
+  EXPECT_GT(tally.from_inverted, GetParam() > 0.4 ? 30 : -1);
+}
+
+TEST_P(OperatorProperty, MultiFaceRemovalKeepsTheMeshWhole) {
+  using Multi = MultiFaceRemoval<VolumeLength>;
+  const auto make = [](const auto& quality, const auto&) { return Multi{{}, quality}; };
+  const auto seeds = [](const TetMesh& mesh) {
+    std::vector<Multi::Seed> all;
+    for (HalfFaceHandle h : all_faces(mesh)) all.push_back(Multi::Seed(h));
+    return all;
+  };
+  const Tally tally = apply_everywhere(GetParam(), 20, make, seeds);
   EXPECT_GT(tally.accepted, GetParam() > 0.4 ? 200 : 10);
   EXPECT_GT(tally.from_inverted, GetParam() > 0.4 ? 30 : -1);
 }

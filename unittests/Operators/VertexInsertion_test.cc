@@ -30,7 +30,6 @@ TEST(GrownCells, OuterFacesAreThoseOfTheCellsAndNoVertexGoesUnder) {
   for (std::uint64_t s = 1; s <= 30; ++s) {
     const TetMesh mesh = jittered(4, 0.2, s);
     GrownCells cells(mesh, C(engine() % mesh.n_cells()));
-    std::set<VertexHandle> seen;
     for (int i = 0; i < 200; ++i) {
       const HalfFaceHandle h = cells.outer()[engine() % cells.outer().size()];
       const std::size_t n = cells.cells().size();
@@ -114,8 +113,8 @@ TYPED_TEST(VertexInsertionMetrics, AcceptedCavitiesKeepVolumeAndRaiseTheWorst) {
   EXPECT_GT(dug, 50);
 }
 
-TEST(VertexInsertion, SliverBetweenTwoFrozenEdgesIsMended) {
-  // Four vertices all but in one plane, inside an octahedron of others: only a new vertex helps.
+TEST(VertexInsertion, SliverAmongFrozenVerticesIsMended) {
+  // Four vertices all but in one plane between two apexes, all of them on the surface.
   TetMesh mesh =
       build({{-1, 0, 0.05}, {1, 0, 0.05}, {0, -1, -0.05}, {0, 1, -0.05}, {0, 0, 1.2}, {0, 0, -1.2}},
             std::vector<Corners>{{0, 1, 3, 2}, {0, 3, 1, 4}, {0, 1, 2, 4}, {2, 3, 0, 5}, {3, 2, 1, 5}});
