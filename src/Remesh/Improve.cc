@@ -16,7 +16,6 @@ constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 /// Degrees; where no goal is given, the worst cells are raised from one of these to the next.
 constexpr std::array<double, 13> kLadder = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
 constexpr double kCommonRung = 25;
-constexpr double kRungGain = 1.005;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -38,14 +37,14 @@ void validate(const ImproveOptions& options) {
 /// volume-length, may have lowered it.
 void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor) {
   if (smallest_dihedral(mesh, options.policy) < floor) polish(mesh, work, options, control, floor);
-  double before = 0;
+  double below = 0;  // the last rung that was worked for
   for (double rung : kLadder) {
     if (control.stopped()) return;
     const double now = smallest_dihedral(mesh, options.policy);
     if (now >= rung) continue;
-    // Beyond what most meshes come to, only while the rungs still raise the worst.
-    if (rung > kCommonRung && !(now > before * kRungGain)) return;
-    before = now;
+    // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
+    if (rung > kCommonRung && now < below) return;
+    below = rung;
     polish(mesh, work, options, control, rung, kLargestShare);
   }
 }
