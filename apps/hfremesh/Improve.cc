@@ -25,7 +25,8 @@ struct CommandLine {
   bool progress = false;
   std::string ops, metric, smoother, compat;
   bool no_insert = false;
-  double time_limit = 0;  ///< 0 = none
+  std::string min_dihedral;  ///< degrees or "max"
+  double time_limit = 0;     ///< 0 = none
   io::WriteOptions write;
   ImproveOptions improve;
 };
@@ -33,6 +34,10 @@ struct CommandLine {
 ImproveOptions improve_options(const CommandLine& line, const CommonOptions& common) {
   ImproveOptions options = line.improve;
   if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
+  if (line.min_dihedral == "max")
+    options.raise_min_dihedral = true;
+  else if (!line.min_dihedral.empty())
+    options.min_dihedral = std::stod(line.min_dihedral);
   if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
   if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
@@ -46,6 +51,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
 Json options_json(const CommandLine& line, const ImproveOptions& options) {
   Json json;
   json["min_dihedral"] = options.min_dihedral ? Json(*options.min_dihedral) : Json();
+  if (options.raise_min_dihedral) json["min_dihedral"] = "max";
   json["iterations"] = options.iterations;
   json["time_limit"] = line.time_limit > 0 ? Json(line.time_limit) : Json();
   json["ops"] = ops_to_list(options.ops);
@@ -165,6 +171,13 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   return code;
 }
 
+/// What is wrong with the argument of --min-dihedral; nothing when it is well.
+std::string degrees_or_max(const std::string& text) {
+  double degrees = 0;
+  if (text == "max" || CLI::detail::lexical_cast(text, degrees)) return "";
+  return "a number of degrees or 'max' is wanted, not '" + text + "'";
+}
+
 }  // namespace
 
 Run add_improve(CLI::App& app, CommonOptions& common) {
@@ -174,9 +187,12 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
   command->add_option("-o,--output", line->output, "Mesh to write; may be IN")->type_name("FILE");
   command->add_flag("--dry-run", line->dry_run, "Report only, write no mesh");
   command
-      ->add_option("--min-dihedral", line->improve.min_dihedral,
-                   "Goal for the smallest dihedral angle; only cells that miss it are worked on")
-      ->type_name("DEG");
+      ->add_option(
+          "--min-dihedral", line->min_dihedral,
+          "Goal for the smallest dihedral angle; only cells that miss it are worked on. 'max': as large "
+          "as can be had")
+      ->type_name("DEG")
+      ->check(degrees_or_max, "");
   command->add_option("--iterations", line->improve.iterations, "At most N bulk iterations; 0 is no limit")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);

@@ -16,6 +16,12 @@ constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 /// Degrees; where no goal is given, the worst cells are raised from one of these to the next.
 constexpr std::array<double, 13> kLadder = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
 constexpr double kCommonRung = 25;
+/// The same where the worst is to be raised at any cost, until this many rungs in a row have not raised it by
+/// this factor.
+constexpr std::array<double, 21> kFullLadder = {1,  2,  3,    4,  5.5,  7,  8.5,  10,   12, 14, 16,
+                                                18, 20, 22.5, 25, 27.5, 30, 32.5, 35.0, 40, 45};
+constexpr int kMaxMissed = 4;
+constexpr double kClimbGain = 1.002;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -26,6 +32,10 @@ void validate(const ImproveOptions& options) {
   HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
               "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
                   std::to_string(options.min_dihedral.value_or(0)));
+  HFR_REQUIRE(
+      !options.min_dihedral || !options.raise_min_dihedral,
+      "raise_min_dihedral asks for the largest angle that can be had, min_dihedral for a certain one: "
+      "give one of them");
   HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
   HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
   HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
@@ -46,6 +56,23 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
     if (rung > kCommonRung && now < below) return;
     below = rung;
     polish(mesh, work, options, control, rung, kLargestShare);
+  }
+}
+
+/// Climbs again and again, and beyond rungs that are missed, while the worst rises.
+void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
+                          RunControl& control) {
+  const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
+  for (double at_start = 0; smallest() > at_start * kClimbGain && !control.stopped();) {
+    at_start = smallest();
+    int n_missed = 0;
+    for (double rung : kFullLadder) {
+      const double now = smallest();
+      if (now >= rung) continue;
+      if (n_missed == kMaxMissed || control.stopped()) break;
+      polish(mesh, work, options, control, rung);
+      n_missed = smallest() > now * kClimbGain ? 0 : n_missed + 1;
+    }
   }
 }
 
@@ -72,6 +99,7 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);
+  if (options.raise_min_dihedral) climb_while_it_helps(mesh, work, options, control);
   return false;
 }
 

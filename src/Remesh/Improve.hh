@@ -56,6 +56,8 @@ struct ImproveOptions {
   /// Goal for the smallest dihedral angle, degrees, in (0, 70.5). With a goal, only cells that miss it are
   /// worked on. Without one, the whole mesh is improved and its worst cells are raised as far as they go.
   std::optional<double> min_dihedral;
+  /// Instead of a goal: raise the smallest dihedral as far as it goes, whatever it costs in time and cells.
+  bool raise_min_dihedral = false;
   int iterations = 0;  ///< limit of bulk iterations, or of all with a goal; 0 = until little is gained
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
   Ops ops = Ops::kDefault;

@@ -14,6 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using nlohmann::json;
 
 /// Hash of a mesh file as `stats` sees it.
 std::string hash_of(Tool& tool, const std::string& file) {
@@ -91,6 +92,30 @@ TEST(Commands, OutputIsTheSameForAnyNumberOfThreads) {
   for (const char* threads : {"2", "3", "7"}) {
     ASSERT_EQ(tool.run(std::string("in.mesh -o many.mesh -j ") + threads).code, 0);
     EXPECT_TRUE(tool.content("one.mesh") == tool.content("many.mesh")) << threads << " threads";
+  }
+}
+
+TEST(Commands, MinDihedralMaxRaisesTheWorstAboveTheDefaultRun) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 12 12 12 -o in.mesh").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o default.mesh --json default.json").code, 0);
+  ASSERT_EQ(tool.run("in.mesh -o most.mesh --min-dihedral max --json most.json").code, 0);
+  const json most = json::parse(tool.content("most.json"));
+  EXPECT_EQ(most["options"]["min_dihedral"], "max");
+  EXPECT_GT(most["after"]["min_dihedral"]["min"].get<double>(),
+            json::parse(tool.content("default.json"))["after"]["min_dihedral"]["min"].get<double>());
+}
+
+TEST(Commands, NoInsertAddsNoVertex) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cavity --n 8 8 8 -o in.mesh").code, 0);
+  for (const char* flag : {"", " --no-insert"}) {
+    ASSERT_EQ(tool.run(std::string("in.mesh -o out.mesh --min-dihedral max --json out.json") + flag).code, 0);
+    bool inserted = false;
+    const json report = json::parse(tool.content("out.json"));
+    for (const json& pass : report["passes"])
+      inserted = inserted || (pass["op"] == "insert" && pass["winners"] > 0);
+    EXPECT_EQ(inserted, std::string(flag).empty());
   }
 }
 
