@@ -9,12 +9,12 @@
 namespace hfr::app::test {
 namespace {
 
+using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-using nlohmann::json;
 
 /// Hash of a mesh file as `stats` sees it.
 std::string hash_of(Tool& tool, const std::string& file) {
