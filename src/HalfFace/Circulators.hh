@@ -154,7 +154,8 @@ class VertexVertices : public PlaceRange<VertexVertices, VertexHandle> {
   VertexHandle v_;
   bool scan_ = false;
   std::size_t limit_ = 0;
-  RawArray<VertexHandle, Star::kCapacity + 2> neighbours_;  // a further cell brings at most one further vertex
+  RawArray<VertexHandle, Star::kCapacity + 2>
+      neighbours_;  // a further cell brings at most one further vertex
 };
 
 /// Forward iterator over a RingRange.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compiled, not run: every shared header must be plain OpenCL C 1.2, in any order of inclusion.
-#include "kernels/shape.h"
-#include "kernels/volume_length.h"
-#include "kernels/dihedral.h"
-#include "kernels/tet_volume.h"
 #include "kernels/base.h"
+#include "kernels/dihedral.h"
+#include "kernels/shape.h"
+#include "kernels/tet_volume.h"
+#include "kernels/volume_length.h"
 
 __kernel void evaluate(__global const double* points, __global double* values) {
   const size_t i = get_global_id(0);
@@ -16,7 +16,8 @@ __kernel void evaluate(__global const double* points, __global double* values) {
   const hfr_tet_frame frame = hfr_make_frame(p[0], p[1], p[2], p[3]);
   double sum = hfr_volume_length_report(hfr_volume_length_decision(p[0], p[1], p[2], p[3]));
   sum += hfr_min_sin2_of(frame) + hfr_min_dihedral_of(frame) + hfr_max_dihedral_of(frame);
-  sum += hfr_scaled_jacobian_decision(p[0], p[1], p[2], p[3]) + hfr_radius_ratio_decision(p[0], p[1], p[2], p[3]);
+  sum += hfr_scaled_jacobian_decision(p[0], p[1], p[2], p[3]) +
+         hfr_radius_ratio_decision(p[0], p[1], p[2], p[3]);
   sum += hfr_edge_ratio_decision(p[0], p[1], p[2], p[3]) + hfr_volume_decision(p[0], p[1], p[2], p[3]);
   sum += hfr_dihedral_cos_sin(frame, 3).sine + (double)hfr_orient_sign(p[0], p[1], p[2], p[3]);
   values[i] = sum;
