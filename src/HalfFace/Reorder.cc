@@ -108,9 +108,12 @@ void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par:
   for (std::size_t i = 0; i < mesh.n_vertices(); ++i) map.vertices[i] = VertexHandle(i);
   map.cells.resize(mesh.n_cells());
   std::size_t n = 0;
-  for (CellHandle c : went_to)
-    if (c.is_valid()) map.cells[c.idx()] = CellHandle(n++);
-  HFR_REQUIRE(n == mesh.n_cells(), "restore_cell_order: cells were made or deleted since");
+  for (CellHandle c : went_to) {
+    if (!c.is_valid()) continue;
+    HFR_REQUIRE(c.idx() < map.cells.size(), "restore_cell_order: cells were deleted since");
+    map.cells[c.idx()] = CellHandle(n++);
+  }
+  HFR_REQUIRE(n == mesh.n_cells(), "restore_cell_order: cells were made since");
   mesh.renumber(map, mesh.n_vertices(), n, policy);
 }
 
