@@ -99,4 +99,16 @@ inline double worst_of(std::span<const HalfFaceHandle> link, std::span<const dou
 
 }  // namespace hfr
 
+/// Instantiates the call of a smoothing search for the metrics that runs use.
+#define HFR_INSTANTIATE_SEARCH_FOR(Search, Metric)                                                           \
+  template std::optional<Move> Search::operator()(                                                           \
+      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
+      const;
+#define HFR_INSTANTIATE_SEARCH(Search)             \
+  HFR_INSTANTIATE_SEARCH_FOR(Search, VolumeLength) \
+  HFR_INSTANTIATE_SEARCH_FOR(Search, Untangling)   \
+  HFR_INSTANTIATE_SEARCH_FOR(Search, MinSine2)     \
+  HFR_INSTANTIATE_SEARCH_FOR(Search, MinDihedral)  \
+  HFR_INSTANTIATE_SEARCH_FOR(Search, CustomMetric)
+
 #endif

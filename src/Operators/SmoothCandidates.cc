@@ -115,14 +115,6 @@ std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandl
   return move;
 }
 
-#define HFR_INSTANTIATE(Metric)                                                                              \
-  template std::optional<Move> CandidateSearch::operator()(                                                  \
-      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
-      const;
-HFR_INSTANTIATE(VolumeLength)
-HFR_INSTANTIATE(Untangling)
-HFR_INSTANTIATE(MinSine2)
-HFR_INSTANTIATE(MinDihedral)
-HFR_INSTANTIATE(CustomMetric)
+HFR_INSTANTIATE_SEARCH(CandidateSearch)
 
 }  // namespace hfr

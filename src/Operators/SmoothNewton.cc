@@ -136,14 +136,6 @@ std::optional<Move> NewtonSearch::operator()(const TetMesh& mesh, VertexHandle v
     return fallback(mesh, v, link, metric, quality);
 }
 
-#define HFR_INSTANTIATE(Metric)                                                                              \
-  template std::optional<Move> NewtonSearch::operator()(                                                     \
-      const TetMesh&, VertexHandle, std::span<const HalfFaceHandle>, const Metric&, std::span<const double>) \
-      const;
-HFR_INSTANTIATE(VolumeLength)
-HFR_INSTANTIATE(Untangling)
-HFR_INSTANTIATE(MinSine2)
-HFR_INSTANTIATE(MinDihedral)
-HFR_INSTANTIATE(CustomMetric)
+HFR_INSTANTIATE_SEARCH(NewtonSearch)
 
 }  // namespace hfr

@@ -99,7 +99,7 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     has_dug = true;
     n_poor_dug = n_poor;
     worst_dug = worst;
-    if (stage.dig_pass(i, Focus{goal}) == 0) break;
+    if (stage.insert_pass(i, Focus{goal}) == 0) break;
     idle = kMaxIdle - 1;
   }
   return n_poor == 0;

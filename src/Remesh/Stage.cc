@@ -151,10 +151,10 @@ std::size_t Stage<Metric>::multi_face_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
-std::size_t Stage<Metric>::dig_pass(int iteration, Focus focus) {
+std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
   using Op = VertexInsertion<Metric>;
   return rounds(
-      kDig, iteration, focus,
+      kInsert, iteration, focus,
       [&] {
         return Op{metric_, work_.quality, kLeastGain};
       },
@@ -166,26 +166,15 @@ std::size_t Stage<Metric>::dig_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
-std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
-  return star_rounds<Cluster::kEdge>(kInsert, iteration, focus, false, true);
-}
-
-template <class Metric>
 template <Cluster kCluster>
 std::size_t Stage<Metric>::star_pass(int iteration) {
   constexpr Kind kKind = kCluster == Cluster::kEdge ? kEdge : kCluster == Cluster::kFace ? kFace : kNode;
-  return star_rounds<kCluster>(kKind, iteration, Focus{}, true, has(options_.ops, Ops::kInsert));
-}
-
-template <class Metric>
-template <Cluster kCluster>
-std::size_t Stage<Metric>::star_rounds(Kind kind, int iteration, Focus focus, bool reconnect, bool insert) {
   using Op = StarFromVertex<kCluster, Metric>;
   using Seed = typename Op::Seed;
   return rounds(
-      kind, iteration, focus,
+      kKind, iteration, Focus{},
       [&] {
-        return Op{metric_, work_.quality, work_.frozen, insert, reconnect};
+        return Op{metric_, work_.quality, work_.frozen, has(options_.ops, Ops::kInsert)};
       },
       [&](auto& round, const auto& op, const Worklist& list) {
         if constexpr (kCluster == Cluster::kNode) {

@@ -76,19 +76,18 @@ class Stage {
   std::size_t node_pass(int iteration, Focus focus);
   /// Face swap and its extension to several faces; more than face_pass finds, at three times its cost.
   std::size_t multi_face_pass(int iteration, Focus focus);
-  std::size_t insert_pass(int iteration, Focus focus);
   /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass.
-  std::size_t dig_pass(int iteration, Focus focus);
+  std::size_t insert_pass(int iteration, Focus focus);
   std::size_t smooth_pass(int iteration, Focus focus);
   /// The paper's star form of an operator over all cells that are pending.
   template <Cluster kCluster>
   std::size_t star_pass(int iteration);
 
  private:
-  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kDig, kKinds };
+  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kKinds };
   /// As in a list of operators: variants of one are reported as one.
-  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face", "node",  "insert",
-                                                             "smooth", "face", "insert"};
+  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face",   "node",
+                                                             "insert", "smooth", "face"};
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {
@@ -115,8 +114,6 @@ class Stage {
   /// Rounds of one operator until they bring little, then a line in the report.
   template <class MakeOp, class RunRound>
   std::size_t rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op, RunRound&& run_round);
-  template <Cluster kCluster>
-  std::size_t star_rounds(Kind kind, int iteration, Focus focus, bool reconnect, bool insert);
 
   /// Cells whose decision value is below `value`, ascending. Asked again with the same value, it looks only
   /// at what has been written since.

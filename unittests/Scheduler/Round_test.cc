@@ -187,6 +187,7 @@ int adjacent_pairs(const TetMesh& mesh, const std::vector<Candidate>& winners) {
 void expect_sound(const TetMesh& mesh, const Workspace& work) {
   ASSERT_EQ(check(mesh), Ok);
   EXPECT_EQ(work.quality, qualities(mesh, VolumeLength{}));
+  EXPECT_EQ(work.star_size, star_sizes(mesh));
   for (std::uint32_t claim : work.claim) ASSERT_EQ(claim, kUnclaimed);
   for (VertexHandle v : mesh.vertices()) {
     ASSERT_TRUE(mesh.hook(v).is_valid());
@@ -211,8 +212,15 @@ int round_against_brute_force(TetMesh& mesh, Workspace& work, const Op& op, cons
     for (const Tet& t : winner.born) expected.insert(t);
   }
   const int adjacent = adjacent_pairs(mesh, winners);
+  const std::vector<double> quality = work.quality;
+  work.clear_touched();
   Round<Op> round(mesh, work, {policy, true, 1});
   const RoundCounts counts = round.run(op, std::span(seeds));
+  const std::set<Index> touched(work.touched.begin(), work.touched.end());
+  for (std::size_t i = 0; i < mesh.n_cells() && !work.all_touched; ++i) {
+    const bool is_new = i >= quality.size() || quality[i] != work.quality[i];
+    EXPECT_TRUE(!is_new || mesh.is_deleted(C(i)) || touched.contains(i)) << "cell " << i;
+  }
   EXPECT_EQ(counts.candidates, candidates.size());
   EXPECT_EQ(counts.winners, winners.size());
   EXPECT_TRUE(tets_of(mesh) == expected);

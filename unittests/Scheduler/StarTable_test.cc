@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "Operators/Clusters.hh"
+#include "Scheduler/Seeds.hh"
 
 namespace hfr::test {
 namespace {
@@ -54,6 +55,27 @@ TEST(StarTable, StarsTooLargeToHoldAreLeftEmptyByBothBuilders) {
   const StarTable table(mesh, few, star_sizes(mesh));
   EXPECT_TRUE(table.link(0).empty());
   expect_link(mesh, V(5), table.link(1));
+}
+
+TEST(StarTable, PinchedVertexHasTheCellsOfAllItsPartsAndIsNotForRemoval) {
+  generate::Arrays box = generate::box({4, 4, 4});
+  const auto joint =
+      static_cast<Index>(box.points.size());  // a second box touches the first in its last point
+  generate::Arrays other = generate::box({4, 4, 4}, {1, 1, 1}, {2, 2, 2});
+  for (auto& cell : other.cells) {
+    for (Index& v : cell) v = v == 0 ? joint - 1 : v + joint - 1;
+    box.cells.push_back(cell);
+  }
+  box.points.insert(box.points.end(), other.points.begin() + 1, other.points.end());
+  const TetMesh mesh = build(box.points, box.cells);
+  const auto sizes = star_sizes(mesh);
+  std::vector<VertexHandle> vertices = {V(0), V(joint - 1), V(joint)};
+  Star scratch;
+  EXPECT_TRUE(is_pinched(mesh, V(joint - 1), sizes[joint - 1], scratch));
+  const StarTable table(mesh, vertices, sizes);
+  for (std::size_t i = 0; i < vertices.size(); ++i) expect_link(mesh, vertices[i], table.link(i));
+  drop_pinched(mesh, sizes, vertices, {});
+  EXPECT_EQ(vertices, (std::vector<VertexHandle>{V(0), V(joint)}));
 }
 
 TEST(Colouring, NoTwoVerticesOfACellShareAColour) {
