@@ -80,3 +80,9 @@ function(hfr_test FOLDER)
   target_compile_definitions(test_${FOLDER} PRIVATE HFR_TEST_MESHES="${HFR_TEST_MESHES}")
   gtest_discover_tests(test_${FOLDER} TEST_PREFIX ${FOLDER}. DISCOVERY_TIMEOUT 60)
 endfunction()
+
+# Files of the calling folder whose loops should become vector instructions. Nobody reads errno or the
+# floating-point flags, which would keep the compiler from them. The values stay what they are.
+function(hfr_vector_sources)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
+endfunction()

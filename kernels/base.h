@@ -14,6 +14,7 @@
 #define HFR_FN static inline
 #define HFR_ABS(x) fabs(x)
 #define HFR_SQRT(x) sqrt(x)
+#define HFR_INFINITY ((double)INFINITY)
 #else
 #include <math.h>
 #ifdef __clang__
@@ -30,6 +31,7 @@
 #endif
 #define HFR_ABS(x) fabs(x)
 #define HFR_SQRT(x) sqrt(x)
+#define HFR_INFINITY ((double)INFINITY)
 #endif
 
 /* Largest and smallest normal double; a quantity outside is treated as degenerate. */

@@ -57,34 +57,50 @@ Section section_of(const TetMesh& mesh, VertexHandle v, std::span<const HalfFace
   return section;
 }
 
-/// The search proper. worst(x, floor): smallest decision value with the vertex moved by x. Candidates stay in
-/// the box of the star: outside it no cell can be right, but the quality of an inverted cell may rise on the
-/// way to infinity.
-template <class Worst>
-Vec3 ascend(const Section& section, int halvings, double worst_now, Worst&& worst) {
+/// The search proper. ask(candidates, floor, worst): smallest decision value with the vertex moved by each of
+/// the candidates; anything ≤ floor will do once none is better. Candidates stay in the box of the star:
+/// outside it no cell can be right, but the quality of an inverted cell may rise on the way to infinity.
+template <class Ask>
+Vec3 ascend(const Section& section, int halvings, double worst_now, Ask&& ask) {
   Vec3 place;
   double radius = section.radius;
+  FixedVector<Vec3, kDirections.size()> candidates;
+  std::array<double, StarForm::kTrials> worst;
   for (int level = 0; level < halvings;) {
-    double best = worst_now;
-    Vec3 best_place = place;
+    candidates.clear();
     for (Vec3 direction : kDirections) {
       const Vec3 candidate = place + radius * direction;
-      if (!section.contains(candidate)) continue;
-      const double q = worst(candidate, best);
-      if (q > best) {
-        best = q;
-        best_place = candidate;
-      }
+      if (section.contains(candidate)) candidates.push_back(candidate);
+    }
+    ask(candidates, worst_now, worst);
+    double best = worst_now;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (!(worst[i] > best)) continue;
+      best = worst[i];
+      place = candidates[i];
     }
     if (best > worst_now) {
       worst_now = best;
-      place = best_place;
     } else {
       radius *= 0.5;
       ++level;
     }
   }
   return place;
+}
+
+/// All candidates at once.
+auto ask(StarForm& star) {
+  return [&star](const auto& candidates, double floor, StarForm::Trials& worst) {
+    StarForm::Trials x, y, z;
+    for (std::size_t i = 0; i < StarForm::kTrials && !candidates.empty(); ++i) {
+      const Vec3 p = candidates[std::min(i, candidates.size() - 1)];
+      x[i] = p.x;
+      y[i] = p.y;
+      z[i] = p.z;
+    }
+    if (!candidates.empty()) star.worst(x, y, z, floor, worst);
+  };
 }
 
 }  // namespace
@@ -100,12 +116,15 @@ std::optional<Move> CandidateSearch::operator()(const TetMesh& mesh, VertexHandl
   Vec3 place;
   if constexpr (std::is_same_v<Metric, VolumeLength>) {
     StarForm star(mesh, v, link);
-    place =
-        ascend(section, halvings, move.old_worst, [&](Vec3 x, double floor) { return star.worst(x, floor); });
+    place = ascend(section, halvings, move.old_worst, ask(star));
   } else {
-    place = ascend(section, halvings, move.old_worst, [&](Vec3 x, double floor) {
-      return worst_with(mesh, v, link, origin + x, metric, floor);
-    });
+    place = ascend(section, halvings, move.old_worst,
+                   [&](const auto& candidates, double floor, StarForm::Trials& worst) {
+                     for (std::size_t i = 0; i < candidates.size(); ++i) {
+                       worst[i] = worst_with(mesh, v, link, origin + candidates[i], metric, floor);
+                       floor = std::max(floor, worst[i]);
+                     }
+                   });
   }
   if (place == Vec3{}) return std::nullopt;
   move.target = origin + place;

@@ -4,12 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "Quality/Vectors.hh"
 #include "kernels/dihedral.h"
 #include "kernels/volume_length.h"
-
-#if defined(__GNUC__) && defined(__x86_64__)
-#define HFR_HAVE_AVX2_COPY 1
-#endif
 
 namespace hfr::detail {
 namespace {
@@ -100,27 +97,12 @@ HFR_FN void evaluate_cell(CellBlock& b, std::size_t i) {
       angle_of(std::sqrt(hfr_max(1.0 - min_dihedral, 0.0)), std::sqrt(hfr_max(min_dihedral, 0.0)));
 }
 
-void evaluate_plain(CellBlock& block) {
-  for (std::size_t i = 0; i < CellBlock::kSize; ++i) evaluate_cell(block, i);
+HFR_FN void evaluate_cells(CellBlock* block) {
+  for (std::size_t i = 0; i < CellBlock::kSize; ++i) evaluate_cell(*block, i);
 }
-
-#ifdef HFR_HAVE_AVX2_COPY
-// Twice as wide. AVX2 alone has no fused multiply-add, so every rounding stays.
-__attribute__((target("avx2"))) void evaluate_avx2(CellBlock& block) {
-  for (std::size_t i = 0; i < CellBlock::kSize; ++i) evaluate_cell(block, i);
-}
-#endif
 
 }  // namespace
 
-void evaluate(CellBlock& block) {
-#ifdef HFR_HAVE_AVX2_COPY
-  if (__builtin_cpu_supports("avx2")) {
-    evaluate_avx2(block);
-    return;
-  }
-#endif
-  evaluate_plain(block);
-}
+void evaluate(CellBlock& block) { with_widest_vectors<evaluate_cells>(&block); }
 
 }  // namespace hfr::detail

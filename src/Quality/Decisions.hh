@@ -27,12 +27,6 @@ struct CornerBlock {
   }
 };
 
-/// Sets of vector instructions that the formulas are compiled for.
-enum class Vectors { kBaseline, kAvx2, kAvx512 };
-/// The widest that this processor has. The environment variable HFR_VECTORS = baseline, avx2 or avx512 lowers
-/// it, to show that results do not depend on it.
-Vectors widest_vectors();
-
 /// Decision values of all cells of a block: the bits that the metric gives cell by cell, with
 /// widest_vectors().
 void block_decisions(const VolumeLength&, const CornerBlock& block, CornerBlock::Lane& out);

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Operators/StarForm.hh"
+
+#include <algorithm>
+
+#include "Quality/Vectors.hh"
+
+namespace hfr {
+namespace {
+
+using Coefficients = StarForm::Coefficients;
+using Trials = StarForm::Trials;
+constexpr std::size_t kBlock = StarForm::kBlock;
+
+HFR_FN hfr_star_cell cell_at(const Coefficients& k, std::size_t i) {
+  hfr_star_cell cell;
+  cell.normal = {k.normal_x[i], k.normal_y[i], k.normal_z[i]};
+  cell.det = k.det[i];
+  cell.sum = {k.sum_x[i], k.sum_y[i], k.sum_z[i]};
+  cell.sum2 = k.sum2[i];
+  return cell;
+}
+
+/// Corners of a few link faces, relative to the vertex.
+struct Faces {
+  alignas(64) double x[3][kBlock];
+  double y[3][kBlock];
+  double z[3][kBlock];
+};
+
+HFR_FN void make_block(const Faces* f, Coefficients* k, std::size_t first) {
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const hfr_star_cell cell =
+        hfr_make_star_cell({f->x[0][i], f->y[0][i], f->z[0][i]}, {f->x[1][i], f->y[1][i], f->z[1][i]},
+                           {f->x[2][i], f->y[2][i], f->z[2][i]});
+    k->normal_x[first + i] = cell.normal.x;
+    k->normal_y[first + i] = cell.normal.y;
+    k->normal_z[first + i] = cell.normal.z;
+    k->det[first + i] = cell.det;
+    k->sum_x[first + i] = cell.sum.x;
+    k->sum_y[first + i] = cell.sum.y;
+    k->sum_z[first + i] = cell.sum.z;
+    k->sum2[first + i] = cell.sum2;
+  }
+}
+
+/// The cells in the given order. Returns how many were asked until no place was better than floor, or n + 1.
+HFR_FN std::size_t lower_all(const Coefficients* k, const std::uint8_t* order, std::size_t n, const Trials* x,
+                             const Trials* y, const Trials* z, double floor, Trials* out) {
+  const Trials px = *x, py = *y, pz = *z;  // of our own, so that nothing written can alias them
+  Trials worst;
+  worst.fill(HFR_INFINITY);
+  std::size_t asked = 0;
+  int better = 1;
+  while (asked < n && better > 0) {
+    const hfr_star_cell cell = cell_at(*k, order[asked++]);
+    Trials q;
+    for (std::size_t t = 0; t < StarForm::kTrials; ++t) q[t] = hfr_star_decision(cell, {px[t], py[t], pz[t]});
+    better = 0;
+    for (std::size_t t = 0; t < StarForm::kTrials; ++t) {
+      worst[t] = hfr_min(q[t], worst[t]);
+      better += worst[t] > floor ? 1 : 0;
+    }
+  }
+  *out = worst;
+  return better > 0 ? n + 1 : asked;
+}
+
+HFR_FN double largest(const Coefficients* k, std::size_t n, const hfr_real3* x, double ceiling) {
+  double top[kBlock] = {};
+  for (std::size_t first = 0; first < n; first += kBlock) {
+    for (std::size_t i = 0; i < kBlock; ++i) top[i] = hfr_max(hfr_star_m(cell_at(*k, first + i), *x), top[i]);
+    double all = 0;
+    for (std::size_t i = 0; i < kBlock; ++i) all = hfr_max(top[i], all);
+    if (!(all < ceiling)) return all;
+  }
+  double all = 0;
+  for (std::size_t i = 0; i < kBlock; ++i) all = hfr_max(top[i], all);
+  return all;
+}
+
+/// Shares of a block of cells, one row an entry of hfr_newton_share.
+HFR_FN void sum_shares(const Coefficients* k, std::size_t n, const hfr_real3* x, double m_max,
+                       hfr_newton_share* out) {
+  hfr_newton_share sum = {};
+  for (std::size_t first = 0; first < n; first += kBlock) {
+    alignas(64) double row[9][kBlock];
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const hfr_newton_share share = hfr_star_newton(cell_at(*k, first + i), *x, m_max);
+      row[0][i] = share.gradient.x;
+      row[1][i] = share.gradient.y;
+      row[2][i] = share.gradient.z;
+      row[3][i] = share.xx;
+      row[4][i] = share.xy;
+      row[5][i] = share.xz;
+      row[6][i] = share.yy;
+      row[7][i] = share.yz;
+      row[8][i] = share.zz;
+    }
+    const std::size_t end = n - first < kBlock ? n - first : kBlock;
+    for (std::size_t i = 0; i < end; ++i) {
+      sum.gradient.x += row[0][i];
+      sum.gradient.y += row[1][i];
+      sum.gradient.z += row[2][i];
+      sum.xx += row[3][i];
+      sum.xy += row[4][i];
+      sum.xz += row[5][i];
+      sum.yy += row[6][i];
+      sum.yz += row[7][i];
+      sum.zz += row[8][i];
+    }
+  }
+  *out = sum;
+}
+
+}  // namespace
+
+StarForm::StarForm(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link)
+    : size_(link.size()) {
+  HFR_ASSERT(link.size() <= Star::kCapacity);
+  const Vec3 origin = mesh.point(v);
+  Faces faces;
+  for (std::size_t i = 0; i < padded(); ++i) {
+    const auto f = mesh.halfface_vertices(link[i < size_ ? i : size_ - 1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = mesh.point(f[k]) - origin;
+      faces.x[k][i % kBlock] = p.x;
+      faces.y[k][i % kBlock] = p.y;
+      faces.z[k][i % kBlock] = p.z;
+    }
+    if (i % kBlock == kBlock - 1) with_widest_vectors<make_block>(&faces, &cells_, i + 1 - kBlock);
+  }
+}
+
+hfr_star_cell StarForm::cell(std::size_t i) const { return cell_at(cells_, i); }
+
+void StarForm::worst(const Trials& x, const Trials& y, const Trials& z, double floor, Trials& worst) {
+  if (order_.empty())
+    for (std::size_t i = 0; i < size_; ++i) order_.push_back(static_cast<std::uint8_t>(i));
+  const std::size_t asked =
+      with_widest_vectors<lower_all>(&cells_, order_.begin(), size_, &x, &y, &z, floor, &worst);
+  if (asked <= size_) std::rotate(order_.begin(), order_.begin() + (asked - 1), order_.begin() + asked);
+}
+
+double StarForm::largest_m(Vec3 x, double ceiling) const {
+  const hfr_real3 at = to_kernel(x);
+  return with_widest_vectors<largest>(&cells_, padded(), &at, ceiling);
+}
+
+hfr_newton_share StarForm::newton(Vec3 x, double m_max) const {
+  const hfr_real3 at = to_kernel(x);
+  hfr_newton_share sum;
+  with_widest_vectors<sum_shares>(&cells_, size_, &at, m_max, &sum);
+  return sum;
+}
+
+}  // namespace hfr
