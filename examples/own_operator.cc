@@ -5,7 +5,6 @@
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Generate.hh"
-#include "Quality/Metrics.hh"
 #include "Scheduler/Round.hh"
 
 using namespace hfr;
@@ -42,8 +41,7 @@ struct SplitLargeCell {
   }
   Tet identity(const TetMesh& mesh, Seed c) const {
     Tet names = mesh.cell(c).v;
-    std::sort(names.begin(), names.end());
-    return names;
+    return std::sort(names.begin(), names.end()), names;
   }
 };
 static_assert(LocalOperator<SplitLargeCell>);
@@ -54,8 +52,7 @@ int main() {
   Workspace work;
   work.attach(mesh, {});
   const std::vector<CellHandle> seeds(mesh.cells().begin(), mesh.cells().end());
-  Round<SplitLargeCell> round(mesh, work, {});
-  const RoundCounts counts = round.run({{}, 0.002}, seeds);
+  const RoundCounts counts = Round<SplitLargeCell>(mesh, work, {}).run({{}, 0.002}, seeds);
   std::printf("%zu of %zu cells cut, %zu now\n", counts.winners, counts.seeds, mesh.n_logical_cells());
   return check(mesh) && mesh.n_logical_cells() == counts.seeds + 3 * counts.winners ? 0 : 1;
 }

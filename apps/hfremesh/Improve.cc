@@ -23,7 +23,7 @@ struct CommandLine {
   std::string input, output;
   bool dry_run = false;
   bool progress = false;
-  std::string ops, metric, smoother, compat;
+  std::string ops, metric, smoother, rounds, compat;
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
   double time_limit = 0;     ///< 0 = none
@@ -41,6 +41,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
   if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
+  if (!line.rounds.empty()) options.rounds = rounds_from_name(line.rounds);
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
   if (line.time_limit > 0) options.time_limit = line.time_limit;
   options.policy = common.policy();
@@ -57,6 +58,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["ops"] = ops_to_list(options.ops);
   json["metric"] = metric_name(options.metric);
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
+  json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
   json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
   json["seed"] = options.seed;
   json["dry_run"] = line.dry_run;
@@ -203,6 +205,10 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->type_name("LIST");
   command->add_flag("--no-insert", line->no_insert, "No new vertices");
   command->add_option("--metric", line->metric, "Quality metric of the bulk passes; volume-length by default")
+      ->type_name("NAME");
+  command
+      ->add_option("--rounds", line->rounds,
+                   "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
       ->type_name("NAME");
   command->add_option("--smoother", line->smoother, "newton, candidates, laplacian or taubin")
       ->type_name("NAME");

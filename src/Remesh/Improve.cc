@@ -94,8 +94,11 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
   control.set_fraction(0.1);
   if (options.min_dihedral) return polish(mesh, work, options, control, *options.min_dihedral);
-  // The worst angles first: the bulk stage, which knows only volume-length, can box them in.
-  polish(mesh, work, options, control, kEarlyGoal, kLargestShare);
+  // The worst angles first: the bulk stage, which knows only volume-length, can box them in. Few cells, so
+  // kind by kind, as towards a goal.
+  ImproveOptions early = options;
+  if (early.rounds == Rounds::kAuto) early.rounds = Rounds::kByKind;
+  polish(mesh, work, early, control, kEarlyGoal, kLargestShare);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);

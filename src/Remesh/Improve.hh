@@ -41,6 +41,13 @@ std::string ops_to_list(Ops ops);
 enum class Smoother { kNewton, kCandidates, kLaplacian, kTaubin };
 Smoother smoother_from_name(const std::string& name);
 
+/// Whether edge removal, face swap and vertex removal run one kind after the other, or compete in one
+/// selection where the largest gain wins. kAuto: competing where everything is improved, in turn towards a
+/// given goal, where most cells need one kind only (measured in docs/scheduler.md), and while anything is
+/// inverted.
+enum class Rounds { kAuto, kByKind, kMixed };
+Rounds rounds_from_name(const std::string& name);
+
 /// A pipeline to reproduce exactly.
 enum class Compat { kNone, kJpdc2013 };
 
@@ -63,6 +70,7 @@ struct ImproveOptions {
   Ops ops = Ops::kDefault;
   Metric metric = Metric::kVolumeLength;  ///< of the bulk passes
   Smoother smoother = Smoother::kNewton;
+  Rounds rounds = Rounds::kAuto;
   Compat compat = Compat::kNone;
   std::uint64_t seed = 1;  ///< of the priorities among candidates of equal worth
   par::Policy policy = par::Policy::all();

@@ -20,6 +20,9 @@ constexpr std::array<std::pair<const char*, Smoother>, 4> kSmootherNames = {
      {"laplacian", Smoother::kLaplacian},
      {"taubin", Smoother::kTaubin}}};
 
+constexpr std::array<std::pair<const char*, Rounds>, 3> kRoundsNames = {
+    {{"auto", Rounds::kAuto}, {"by-kind", Rounds::kByKind}, {"mixed", Rounds::kMixed}}};
+
 template <class Table>
 std::string names_of(const Table& table) {
   std::string names;
@@ -56,6 +59,12 @@ Smoother smoother_from_name(const std::string& name) {
   for (const auto& [known, smoother] : kSmootherNames)
     if (name == known) return smoother;
   throw InvalidInput("no smoother is called '" + name + "'; there are " + names_of(kSmootherNames));
+}
+
+Rounds rounds_from_name(const std::string& name) {
+  for (const auto& [known, rounds] : kRoundsNames)
+    if (name == known) return rounds;
+  throw InvalidInput("no kind of rounds is called '" + name + "'; there are " + names_of(kRoundsNames));
 }
 
 }  // namespace hfr

@@ -77,7 +77,8 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
   for (int r = 0; r < kMaxRounds && !control_.stopped(); ++r) {
     const Worklist list = worklist(kind, focus);
     if (list.cells().empty()) break;
-    Round<Op> round(mesh_, work_, {options_.policy, n_invalid_ > 0, options_.seed});
+    Round<Op> round(mesh_, work_,
+                    {options_.policy, n_invalid_ > 0, options_.seed, options_.compat == Compat::kJpdc2013});
     const RoundCounts counts = run_round(round, make_op(), list);
     total += counts;
     if (n_invalid_ > 0) count(focus);
@@ -132,6 +133,36 @@ std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
         return VertexRemoval<Metric>{metric_, work_.quality, work_.frozen};
       },
       [&](auto& round, const auto& op, const Worklist& list) { return round.run(op, removable(list)); });
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::mixed_pass(int iteration, Focus focus, bool with_node) {
+  // Towards an angle several faces at once; see multi_face_pass().
+  using Faces = std::conditional_t<kMeasuresAngles<Metric>, MultiFaceRemoval<Metric>, FaceSwap<Metric>>;
+  using Op = AnyOf<EdgeRemoval<Metric>, Faces, VertexRemoval<Metric>>;
+  using Seed = typename Op::Seed;
+  const bool with_edge = has(options_.ops, Ops::kEdge);
+  const bool with_face = has(options_.ops, Ops::kFace);
+  return rounds(
+      kMixed, iteration, focus,
+      [&] {
+        return Op{{EdgeRemoval<Metric>{metric_, work_.quality}, Faces{metric_, work_.quality},
+                   VertexRemoval<Metric>{metric_, work_.quality, work_.frozen}}};
+      },
+      [&](auto& round, const auto& op, const Worklist& list) {
+        const std::size_t n_cells = list.cells().size();
+        std::vector<VertexHandle> vertices;
+        if (with_node && has(options_.ops, Ops::kNode)) vertices = removable(list);
+        return round.run(op, n_cells + vertices.size(), [&](std::size_t i, auto&& visit) {
+          if (i >= n_cells) return visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
+          const CellHandle c(list.cells()[i]);
+          if (with_edge)
+            visit_edge_seeds(mesh_, list, c, [&](EdgeHandle e) { visit(Seed(std::in_place_index<0>, e)); });
+          if (with_face)
+            visit_face_seeds(mesh_, list, c,
+                             [&](HalfFaceHandle h) { visit(Seed(std::in_place_index<1>, h)); });
+        });
+      });
 }
 
 template <class Metric>
@@ -235,12 +266,25 @@ std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
+bool Stage<Metric>::is_mixed() const {
+  const int n_kinds =
+      has(options_.ops, Ops::kEdge) + has(options_.ops, Ops::kFace) + has(options_.ops, Ops::kNode);
+  if (n_kinds < 2) return false;
+  if (options_.rounds != Rounds::kAuto) return options_.rounds == Rounds::kMixed;
+  return !options_.min_dihedral && !std::is_same_v<Metric, Untangling>;
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
   std::size_t changes = 0;
-  if (has(options_.ops, Ops::kEdge)) changes += edge_pass(iteration, focus);
-  if (has(options_.ops, Ops::kFace))
-    changes += kMeasuresAngles<Metric> ? multi_face_pass(iteration, focus) : face_pass(iteration, focus);
-  if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
+  if (is_mixed()) {
+    changes += mixed_pass(iteration, focus, with_node);
+  } else {
+    if (has(options_.ops, Ops::kEdge)) changes += edge_pass(iteration, focus);
+    if (has(options_.ops, Ops::kFace))
+      changes += kMeasuresAngles<Metric> ? multi_face_pass(iteration, focus) : face_pass(iteration, focus);
+    if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
+  }
   if (has(options_.ops, Ops::kSmooth)) changes += smooth_pass(iteration, focus);
   return changes;
 }

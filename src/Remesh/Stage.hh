@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Operators/AnyOf.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/Metrics.hh"
@@ -79,15 +80,18 @@ class Stage {
   /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass.
   std::size_t insert_pass(int iteration, Focus focus);
   std::size_t smooth_pass(int iteration, Focus focus);
+  /// Edge removal, face swap and, with_node, vertex removal in one selection: a cluster goes to the kind that
+  /// gains most.
+  std::size_t mixed_pass(int iteration, Focus focus, bool with_node);
   /// The paper's star form of an operator over all cells that are pending.
   template <Cluster kCluster>
   std::size_t star_pass(int iteration);
 
  private:
-  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kKinds };
+  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kMixed, kKinds };
   /// As in a list of operators: variants of one are reported as one.
-  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face",   "node",
-                                                             "insert", "smooth", "face"};
+  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face", "node", "insert",
+                                                             "smooth", "face", "mixed"};
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {
@@ -107,6 +111,9 @@ class Stage {
       return false;
     });
   }
+
+  /// Whether iterations put several kinds into one selection.
+  bool is_mixed() const;
 
   /// Vertices of the listed cells that an operator may take out.
   std::vector<VertexHandle> removable(const Worklist& list) const;

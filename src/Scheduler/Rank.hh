@@ -29,6 +29,24 @@ constexpr std::uint64_t priority(double old_worst, const Tet& identity, std::uin
   return quality_bucket(old_worst) << 60 | h >> 4;
 }
 
+/// The same where candidates of several kinds compete for one cluster: within a bucket, those that raise the
+/// worst to more go first, in steps of a sixteenth of a power of two; then the hash decides.
+constexpr std::uint64_t priority_by_gain(double old_worst, double new_worst, const Tet& identity,
+                                         std::uint64_t salt) {
+  constexpr std::uint64_t kLowest = std::uint64_t{1008} << 4;  // 2^-15 and below are level 0, 1 is level 240
+  const std::uint64_t bits = new_worst > 0 ? std::bit_cast<std::uint64_t>(new_worst) >> 48 : 0;
+  const std::uint64_t above = bits < kLowest ? 0 : bits - kLowest;
+  const std::uint64_t level = above > 255 ? 255 : above;
+  const std::uint64_t key = priority(old_worst, identity, salt);
+  return (key >> 60) << 60 | (255 - level) << 52 | (key << 4) >> 12;
+}
+
+/// The decision value as an integer in the same order: the worst first, without buckets.
+constexpr std::uint64_t worst_first(double old_worst) {
+  const auto bits = std::bit_cast<std::uint64_t>(old_worst == 0 ? 0.0 : old_worst);
+  return bits >> 63 ? ~bits : bits | std::uint64_t{1} << 63;
+}
+
 /// Sorts by key; equal keys, which a 60-bit hash all but excludes, by identity.
 void rank(par::Policy policy, std::vector<par::KeyIndex>& keys, std::vector<par::KeyIndex>& scratch,
           std::span<const Tet> identities);

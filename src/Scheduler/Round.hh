@@ -27,12 +27,17 @@ struct RoundOptions {
   /// flat; elsewhere a cluster whose cells stay positive cannot break it.
   bool check_links = true;
   std::uint64_t seed = 1;
+  /// Rank by the exact worst cell, as the paper's ASSIGNMENT does, instead of by buckets of it. Neighbours
+  /// are then often neighbours in rank: costs the claims many sub-rounds, and is no better
+  /// (docs/scheduler.md).
+  bool worst_first = false;
 };
 
-/// One round of one operator kind: evaluate the seeds in parallel, rank what improves, select the first
-/// independent set in rank order, hand out slots, commit in bulk, refresh. The result depends on mesh, seeds
-/// (as a set) and options, not on the number of threads. What lost is not remembered: it shared a cell with a
-/// winner, so its evaluation is void; the winner's new cells are pending instead.
+/// One round of one operator kind, or of several that compete (see AnyOf): evaluate the seeds in parallel,
+/// rank what improves, select the first independent set in rank order, hand out slots, commit in bulk,
+/// refresh. The result depends on mesh, seeds (as a set) and options, not on the number of threads. What lost
+/// is not remembered: it shared a cell with a winner, so its evaluation is void; the winner's new cells are
+/// pending instead.
 template <LocalOperator Op>
 class Round {
  public:
@@ -133,15 +138,25 @@ class Round {
     return more > 0;
   }
 
+  std::uint64_t key(const Plan& plan, const Tet& identity) const {
+    const std::uint64_t salt = options_.seed + work_.clock;
+    if constexpr (requires { Op::kRankByGain; })
+      return priority_by_gain(plan.old_worst, plan.new_worst, identity, salt);
+    else
+      return priority(plan.old_worst, identity, salt);
+  }
+
   void rank_all(const Op& op) {
     identities_.resize(candidates_.size());
     keys_.resize(candidates_.size());
     par::for_each(options_.policy, candidates_.size(), [&](std::size_t i) {
       identities_[i] = op.identity(mesh_, candidates_[i].seed);
-      keys_[i] = {priority(candidates_[i].old_worst, identities_[i], options_.seed + work_.clock),
-                  static_cast<std::uint32_t>(i)};
+      keys_[i] = {key(candidates_[i], identities_[i]), static_cast<std::uint32_t>(i)};
     });
     rank(options_.policy, keys_, scratch_, identities_);
+    if (!options_.worst_first) return;
+    for (par::KeyIndex& key : keys_) key.key = worst_first(candidates_[key.index].old_worst);
+    par::stable_sort(options_.policy, keys_, scratch_);
   }
 
   /// In rank order, a candidate wins when no cell of its scope is taken.

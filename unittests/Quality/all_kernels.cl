@@ -3,7 +3,10 @@
 #include "kernels/base.h"
 #include "kernels/dihedral.h"
 #include "kernels/shape.h"
+#include "kernels/star_newton.h"
+#include "kernels/star_volume_length.h"
 #include "kernels/tet_volume.h"
+#include "kernels/untangle.h"
 #include "kernels/volume_length.h"
 
 __kernel void evaluate(__global const double* points, __global double* values) {

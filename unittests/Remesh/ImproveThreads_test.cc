@@ -14,7 +14,7 @@ template <class Make>
 void expect_same_bits(const Make& make, ImproveOptions options) {
   std::optional<TetMesh> one;
   std::size_t n_passes = 0;
-  for (const int threads : {1, 2, 3, 7}) {
+  for (const int threads : {1, 2, 3, 7, 16}) {
     TetMesh mesh = make();
     options.policy = {threads, /*serial_below=*/1};  // so that tiny loops really run in parallel
     const Result result = improve(mesh, options);
@@ -43,6 +43,14 @@ TEST(ImproveThreads, CavityHasTheSameBits) {
 
 TEST(ImproveThreads, LabelledRegionsHaveTheSameBits) {
   expect_same_bits([] { return labelled_box(4, 0.4, 5); }, serial());
+}
+
+TEST(ImproveThreads, RoundsOfEitherKindHaveTheSameBits) {
+  for (const Rounds rounds : {Rounds::kByKind, Rounds::kMixed}) {
+    ImproveOptions options = serial();
+    options.rounds = rounds;
+    expect_same_bits([] { return small_cavity(7); }, options);
+  }
 }
 
 TEST(ImproveThreads, InsertionHasTheSameBits) {

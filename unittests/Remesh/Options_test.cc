@@ -29,6 +29,13 @@ TEST(Ops, UnknownAndEmptyNamesAreRefusedWithTheListOfNames) {
   }
 }
 
+TEST(Options, RoundsAreKnownByName) {
+  EXPECT_EQ(rounds_from_name("auto"), Rounds::kAuto);
+  EXPECT_EQ(rounds_from_name("by-kind"), Rounds::kByKind);
+  EXPECT_EQ(rounds_from_name("mixed"), Rounds::kMixed);
+  for (const char* name : {"", "Mixed", "bykind"}) EXPECT_THROW(rounds_from_name(name), InvalidInput);
+}
+
 TEST(Smoothers, AreFoundByNameAndOthersRefused) {
   EXPECT_EQ(smoother_from_name("newton"), Smoother::kNewton);
   EXPECT_EQ(smoother_from_name("candidates"), Smoother::kCandidates);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "Operators/Clusters.hh"
 
@@ -48,6 +49,33 @@ TEST(Priority, BucketOutranksTheHashAndTheSaltReordersEquals) {
   }
   EXPECT_GT(swapped, 50);
   EXPECT_LT(swapped, 150);
+}
+
+TEST(PriorityByGain, BucketOutranksTheGainAndTheGainOutranksTheHash) {
+  Engine engine(4);
+  int swapped = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Tet a = {V(engine() % 1000), VertexHandle(), VertexHandle(), VertexHandle()};
+    const Tet b = {V(1000 + engine() % 1000), VertexHandle(), VertexHandle(), VertexHandle()};
+    EXPECT_LT(priority_by_gain(0.1, 0.11, a, 1), priority_by_gain(0.9, 1.0, b, 1));
+    EXPECT_LT(priority_by_gain(0.3, 0.8, a, 1), priority_by_gain(0.3, 0.7, b, 1));
+    EXPECT_LT(priority_by_gain(-0.3, 1e-3, a, 1), priority_by_gain(-0.3, -0.1, b, 1));
+    EXPECT_LT(priority_by_gain(-0.3, 1e-4, a, 1), priority_by_gain(-0.3, 1e-9, b, 1));
+    const auto first = [&](std::uint64_t salt) {
+      return priority_by_gain(0.3, 0.8, a, salt) < priority_by_gain(0.3, 0.8, b, salt);
+    };
+    swapped += first(1) != first(2) ? 1 : 0;
+  }
+  EXPECT_GT(swapped, 50);
+  EXPECT_LT(swapped, 150);
+}
+
+TEST(WorstFirst, IsInTheOrderOfTheDecisionValues) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const std::vector<double> ascending = {-inf, -2, -1, -1e-300, 0, 1e-300, 0.1, 0.1000001, 1, inf};
+  for (std::size_t i = 1; i < ascending.size(); ++i)
+    EXPECT_LT(worst_first(ascending[i - 1]), worst_first(ascending[i])) << ascending[i];
+  EXPECT_EQ(worst_first(-0.0), worst_first(0.0));
 }
 
 // The number is what builds of 32 bits give: with 64 the output would be another mesh if it differed.

@@ -5,8 +5,10 @@
 
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "HalfFace/Check.hh"
+#include "Operators/AnyOf.hh"
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
@@ -161,7 +163,10 @@ std::optional<Candidate> candidate_of(const TetMesh& mesh, const Op& op, typenam
   if (more_invalid > 0) return std::nullopt;
   Candidate candidate;
   candidate.identity = op.identity(mesh, seed);
-  candidate.key = priority(plan->old_worst, candidate.identity, salt);
+  if constexpr (requires { Op::kRankByGain; })
+    candidate.key = priority_by_gain(plan->old_worst, plan->new_worst, candidate.identity, salt);
+  else
+    candidate.key = priority(plan->old_worst, candidate.identity, salt);
   Scope scope;
   op.scope(mesh, seed, scope);
   candidate.scope.insert(scope.begin(), scope.end());
@@ -275,6 +280,115 @@ TEST(Round, VertexRemovalsGiveTheirSlotsAndVerticesBack) {
   EXPECT_GT(removed, 15U);
 }
 
+using EdgeFaceOrNode = AnyOf<EdgeRemoval<VolumeLength>, FaceSwap<VolumeLength>, VertexRemoval<VolumeLength>>;
+static_assert(LocalOperator<EdgeFaceOrNode>);
+
+EdgeFaceOrNode edge_face_or_node(const Workspace& work) {
+  return {{EdgeRemoval<VolumeLength>{{}, work.quality}, FaceSwap<VolumeLength>{{}, work.quality},
+           VertexRemoval<VolumeLength>{{}, work.quality, work.frozen}}};
+}
+
+std::vector<EdgeFaceOrNode::Seed> seeds_of_all_kinds(const Bench& bench) {
+  std::vector<EdgeFaceOrNode::Seed> seeds;
+  for (EdgeHandle e : edge_seeds(bench.mesh, bench.everything(), {})) seeds.push_back(e);
+  for (HalfFaceHandle h : face_seeds(bench.mesh, bench.everything(), {})) seeds.push_back(h);
+  for (VertexHandle v : vertex_seeds(bench.mesh, bench.everything(), bench.work.frozen, {}))
+    seeds.push_back(v);
+  return seeds;
+}
+
+TEST(Round, SeveralKindsCompeteInOneSelection) {
+  int adjacent = 0;
+  std::size_t n_kinds = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    Bench bench(0.45, s);
+    const auto seeds = seeds_of_all_kinds(bench);
+    const auto op = edge_face_or_node(bench.work);
+    std::set<std::size_t> kinds;
+    for (const auto& seed : seeds)
+      if (op.evaluate(bench.mesh, seed)) kinds.insert(seed.index());
+    n_kinds += kinds.size();
+    adjacent += round_against_brute_force(bench.mesh, bench.work, op, seeds, {s % 2 ? 1 : 3, 1});
+  }
+  EXPECT_GT(adjacent, 100);
+  EXPECT_EQ(n_kinds, 12U) << "not every kind had a candidate";
+}
+
+TEST(Round, TheLargestGainWinsAmongEquallyBadClusters) {
+  Bench bench(0.45, 7);
+  const auto op = edge_face_or_node(bench.work);
+  const auto seeds = seeds_of_all_kinds(bench);
+  // Of all candidates that hold the worst cell, none gains a step more than the one that is committed.
+  const auto worst = static_cast<std::size_t>(
+      std::min_element(bench.work.quality.begin(), bench.work.quality.end()) - bench.work.quality.begin());
+  double best = 0;
+  for (const auto& seed : seeds) {
+    Scope scope;
+    op.scope(bench.mesh, seed, scope);
+    if (std::find(scope.begin(), scope.end(), C(worst)) == scope.end()) continue;
+    if (!candidate_of(bench.mesh, op, seed, 1)) continue;
+    best = std::max(best, op.evaluate(bench.mesh, seed)->new_worst);
+  }
+  ASSERT_GT(best, 0);
+  std::vector<EdgeFaceOrNode::Seed> around;  // nothing else, so that nothing of higher rank is in the way
+  for (const auto& seed : seeds) {
+    Scope scope;
+    op.scope(bench.mesh, seed, scope);
+    if (std::find(scope.begin(), scope.end(), C(worst)) != scope.end()) around.push_back(seed);
+  }
+  const Tet gone = sorted(bench.mesh.cell(C(worst)).v);
+  const auto before = tets_of(bench.mesh);
+  Round<EdgeFaceOrNode> round(bench.mesh, bench.work, {{}, true, 1});
+  EXPECT_EQ(round.run(op, around).winners, 1U);
+  EXPECT_FALSE(tets_of(bench.mesh).contains(gone));
+  double now = std::numeric_limits<double>::infinity();
+  for (CellHandle c : bench.mesh.cells())
+    if (!before.contains(sorted(bench.mesh.cell(c).v))) now = std::min(now, bench.work.quality[c.idx()]);
+  EXPECT_GT(now, best * (1 - 1.0 / 16));
+}
+
+TEST(Round, WorstFirstCommitsTheWorstOfEveryNeighbourhood) {
+  std::size_t n_winners = 0;
+  int differs = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    Bench bench(0.45, s);
+    const EdgeRemoval<VolumeLength> op{{}, bench.work.quality};
+    const auto seeds = edge_seeds(bench.mesh, bench.everything(), {});
+    // The paper's ASSIGNMENT: sort by the worst cell, take what is free.
+    std::vector<std::tuple<double, std::uint64_t, Candidate>> order;
+    for (EdgeHandle e : seeds)
+      if (const auto candidate = candidate_of(bench.mesh, op, e, 1 + bench.work.clock))
+        order.emplace_back(op.evaluate(bench.mesh, e)->old_worst, candidate->key, *candidate);
+    std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+      return std::tie(std::get<0>(a), std::get<1>(a)) < std::tie(std::get<0>(b), std::get<1>(b));
+    });
+    std::vector<Candidate> ranked;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      ranked.push_back(std::get<2>(order[i]));
+      ranked.back().key = i;
+    }
+    std::set<Tet> expected = tets_of(bench.mesh);
+    for (const Candidate& winner : first_independent_set(ranked)) {
+      for (const Tet& t : winner.dead) expected.erase(t);
+      for (const Tet& t : winner.born) expected.insert(t);
+    }
+    Bench by_buckets(0.45, s);
+    for (const int threads : {1, 3}) {
+      Bench mine(0.45, s);
+      const EdgeRemoval<VolumeLength> mine_op{{}, mine.work.quality};
+      Round<EdgeRemoval<VolumeLength>> round(mine.mesh, mine.work, {{threads, 1}, true, 1, true});
+      n_winners += round.run(mine_op, seeds).winners;
+      EXPECT_TRUE(tets_of(mine.mesh) == expected);
+      expect_sound(mine.mesh, mine.work);
+    }
+    Round<EdgeRemoval<VolumeLength>> round(by_buckets.mesh, by_buckets.work, {{}, true, 1, false});
+    round.run(EdgeRemoval<VolumeLength>{{}, by_buckets.work.quality}, seeds);
+    differs += tets_of(by_buckets.mesh) == expected ? 0 : 1;
+  }
+  EXPECT_GT(n_winners, 200U);
+  EXPECT_GT(differs, 3) << "buckets would have done the same";
+}
+
 TEST(Round, InsertionsAddVerticesInRankOrder) {
   using Op = StarFromVertex<Cluster::kEdge, VolumeLength>;
   std::optional<TetMesh> one;
@@ -311,7 +425,7 @@ TEST(Round, SmoothingMayRunInRoundsToo) {
   expect_sound(bench.mesh, bench.work);
 }
 
-/// Edge, face and node rounds in turn until little is left to do.
+/// Edge, face and node rounds in turn, then one of all kinds, until little is left to do.
 TetMesh run_rounds(double jitter, std::uint64_t seed, par::Policy policy, std::size_t* winners) {
   Bench bench(jitter, seed);
   *winners = 0;
@@ -328,6 +442,7 @@ TetMesh run_rounds(double jitter, std::uint64_t seed, par::Policy policy, std::s
     run(FaceSwap<VolumeLength>{{}, bench.work.quality}, face_seeds(bench.mesh, bench.everything(), policy));
     run(VertexRemoval<VolumeLength>{{}, bench.work.quality, bench.work.frozen},
         vertex_seeds(bench.mesh, bench.everything(), bench.work.frozen, policy));
+    run(edge_face_or_node(bench.work), seeds_of_all_kinds(bench));
   }
   return bench.mesh;
 }
