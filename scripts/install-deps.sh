@@ -6,6 +6,7 @@
 #   (none)   to build the library, the tool and the tests
 #   --tool   to build the library and the tool only
 #   --bench  the default, and the benchmarks
+#   --same-bits  the default, and the other compiler and thread library of scripts/same-bits.sh
 #   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr
 set -euo pipefail
 
@@ -17,8 +18,9 @@ for option in "$@"; do
   case $option in
     --tool) tests=() ;;
     --bench) extra+=(libbenchmark-dev) ;;
+    --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
     --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr) ;;
-    *) sed -n '3,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    *) sed -n '3,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The same meshes through hfremesh, Gmsh and Mmg, all judged by `hfremesh stats`, as Markdown.
+
+usage: bench/peers.py TOOL MESH [MESH ...] [--time-limit S] [--output FILE]
+
+Wants the Python modules gmsh and mmgpy (pip install gmsh mmgpy); a peer that is missing is left out by name.
+Every program runs on one thread with its surface frozen, as far as it can: Mmg with -nosurf, Gmsh on a discrete
+volume whose boundary it has been told of. Seconds are of the whole program, reading and writing included, in wall
+clock; Gmsh's are of its optimiser and its reading and writing, without starting Python. "boundary" compares the
+boundary triangles of the output with those of the input, coordinate by coordinate, to the last bit.
+"turned" counts cells that the program has renumbered into order: `stats` turns them back by their neighbours, and
+the overlap that they hide shows.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+GMSH = """
+import sys, time
+import gmsh
+begin = time.time()
+gmsh.initialize()
+gmsh.option.setNumber("General.Terminal", 0)
+gmsh.option.setNumber("General.NumThreads", 1)
+gmsh.open(sys.argv[1])
+gmsh.model.mesh.createTopology()
+for method in sys.argv[3].split(","):
+    gmsh.model.mesh.optimize(method, force=True)
+gmsh.option.setNumber("Mesh.SaveAll", 1)
+gmsh.option.setNumber("Mesh.Binary", 1)
+gmsh.write(sys.argv[2])
+print(time.time() - begin)
+"""
+
+
+class Failed(Exception):
+    pass
+
+
+def call(command, limit, allowed=(0,)):
+    """Runs it and returns (seconds, what it printed)."""
+    begin = time.time()
+    try:
+        done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=limit)
+    except subprocess.TimeoutExpired:
+        raise Failed(f"> {limit} s") from None
+    if done.returncode not in allowed:
+        raise Failed("crashes" if done.returncode < 0 else f"exit {done.returncode}")
+    return time.time() - begin, done.stdout
+
+
+def stats(tool, mesh):
+    _, text = call([tool, "stats", mesh, "--json", "-", "-q"], None)
+    report = json.loads(text)["meshes"][0]
+    return report["statistics"], report["reoriented"]
+
+
+def boundary(tool, mesh, folder):
+    """The boundary triangles as a set of corner coordinates, which a surface file keeps to the last bit."""
+    surface = folder / "boundary.off"
+    call([tool, "convert", mesh, "-o", surface, "-q"], None)
+    words = surface.read_text().split()
+    n_points, n_faces = int(words[1]), int(words[2])
+    points = [tuple(map(float, words[4 + 3 * i : 7 + 3 * i])) for i in range(n_points)]
+    first = 4 + 3 * n_points
+    return {frozenset(points[int(k)] for k in words[first + 4 * i + 1 : first + 4 * i + 4]) for i in range(n_faces)}
+
+
+def candidates(options):
+    """name, how to run it: command(in, out) -> (seconds)."""
+    tool = options.tool
+
+    def ours(*extra):
+        def run(source, result):
+            return call([tool, source["any"], "-o", result.with_suffix(".meshb"), "-q", "-j", 1, *extra],
+                        options.time_limit, (0, 3, 4))[0], result.with_suffix(".meshb")
+        return run
+
+    def mmg(*extra):
+        def run(source, result):
+            return call([options.mmg, "-v", 0, *extra, source["mesh"], result.with_suffix(".mesh")],
+                        options.time_limit, (0, 1))[0], result.with_suffix(".mesh")
+        return run
+
+    def gmsh(method):
+        def run(source, result):
+            _, text = call([sys.executable, "-c", GMSH, source["msh"], result.with_suffix(".msh"), method],
+                           options.time_limit)
+            return float(text.split()[-1]), result.with_suffix(".msh")
+        return run
+
+    found = [("hfremesh", ours()), ("hfremesh --min-dihedral 15", ours("--min-dihedral", 15))]
+    if subprocess.run([sys.executable, "-c", "import gmsh"], capture_output=True).returncode == 0:
+        found += [("Gmsh, default", gmsh("")), ("Gmsh, Netgen", gmsh("Netgen")),
+                  ("Gmsh, Relocate3D", gmsh("Relocate3D"))]
+    else:
+        print("peers: no Python module gmsh, left out", file=sys.stderr)
+    if options.mmg:
+        found += [("Mmg -nosurf -noinsert", mmg("-nosurf", "-noinsert")), ("Mmg -optim -nosurf", mmg("-optim", "-nosurf"))]
+    else:
+        print("peers: no program mmg3d (Python module mmgpy), left out", file=sys.stderr)
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tool", help="the hfremesh program")
+    parser.add_argument("meshes", nargs="+")
+    parser.add_argument("--mmg", help="the mmg3d program (default: beside this Python, or on the PATH)")
+    parser.add_argument("--time-limit", type=float, default=200, help="seconds for one run of one program")
+    parser.add_argument("--output", help="Markdown file to write (default: standard output)")
+    options = parser.parse_args()
+    beside = pathlib.Path(sys.executable).parent / "mmg3d"
+    options.mmg = options.mmg or (str(beside) if beside.exists() else shutil.which("mmg3d"))
+    lines = ["| mesh | program | s | cells | inverted | turned | worst | max | p0.1 | p1 | p5 | volume | overlap | boundary |",
+             "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
+
+    def row(name, program, seconds, mesh, volume, turned, same):
+        angles = mesh["min_dihedral"]
+        at = angles["percentiles"]
+        lines.append(
+            f"| {name} | {program} | {seconds} | {mesh['cells']:,} | {mesh['inverted']:,} | {turned} | {angles['min']:.2f} |"
+            f" {mesh['max_dihedral']:.1f} | {at['p0.1']:.1f} | {at['p1']:.1f} | {at['p5']:.1f} |"
+            f" {mesh['volume'] / volume - 1:+.1e} | {mesh['overlap']:.1e} | {same} |")
+
+    for path in map(pathlib.Path, options.meshes):
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="hfremesh-peers-"))
+        try:
+            source = {"any": path, "mesh": folder / "in.mesh", "msh": folder / "in.msh"}
+            call([options.tool, "convert", path, "-o", source["mesh"], "-q"], None)
+            call([options.tool, "convert", path, "-o", source["msh"], "--binary", "-q"], None)
+            before, _ = stats(options.tool, path)
+            surface = boundary(options.tool, path, folder)
+            row(path.stem, "(input)", "", before, before["volume"], "", "")
+            for name, run in candidates(options):
+                try:
+                    seconds, result = run(source, folder / "out")
+                    after, turned = stats(options.tool, result)
+                    now = boundary(options.tool, result, folder)
+                    same = "same" if now == surface else f"{len(now ^ surface):,} triangles differ"
+                    row(path.stem, name, f"{seconds:.2f}", after, before["volume"], turned, same)
+                except Failed as why:
+                    lines.append(f"| {path.stem} | {name} | {why} |" + " |" * 11)
+        finally:
+            shutil.rmtree(folder)
+    text = "\n".join(lines) + "\n"
+    if options.output:
+        pathlib.Path(options.output).write_text(text)
+    else:
+        print(text, end="")
+
+
+if __name__ == "__main__":
+    main()
