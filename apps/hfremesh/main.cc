@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -17,6 +20,16 @@
 
 namespace hfr::app {
 namespace {
+
+/// Left to itself glibc keeps arrays of up to 32 MiB in its heap once some were freed, where the holes that
+/// they leave add a fifth to the peak memory of a run. Each gets pages of its own instead, and gives them
+/// back.
+void give_memory_back() {
+#ifdef __GLIBC__
+  constexpr int kOwnPages = 1 << 20;  // bytes
+  mallopt(M_MMAP_THRESHOLD, kOwnPages);
+#endif
+}
 
 /// Idle OpenMP threads that spin make short parallel loops many times slower on a busy machine. The run-time
 /// library reads how to wait before main() starts, so the process has to start once more to change it.
@@ -114,6 +127,7 @@ ExitCode parse_and_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   hfr::app::wait_passively(argv);
+  hfr::app::give_memory_back();
   try {
     return static_cast<int>(hfr::app::parse_and_run(argc, argv));
   } catch (const std::exception& error) {

@@ -2,6 +2,7 @@
 #ifndef HFR_SCHEDULER_ROUND_HH
 #define HFR_SCHEDULER_ROUND_HH
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -15,6 +16,7 @@
 #include "Operators/Operator.hh"
 #include "Operators/Replace.hh"
 #include "Parallel/Parallel.hh"
+#include "Scheduler/ChunkedArray.hh"
 #include "Scheduler/Rank.hh"
 #include "Scheduler/Select.hh"
 #include "Scheduler/Workspace.hh"
@@ -88,7 +90,7 @@ class Round {
   template <class VisitSeeds>
   std::size_t evaluate(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
     const int n_parts = par::thread_count(options_.policy, n_sources);
-    std::vector<std::vector<Plan>> found(static_cast<std::size_t>(n_parts));
+    std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_parts));
     std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_parts), 0);
     const bool check = needs_admission();
     par::parts(n_parts, [&](int part) {
@@ -113,8 +115,7 @@ class Round {
       n_seeds[static_cast<std::size_t>(part)] = n;
     });
     candidates_ = std::move(found[0]);
-    for (std::size_t p = 1; p < found.size(); ++p)
-      candidates_.insert(candidates_.end(), found[p].begin(), found[p].end());
+    for (std::size_t p = 1; p < found.size(); ++p) candidates_.append(std::move(found[p]));
     return std::accumulate(n_seeds.begin(), n_seeds.end(), std::size_t{0});
   }
 
@@ -204,7 +205,7 @@ class Round {
     assign_slots(op);
     const std::size_t n = winners_.size();
     const int n_parts = par::thread_count(options_.policy, n);
-    std::vector<std::vector<OuterFace>> notes(static_cast<std::size_t>(n_parts));
+    std::vector<Notes> notes(static_cast<std::size_t>(n_parts));
     const auto for_winners = [&](auto&& body) {
       par::parts(n_parts, [&](int part) {
         const std::size_t end = par::part_begin(n, n_parts, part + 1);
@@ -214,28 +215,37 @@ class Round {
     };
     par::parts(n_parts, [&](int part) {  // commit A
       Cavity cavity;
-      auto& mine = notes[static_cast<std::size_t>(part)];
-      std::vector<std::size_t> first;
-      const std::size_t begin = par::part_begin(n, n_parts, part);
       const std::size_t end = par::part_begin(n, n_parts, part + 1);
-      for (std::size_t w = begin; w < end; ++w) {
-        first.push_back(mine.size());
-        const Plan& plan = candidates_[winners_[w].candidate];
-        op.commit(mesh_, plan, cavity);
+      for (std::size_t w = par::part_begin(n, n_parts, part); w < end; ++w) {
+        Winner& winner = winners_[w];
+        op.commit(mesh_, candidates_[winner.candidate], cavity);
+        winner.removed = cavity.removed;
         if (cavity.moved.is_valid()) {
           mesh_.set_point(cavity.moved, cavity.target);
-        } else {
-          count_stars(cavity, winners_[w].new_vertex);
-          write_cells(mesh_, cavity, slots_of(w), winners_[w].new_vertex, mine);
+          continue;
         }
-        winners_[w].removed = cavity.removed;
+        count_stars(cavity, winner.new_vertex);
+        std::vector<OuterFace>& mine =
+            room_for(4 * cavity.dead.size(), notes[static_cast<std::size_t>(part)]);
+        const std::size_t first = mine.size();
+        write_cells(mesh_, cavity, slots_of(w), winner.new_vertex, mine);
+        winner.notes = {mine.data() + first, mine.data() + mine.size()};
       }
-      first.push_back(mine.size());
-      for (std::size_t w = begin; w < end; ++w)
-        winners_[w].notes = {mine.data() + first[w - begin], mine.data() + first[w - begin + 1]};
     });
     for_winners([&](std::size_t, std::size_t w) { mend_mates(w); });
     refresh(op, for_winners);
+  }
+
+  /// Outer faces of a part's winners, in pieces that never grow beyond what they were made for.
+  using Notes = std::vector<std::vector<OuterFace>>;
+
+  static std::vector<OuterFace>& room_for(std::size_t n, Notes& notes) {
+    constexpr std::size_t kPiece = 8192;
+    if (notes.empty() || notes.back().size() + n > notes.back().capacity()) {
+      notes.emplace_back();
+      notes.back().reserve(std::max(kPiece, n));
+    }
+    return notes.back();
   }
 
   /// Keeps star_size right; winners share vertices.
@@ -361,7 +371,7 @@ class Round {
   TetMesh& mesh_;
   Workspace& work_;
   RoundOptions options_;
-  std::vector<Plan> candidates_;
+  ChunkedArray<Plan> candidates_;
   std::vector<Tet> identities_;
   std::vector<par::KeyIndex> keys_, scratch_;
   ScopeList scopes_;  // of the candidates, by rank
