@@ -13,7 +13,7 @@ namespace hfr {
 template <class T>
 class ChunkedArray {
  public:
-  static constexpr std::size_t kChunk = 1024;
+  static constexpr std::size_t kChunk = 256;
 
   std::size_t size() const { return size_; }
   T& operator[](std::size_t i) { return chunks_[i / kChunk][i % kChunk]; }

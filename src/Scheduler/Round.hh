@@ -77,6 +77,7 @@ class Round {
   }
 
  private:
+  static constexpr int kPiecesAThread = 16;
   using Plan = typename Op::Plan;
   struct Winner {
     std::uint32_t candidate = 0;
@@ -89,17 +90,21 @@ class Round {
   /// Fills candidates_ in the order of the seeds; returns how many seeds there were.
   template <class VisitSeeds>
   std::size_t evaluate(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
-    const int n_parts = par::thread_count(options_.policy, n_sources);
-    std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_parts));
-    std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_parts), 0);
+    // Seeds differ much in cost, so threads take pieces as they come; pieces are joined in their order.
+    const int n_threads = par::thread_count(options_.policy, n_sources);
+    const int n_pieces = n_threads == 1 ? 1 : kPiecesAThread * n_threads;
+    std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_pieces));
+    std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_pieces), 0);
     const bool check = needs_admission();
-    par::parts(n_parts, [&](int part) {
+    par::Policy pieces = options_.policy;
+    pieces.serial_below = 0;
+    par::for_each_dynamic(pieces, static_cast<std::size_t>(n_pieces), 1, [&](std::size_t piece) {
       Cavity cavity;
       Star scratch;
       std::size_t n = 0;
-      auto& mine = found[static_cast<std::size_t>(part)];
-      const std::size_t end = par::part_begin(n_sources, n_parts, part + 1);
-      for (std::size_t i = par::part_begin(n_sources, n_parts, part); i < end; ++i) {
+      auto& mine = found[piece];
+      const std::size_t end = par::part_begin(n_sources, n_pieces, static_cast<int>(piece) + 1);
+      for (std::size_t i = par::part_begin(n_sources, n_pieces, static_cast<int>(piece)); i < end; ++i) {
         visit_seeds(i, [&](typename Op::Seed seed) {
           ++n;
           const std::optional<Plan> plan = op.evaluate(mesh_, seed);
@@ -112,7 +117,7 @@ class Round {
           mine.push_back(*plan);
         });
       }
-      n_seeds[static_cast<std::size_t>(part)] = n;
+      n_seeds[piece] = n;
     });
     candidates_ = std::move(found[0]);
     for (std::size_t p = 1; p < found.size(); ++p) candidates_.append(std::move(found[p]));

@@ -2,6 +2,7 @@
 #ifndef HFR_SCHEDULER_SMOOTH_PASS_HH
 #define HFR_SCHEDULER_SMOOTH_PASS_HH
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <span>
@@ -42,33 +43,29 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
   const auto groups = colour_vertices(mesh, vertices, stars);
   counts.seconds_select = since(start);
   start = Clock::now();
+  constexpr std::size_t kBlock = 64;
   std::vector<std::uint8_t> moved(vertices.size(), 0);
   for (const auto& group : groups) {
-    counts.winners += par::reduce(
-        policy, group.size(), std::size_t{0},
-        [&](std::size_t k) -> std::size_t {
-          const std::uint32_t i = group[k];
-          const auto link = stars.link(i);
-          if (link.empty()) return 0;
-          const VertexHandle v = vertices[i];
-          const std::optional<Move> move =
-              search(mesh, v, link, metric, std::span<const double>(work.quality));
-          if (!move) return 0;
-          if (!(move->old_worst > 0) && makes_more_invalid(mesh, work, metric, v, link, move->target))
-            return 0;
-          mesh.set_point(v, move->target);
-          moved[i] = 1;
-          for (HalfFaceHandle h : link) {
-            const CellHandle c = cell_of(h);
-            work.quality[c.idx()] = quality_with(mesh, c, v, move->target, metric);
-            work.pending[c.idx()] = 0xff;
-            for (VertexHandle u : mesh.cell(c).v)  // neighbours may share u: all write the same value
-              std::atomic_ref(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
-          }
-          return 1;
-        },
-        [](std::size_t a, std::size_t b) { return a + b; });
+    par::for_each_dynamic(policy, group.size(), kBlock, [&](std::size_t k) {  // stars differ much in cost
+      const std::uint32_t i = group[k];
+      const auto link = stars.link(i);
+      if (link.empty()) return;
+      const VertexHandle v = vertices[i];
+      const std::optional<Move> move = search(mesh, v, link, metric, std::span<const double>(work.quality));
+      if (!move) return;
+      if (!(move->old_worst > 0) && makes_more_invalid(mesh, work, metric, v, link, move->target)) return;
+      mesh.set_point(v, move->target);
+      moved[i] = 1;
+      for (HalfFaceHandle h : link) {
+        const CellHandle c = cell_of(h);
+        work.quality[c.idx()] = quality_with(mesh, c, v, move->target, metric);
+        work.pending[c.idx()] = 0xff;
+        for (VertexHandle u : mesh.cell(c).v)  // neighbours may share u: all write the same value
+          std::atomic_ref(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
+      }
+    });
   }
+  counts.winners = static_cast<std::size_t>(std::count(moved.begin(), moved.end(), std::uint8_t{1}));
   std::vector<CellHandle> cells;
   for (std::size_t i = 0; i < vertices.size() && !work.all_touched; ++i) {
     if (!moved[i]) continue;
