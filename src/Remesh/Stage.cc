@@ -271,7 +271,7 @@ bool Stage<Metric>::is_mixed() const {
       has(options_.ops, Ops::kEdge) + has(options_.ops, Ops::kFace) + has(options_.ops, Ops::kNode);
   if (n_kinds < 2) return false;
   if (options_.rounds != Rounds::kAuto) return options_.rounds == Rounds::kMixed;
-  return !options_.min_dihedral && !std::is_same_v<Metric, Untangling>;
+  return !options_.min_dihedral && kMeasuresAngles<Metric>;
 }
 
 template <class Metric>
