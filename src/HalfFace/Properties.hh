@@ -148,8 +148,8 @@ class PropertyList {
     if (this != &other) list_ = PropertyList(other).list_;
     return *this;
   }
-  PropertyList(PropertyList&&) = default;
-  PropertyList& operator=(PropertyList&&) = default;
+  PropertyList(PropertyList&&) noexcept = default;
+  PropertyList& operator=(PropertyList&&) noexcept = default;
   ~PropertyList() = default;
 
   bool empty() const { return list_.empty(); }

@@ -41,9 +41,9 @@ std::string ops_to_list(Ops ops);
 enum class Smoother { kNewton, kCandidates, kLaplacian, kTaubin };
 Smoother smoother_from_name(const std::string& name);
 
-/// Whether edge removal, face swap and vertex removal run one kind after the other, or compete in one selection
-/// where the largest gain wins. kAuto: competing while the worst cells are raised as far as they go; in turn
-/// otherwise (measured in docs/scheduler.md).
+/// Whether edge removal, face swap and vertex removal run one kind after the other, or compete in one
+/// selection where the largest gain wins. kAuto: competing while the worst cells are raised as far as they
+/// go; in turn otherwise (measured in docs/scheduler.md).
 enum class Rounds { kAuto, kByKind, kMixed };
 Rounds rounds_from_name(const std::string& name);
 
