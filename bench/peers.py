@@ -14,8 +14,10 @@ the overlap that they hide shows.
 """
 import argparse
 import json
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -46,13 +48,18 @@ class Failed(Exception):
 def call(command, limit, allowed=(0,)):
     """Runs it and returns (seconds, what it printed)."""
     begin = time.time()
+    # A group of its own: what a peer is started through may be a script, and the program behind it has to end too.
+    done = subprocess.Popen([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                            start_new_session=True)
     try:
-        done = subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=limit)
+        output, _ = done.communicate(timeout=limit)
     except subprocess.TimeoutExpired:
-        raise Failed(f"> {limit} s") from None
+        os.killpg(done.pid, signal.SIGKILL)
+        done.communicate()
+        raise Failed(f"> {limit:g} s") from None
     if done.returncode not in allowed:
         raise Failed("crashes" if done.returncode < 0 else f"exit {done.returncode}")
-    return time.time() - begin, done.stdout
+    return time.time() - begin, output
 
 
 def stats(tool, mesh):
