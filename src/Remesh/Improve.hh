@@ -24,7 +24,8 @@ enum class Ops : unsigned {
   kNode = 4,     ///< vertex removal by collapse onto a neighbour
   kSmooth = 8,   ///< vertex smoothing
   kInsert = 16,  ///< a new vertex in a dug cavity, for the few cells that nothing else mends
-  kDefault = kEdge | kFace | kNode | kSmooth | kInsert,
+  kCluster = 32,  ///< branch and bound over all ways to connect the points round such a cell
+  kDefault = kEdge | kFace | kNode | kSmooth | kInsert | kCluster,
 };
 constexpr Ops operator|(Ops a, Ops b) {
   return static_cast<Ops>(static_cast<unsigned>(a) | static_cast<unsigned>(b));

@@ -9,11 +9,12 @@
 namespace hfr {
 namespace {
 
-constexpr std::array<std::pair<const char*, Ops>, 5> kOpNames = {{{"edge", Ops::kEdge},
+constexpr std::array<std::pair<const char*, Ops>, 6> kOpNames = {{{"edge", Ops::kEdge},
                                                                   {"face", Ops::kFace},
                                                                   {"node", Ops::kNode},
                                                                   {"smooth", Ops::kSmooth},
-                                                                  {"insert", Ops::kInsert}}};
+                                                                  {"insert", Ops::kInsert},
+                                                                  {"cluster", Ops::kCluster}}};
 constexpr std::array<std::pair<const char*, Smoother>, 4> kSmootherNames = {
     {{"newton", Smoother::kNewton},
      {"candidates", Smoother::kCandidates},

@@ -12,10 +12,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Focus of the untangling stage, as decision values of volume-length: from what is all but flat to what is
-/// merely poor. Wider only when the narrower one has stopped helping.
-constexpr std::array<double, 4> kUntangleFocus = {1e-4, 1e-2, 0.1, 0.3};
-constexpr int kMaxUntangleIterations = 40;
 constexpr int kDefaultBulkIterations = 3;
 /// Volume-length above which the bulk stage leaves a cell alone, as decision value (q = 0.67). Measured on
 /// the 609,574-cell cavity: working on all cells raises the 1 % percentile of the smallest dihedrals by 0.1
@@ -29,22 +25,6 @@ constexpr int kMaxIdle = 2;
 // Cells that the polish may insert vertices for: at most so many, or one in so many.
 constexpr std::size_t kFewPoor = 50;
 constexpr std::size_t kPoorShare = 50;
-
-/// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
-double typical_six_volume(const TetMesh& mesh) {
-  if (mesh.n_logical_cells() == 0) return 1.0;
-  Vec3 low = mesh.points()[0];
-  Vec3 high = low;
-  for (Vec3 p : mesh.points()) {
-    for (int d = 0; d < 3; ++d) {
-      low[d] = std::min(low[d], p[d]);
-      high[d] = std::max(high[d], p[d]);
-    }
-  }
-  const Vec3 size = high - low;
-  const double volume = 6.0 * size.x * size.y * size.z / static_cast<double>(mesh.n_logical_cells());
-  return volume > 0 ? volume : 1.0;
-}
 
 bool is_invalid(const TetMesh& mesh, CellHandle c) {
   const auto& v = mesh.cell(c).v;
@@ -148,30 +128,6 @@ std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
   cells.reserve(indices.size());
   for (Index i : indices) cells.push_back(CellHandle(i));
   return cells;
-}
-
-void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
-  Stage<Untangling> stage(mesh, work, options, control, Untangling{1.0 / typical_six_volume(mesh)},
-                          "untangle");
-  std::size_t level = 0;
-  std::size_t n_invalid = stage.n_invalid();
-  double worst = stage.worst();
-  int idle = 0;
-  for (int i = 1; i <= kMaxUntangleIterations && stage.n_invalid() > 0 && !control.stopped(); ++i) {
-    const Focus focus{kUntangleFocus[level]};
-    // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
-    std::size_t changes = has(options.ops, Ops::kSmooth) ? stage.smooth_pass(i, focus) : 0;
-    if (stage.n_invalid() == 0) break;
-    changes += stage.iterate(i, focus, true);
-    const bool better = stage.n_invalid() < n_invalid || stage.worst() > worst;
-    idle = better ? 0 : idle + 1;
-    n_invalid = stage.n_invalid();
-    worst = stage.worst();
-    if (changes > 0 && idle < kMaxIdle) continue;
-    if (++level == kUntangleFocus.size()) break;
-    stage.look_again();
-    idle = 0;
-  }
 }
 
 void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {

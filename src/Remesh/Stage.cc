@@ -197,10 +197,25 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
-template <Cluster kCluster>
+std::size_t Stage<Metric>::cluster_pass(int iteration, Focus focus) {
+  using Op = ClusterSearch<Metric>;
+  return rounds(
+      kCluster, iteration, focus,
+      [&] {
+        return Op{metric_, work_.quality};
+      },
+      [&](auto& round, const auto& op, const Worklist& list) {
+        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+          visit(typename Op::Seed(CellHandle(list.cells()[i])));
+        });
+      });
+}
+
+template <class Metric>
+template <Cluster kStar>
 std::size_t Stage<Metric>::star_pass(int iteration) {
-  constexpr Kind kKind = kCluster == Cluster::kEdge ? kEdge : kCluster == Cluster::kFace ? kFace : kNode;
-  using Op = StarFromVertex<kCluster, Metric>;
+  constexpr Kind kKind = kStar == Cluster::kEdge ? kEdge : kStar == Cluster::kFace ? kFace : kNode;
+  using Op = StarFromVertex<kStar, Metric>;
   using Seed = typename Op::Seed;
   return rounds(
       kKind, iteration, Focus{},
@@ -208,7 +223,7 @@ std::size_t Stage<Metric>::star_pass(int iteration) {
         return Op{metric_, work_.quality, work_.frozen, has(options_.ops, Ops::kInsert)};
       },
       [&](auto& round, const auto& op, const Worklist& list) {
-        if constexpr (kCluster == Cluster::kNode) {
+        if constexpr (kStar == Cluster::kNode) {
           std::vector<Seed> seeds;
           for (VertexHandle v : removable(list))
             seeds.push_back({mesh_.hook(v), static_cast<std::uint8_t>(mesh_.cell(mesh_.hook(v)).corner(v))});
@@ -216,7 +231,7 @@ std::size_t Stage<Metric>::star_pass(int iteration) {
         } else {
           return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
             const CellHandle c(list.cells()[i]);
-            if constexpr (kCluster == Cluster::kEdge)
+            if constexpr (kStar == Cluster::kEdge)
               visit_edge_seeds(mesh_, list, c, [&](EdgeHandle e) {
                 visit(Seed{c, static_cast<std::uint8_t>(e.idx() % 6)});
               });

@@ -11,6 +11,7 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "Operators/AnyOf.hh"
+#include "Operators/ClusterSearch.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/Metrics.hh"
@@ -79,19 +80,21 @@ class Stage {
   std::size_t multi_face_pass(int iteration, Focus focus);
   /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass.
   std::size_t insert_pass(int iteration, Focus focus);
+  /// All ways to connect the points round a poor cell: milliseconds a cell.
+  std::size_t cluster_pass(int iteration, Focus focus);
   std::size_t smooth_pass(int iteration, Focus focus);
   /// Edge removal, face swap and, with_node, vertex removal in one selection: a cluster goes to the kind that
   /// gains most.
   std::size_t mixed_pass(int iteration, Focus focus, bool with_node);
   /// The paper's star form of an operator over all cells that are pending.
-  template <Cluster kCluster>
+  template <Cluster kStar>
   std::size_t star_pass(int iteration);
 
  private:
-  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kMixed, kKinds };
+  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kMixed, kCluster, kKinds };
   /// As in a list of operators: variants of one are reported as one.
-  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face", "node", "insert",
-                                                             "smooth", "face", "mixed"};
+  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face", "node",  "insert",
+                                                             "smooth", "face", "mixed", "cluster"};
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {
