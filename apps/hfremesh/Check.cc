@@ -13,6 +13,7 @@
 #include "Files.hh"
 #include "HalfFace/Check.hh"
 #include "Json.hh"
+#include "Quality/FoldedFaces.hh"
 #include "Report.hh"
 
 namespace hfr::app {
@@ -56,15 +57,21 @@ bool is_fault(const CheckResult& structure) {
   return !(structure == Rule::kNone) && !(structure == Rule::kLabel);
 }
 
-void write_ids(const std::string& path, const std::vector<Finding>& findings) {
-  std::string text = "# kind and 0-based index of each bad cell\n";
+void write_ids(const std::string& path, const LoadedMesh& loaded, const std::vector<Finding>& findings,
+               const std::vector<HalfFaceHandle>& folded) {
+  std::string text = "# kind and 0-based index of each bad cell; folded: the vertices of a boundary face\n";
   for (const Finding& finding : findings)
     for (CellHandle cell : finding.cells) text += fmt::format("{} {}\n", finding.kind, cell.idx());
+  for (HalfFaceHandle h : folded) {
+    const auto f = loaded.mesh.halfface_vertices(h);
+    text += fmt::format("folded {} {} {}\n", f[0].idx(), f[1].idx(), f[2].idx());
+  }
   save_text(path, text);
 }
 
 void print_findings(const CommandLine& line, const LoadedMesh& loaded, const Statistics& statistics,
-                    const std::vector<Finding>& findings, const CheckResult& structure, bool overlaps) {
+                    const std::vector<Finding>& findings, const CheckResult& structure, bool overlaps,
+                    std::size_t n_folded) {
   const auto row = [](const std::string& name, const std::string& text) {
     fmt::print("{:<12}{}\n", name, text);
   };
@@ -79,6 +86,7 @@ void print_findings(const CommandLine& line, const LoadedMesh& loaded, const Sta
   }
   row("structure", structure ? "ok" : structure.message + (is_fault(structure) ? "" : ", which is no fault"));
   row("overlap", overlaps ? fmt::format("{:.3e} of the enclosed volume", statistics.overlap) : "none");
+  if (n_folded > 0) row("folded", grouped(n_folded) + " boundary faces lie on or go through another one");
   if (statistics.unused_vertices > 0)
     row("unused", grouped(statistics.unused_vertices) + " vertices, which is no fault");
   row("dihedral", fmt::format("{:.4f} to {:.4f}", statistics.min_dihedral.min, statistics.max_dihedral));
@@ -92,6 +100,7 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   const std::vector<Finding> findings = find_invalid(loaded.report, figures);
   const bool overlaps = figures.overlap > kOverlapTolerance;
   const CheckResult structure = check(loaded.mesh, {.policy = common.policy()});
+  const std::vector<HalfFaceHandle> folded = folded_faces(loaded.mesh, common.policy());
   bool valid = !overlaps && !is_fault(structure);
   for (const Finding& finding : findings) valid = valid && finding.cells.empty();
   const bool goal_met = !line.min_dihedral || figures.min_dihedral.min >= *line.min_dihedral;
@@ -101,12 +110,15 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   report["result"] = {{"valid", valid},
                       {"goal_reached", valid && goal_met},
                       {"overlaps", overlaps},
+                      {"n_folded_faces", folded.size()},
+                      {"folded_faces", faces_json(loaded.mesh, folded)},
                       {"structure", structure ? Json() : Json(structure.message)}};
   report["statistics"] = to_json(figures);
   report["notes"] = loaded.notes;
-  if (!line.ids.empty()) write_ids(line.ids, findings);
+  if (!line.ids.empty()) write_ids(line.ids, loaded, findings, folded);
   if (!common.quiet) print_notes(loaded.notes);
-  if (common.prints_table()) print_findings(line, loaded, figures, findings, structure, overlaps);
+  if (common.prints_table())
+    print_findings(line, loaded, figures, findings, structure, overlaps, folded.size());
   if (!valid) print_error(line.input + ": the mesh is not valid");
   if (valid && !goal_met)
     print_error(fmt::format("{}: the smallest dihedral angle is {:.4f}, below the goal of {}", line.input,

@@ -26,6 +26,7 @@ struct CommandLine {
   std::string ops, metric, smoother, rounds, compat;
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
+  std::string ids;           ///< file for the cells that are stuck, empty for none
   double time_limit = 0;     ///< 0 = none
   io::WriteOptions write;
   ImproveOptions improve;
@@ -45,7 +46,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
   if (line.time_limit > 0) options.time_limit = line.time_limit;
   options.policy = common.policy();
-  options.statistics = common.prints_table() || !common.json.empty();
+  options.statistics = common.prints_table() || !common.json.empty() || !line.ids.empty();
   return options;
 }
 
@@ -57,6 +58,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["time_limit"] = line.time_limit > 0 ? Json(line.time_limit) : Json();
   json["ops"] = ops_to_list(options.ops);
   json["metric"] = metric_name(options.metric);
+  json["max_cells"] = options.max_cells > 0 ? Json(options.max_cells) : Json();
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
   json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
@@ -81,6 +83,9 @@ std::string shortfall(const Result& result, const ImproveOptions& options) {
   if (!result.invalid_cells.empty())
     text += fmt::format("{}{} inverted or flat cells remain: {}", text.empty() ? "" : "; ",
                         grouped(result.invalid_cells.size()), id_list(result.invalid_cells));
+  if (!result.folded_faces.empty())
+    text +=
+        fmt::format("; {} boundary faces are folded onto one another", grouped(result.folded_faces.size()));
   if (text.empty() && !result.goal_reached)
     text = options.min_dihedral
                ? fmt::format("the goal of {} degrees was not reached for every cell", *options.min_dihedral)
@@ -88,13 +93,15 @@ std::string shortfall(const Result& result, const ImproveOptions& options) {
   return text;
 }
 
-Json outcome(const Result& result) {
+Json outcome(const TetMesh& mesh, const Result& result) {
   Json json;
   json["changed"] = result.changed;
   json["goal_reached"] = result.goal_reached;
   json["stop"] = stop_name(result.stop);
   json["n_invalid_cells"] = result.invalid_cells.size();
   json["invalid_cells"] = ids(result.invalid_cells);
+  json["n_folded_faces"] = result.folded_faces.size();
+  json["folded_faces"] = faces_json(mesh, result.folded_faces);
   return json;
 }
 
@@ -110,6 +117,22 @@ Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const Comman
   return improve(mesh, options);
 }
 
+/// Kind, index, angle and reason of each cell below the goal, and the folded faces by their vertices.
+void write_ids(const std::string& path, const TetMesh& mesh, const Result& result) {
+  std::string text = fmt::format(
+      "# cells of the output below {:g} degrees: index, degrees, vertices that may "
+      "not move, what keeps them there\n",
+      result.stuck_below);
+  for (const StuckCell& stuck : result.stuck)
+    text += fmt::format("cell {} {:.4f} {} {}\n", stuck.cell.idx(), stuck.degrees, stuck.n_frozen_vertices,
+                        kLimitNames[static_cast<std::size_t>(stuck.limit)]);
+  for (HalfFaceHandle h : result.folded_faces) {
+    const auto f = mesh.halfface_vertices(h);
+    text += fmt::format("folded {} {} {}\n", f[0].idx(), f[1].idx(), f[2].idx());
+  }
+  save_text(path, text);
+}
+
 /// Wall time by step.
 struct Seconds {
   double read = 0, build = 0, statistics = 0, improve = 0, write = 0;
@@ -119,6 +142,7 @@ void print_result(const Result& result, const Seconds& seconds, const CommandLin
                   const CommonOptions& common) {
   if (common.verbose) print_passes(result.passes);
   print_statistics({{"before", &result.before}, {"after", &result.after}});
+  print_limits(result);
   fmt::print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
              result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,
              seconds.statistics, seconds.write);
@@ -135,6 +159,7 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
     report["output"]["file"] = line.output;
     require_writable_mesh(line.output);
   }
+  if (!line.ids.empty() && line.ids != "-") require_writable_folder(line.ids);
   const SignalGuard signals;
   LoadedMesh loaded = load(line.input, common);
   Seconds seconds{.read = loaded.seconds_read, .build = loaded.seconds_build};
@@ -158,14 +183,16 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
                        {"improve", seconds.improve},
                        {"statistics", seconds.statistics},
                        {"write", seconds.write}};
-  report["result"] = outcome(result);
+  report["result"] = outcome(loaded.mesh, result);
   if (options.statistics) {
     report["before"] = to_json(result.before);
     report["after"] = to_json(result.after);
+    report["limits"] = limits_json(result);
   }
   report["passes"] = Json::array();
   for (const PassReport& pass : result.passes) report["passes"].push_back(to_json(pass));
   report["notes"] = notes;
+  if (!line.ids.empty()) write_ids(line.ids, loaded.mesh, result);
   if (!common.quiet) print_notes(notes);
   if (common.prints_table()) print_result(result, seconds, line, common);
   const ExitCode code = exit_code_of(result);
@@ -201,9 +228,17 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
   command->add_option("--time-limit", line->time_limit, "Stop improving after S seconds; exit code 5 then")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
-  command->add_option("--ops", line->ops, "Operators, comma-separated: edge, face, node, smooth, insert")
+  command
+      ->add_option("--ops", line->ops,
+                   "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
       ->type_name("LIST");
   command->add_flag("--no-insert", line->no_insert, "No new vertices");
+  command->add_option("--max-cells", line->improve.max_cells, "No new vertices beyond N cells; 0 is no bound")
+      ->type_name("N");
+  command
+      ->add_option("--ids", line->ids,
+                   "Write the cells below the goal and what keeps them there; - is stdout")
+      ->type_name("FILE");
   command->add_option("--metric", line->metric, "Quality metric of the bulk passes; volume-length by default")
       ->type_name("NAME");
   command

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Json.hh"
 
+#include <algorithm>
+
 #include "HalfFace/Config.hh"
 #include "IO/Hash.hh"
 
@@ -87,7 +89,7 @@ Json to_json(const Statistics& s) {
   json["dihedral_histogram"] = s.dihedral_histogram;
   json["volume_length"] = to_json(s.volume_length);
   json["volume_length_histogram"] = s.volume_length_histogram;
-  json["edge_length"] = {{"min", s.min_edge}, {"mean", s.mean_edge}, {"max", s.max_edge}};
+  json["edge_length"] = to_json(s.edge_length);
   json["box"] = {{"low", to_json(s.box_low)}, {"high", to_json(s.box_high)}};
   json["volume"] = s.volume;
   json["absolute_volume"] = s.absolute_volume;
@@ -117,6 +119,35 @@ Json to_json(const PassReport& pass) {
                      {"select", pass.seconds_select},
                      {"commit", pass.seconds_commit}};
   return json;
+}
+
+Json limits_json(const Result& result) {
+  constexpr std::size_t kMostCells = 100;
+  Json counts;
+  const auto n = count_limits(result.stuck);
+  for (std::size_t i = 0; i < n.size(); ++i) counts[kLimitNames[i]] = n[i];
+  Json cells = Json::array();
+  for (std::size_t i = 0; i < std::min(result.stuck.size(), kMostCells); ++i) {
+    const StuckCell& stuck = result.stuck[i];
+    cells.push_back({{"cell", stuck.cell.idx()},
+                     {"degrees", stuck.degrees},
+                     {"limit", kLimitNames[static_cast<std::size_t>(stuck.limit)]},
+                     {"frozen_vertices", stuck.n_frozen_vertices}});
+  }
+  return {{"below", result.stuck_below},
+          {"n_cells", result.stuck.size()},
+          {"counts", std::move(counts)},
+          {"cells", std::move(cells)}};
+}
+
+Json faces_json(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces) {
+  constexpr std::size_t kMostFaces = 100;
+  Json list = Json::array();
+  for (std::size_t i = 0; i < std::min(faces.size(), kMostFaces); ++i) {
+    const auto f = mesh.halfface_vertices(faces[i]);
+    list.push_back({f[0].idx(), f[1].idx(), f[2].idx()});
+  }
+  return list;
 }
 
 Json to_json(const BuildReport& report) {

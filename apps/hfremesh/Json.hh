@@ -23,6 +23,10 @@ Json contents(const io::MeshData& data);
 Json to_json(const Statistics& statistics);
 Json to_json(const PassReport& pass);
 Json to_json(const BuildReport& report);
+/// What keeps the cells that are left below the goal: counts, and the first hundred of them.
+Json limits_json(const Result& result);
+/// The vertices of the first hundred faces.
+Json faces_json(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces);
 const char* stop_name(Stop stop);
 
 /// The first `limit` handles as numbers.

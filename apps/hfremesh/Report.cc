@@ -17,7 +17,7 @@ std::string angle(double degrees) { return fmt::format("{:.2f}", degrees); }
 
 std::string ceiling(const EdgeWedge& wedge) { return wedge.a.is_valid() ? angle(wedge.degrees) : "-"; }
 
-constexpr std::size_t kP01 = 0, kP1 = 1, kP5 = 2, kMedian = 4;  // places in kPercentiles
+constexpr std::size_t kP01 = 0, kP1 = 1, kP5 = 2, kMedian = 4, kP95 = 6;  // places in kPercentiles
 
 const Row kRows[] = {
     {"cells", [](const Statistics& s) { return grouped(s.cells); }},
@@ -33,6 +33,10 @@ const Row kRows[] = {
     {"  median", [](const Statistics& s) { return angle(s.min_dihedral.percentiles[kMedian]); }},
     {"dihedral max", [](const Statistics& s) { return angle(s.max_dihedral); }},
     {"surface ceiling", [](const Statistics& s) { return ceiling(s.surface_ceiling); }},
+    {"edge p5", [](const Statistics& s) { return fmt::format("{:.4g}", s.edge_length.percentiles[kP5]); }},
+    {"  median",
+     [](const Statistics& s) { return fmt::format("{:.4g}", s.edge_length.percentiles[kMedian]); }},
+    {"  p95", [](const Statistics& s) { return fmt::format("{:.4g}", s.edge_length.percentiles[kP95]); }},
     {"volume", [](const Statistics& s) { return fmt::format("{:.8g}", s.volume); }},
     {"overlap", [](const Statistics& s) { return fmt::format("{:.1e}", s.overlap); }},
 };
@@ -79,6 +83,17 @@ void print_passes(const std::vector<PassReport>& passes) {
                pass.op, pass.iteration, pass.rounds, pass.seeds, pass.candidates, pass.winners,
                pass.n_inverted, pass.worst, pass.seconds);
   fmt::print("\n");
+}
+
+void print_limits(const Result& result) {
+  if (result.stuck.empty()) return;
+  const auto counts = count_limits(result.stuck);
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i)
+    if (counts[i] > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kLimitNames[i]);
+  fmt::print("below {:g} degrees: {} cells, kept there by: {}\n", result.stuck_below,
+             grouped(result.stuck.size()), text);
 }
 
 void print_written(const std::string& path, const io::MeshData& data) {

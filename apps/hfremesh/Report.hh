@@ -22,6 +22,8 @@ struct Column {
 void print_statistics(const std::vector<Column>& columns);
 /// One row a pass.
 void print_passes(const std::vector<PassReport>& passes);
+/// One line: how many cells are below an angle and what keeps them there. Nothing where none are.
+void print_limits(const Result& result);
 /// One line: the file and its counts.
 void print_written(const std::string& path, const io::MeshData& data);
 /// "3, 17, 20 and 5 more".

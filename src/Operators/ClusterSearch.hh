@@ -40,8 +40,8 @@ struct ClusterSearch {
   /// A new worst value must be more than this many times the old one. The same cells with their corners in
   /// another order differ by rounding, which is no gain.
   double gain = 1.0 + 1e-9;
-  std::size_t max_points = 20;      ///< of the cavity, at most kMaxPoints
-  std::size_t max_nodes = 4000;     ///< branches looked into for one cavity
+  std::size_t max_points = 20;   ///< of the cavity, at most kMaxPoints
+  std::size_t max_nodes = 4000;  ///< branches looked into for one cavity
 
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "Quality/CellTotals.hh"
+#include "Quality/EdgeLengths.hh"
 #include "Quality/FixedSum.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/SurfaceStatistics.hh"
@@ -159,6 +160,10 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
   detail::CellValues values;
   const detail::CellTotals totals = detail::gather_cells(mesh, policy, max_det, diagonal, values);
   add_cells(totals, max_det, s);
+  s.edge_length = detail::edge_length_percentiles(mesh, policy, s.min_edge, s.max_edge);
+  s.edge_length.min = s.min_edge;
+  s.edge_length.mean = s.mean_edge;
+  s.edge_length.max = s.max_edge;
   constexpr int kTasks = 3;
   const int n_parts = std::min(kTasks, policy.threads);
   par::parts(n_parts, [&](int part) {

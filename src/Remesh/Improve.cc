@@ -6,6 +6,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Reorder.hh"
+#include "Quality/FoldedFaces.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/RunControl.hh"
 
@@ -22,6 +23,8 @@ constexpr std::array<double, 21> kFullLadder = {1,  2,  3,    4,  5.5,  7,  8.5,
                                                 18, 20, 22.5, 25, 27.5, 30, 32.5, 35.0, 40, 45};
 constexpr int kMaxMissed = 4;
 constexpr double kClimbGain = 1.002;
+/// Nor left fewer than this share of the cells that were below the rung.
+constexpr double kFewer = 0.8;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -70,8 +73,11 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
       const double now = smallest();
       if (now >= rung) continue;
       if (n_missed == kMaxMissed || control.stopped()) break;
+      const auto n_poor = n_below(mesh, rung, options.policy);
       polish(mesh, work, options, control, rung);
-      n_missed = smallest() > now * kClimbGain ? 0 : n_missed + 1;
+      const bool fewer =
+          kFewer * static_cast<double>(n_poor) > static_cast<double>(n_below(mesh, rung, options.policy));
+      n_missed = fewer || smallest() > now * kClimbGain ? 0 : n_missed + 1;
     }
   }
 }
@@ -106,6 +112,28 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   return false;
 }
 
+/// The first angle that the worst cells were raised to in vain.
+double missed_rung(double smallest, bool to_the_end) {
+  const auto first_above = [&](const auto& ladder) {
+    const auto at = std::find_if(ladder.begin(), ladder.end(), [&](double rung) { return rung > smallest; });
+    return at == ladder.end() ? 0.0 : *at;
+  };
+  return to_the_end ? first_above(kFullLadder) : first_above(kLadder);
+}
+
+/// What keeps the cells that are left below the goal.
+void explain(const TetMesh& mesh, const ImproveOptions& options, Result& result) {
+  result.stuck_below = options.min_dihedral
+                           ? *options.min_dihedral
+                           : missed_rung(result.after.min_dihedral.min, options.raise_min_dihedral);
+  if (result.stuck_below == 0) return;
+  const bool full = options.max_cells > 0 && result.after.cells + kCellsPerVertex > options.max_cells;
+  const bool ended_early =
+      result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled || result.stop == Stop::kIterations;
+  result.stuck =
+      stuck_cells(mesh, result.stuck_below, ended_early || full, result.folded_faces, options.policy);
+}
+
 }  // namespace
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
@@ -128,14 +156,20 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
     restore_cell_order(mesh, cell_order, options.policy);
   if (!known_to_meet) {
     if (result.changed) found = survey(mesh, options.policy);
-    if (found.n_invalid > 0) result.invalid_cells = invalid_cells(mesh, options.policy);
+    if (found.n_invalid > 0) {
+      result.invalid_cells = invalid_cells(mesh, options.policy);
+      result.folded_faces = folded_faces(mesh, options.policy);
+    }
   }
   result.goal_reached = known_to_meet || meets_goal(found);
   result.stop = control.reason().value_or(result.goal_reached && options.min_dihedral ? Stop::kGoal
                                           : options.iterations > 0                    ? Stop::kIterations
                                                                                       : Stop::kNoProgress);
   result.seconds = control.seconds();
-  if (options.statistics) result.after = result.changed ? statistics(mesh, options.policy) : result.before;
+  if (options.statistics) {
+    result.after = result.changed ? statistics(mesh, options.policy) : result.before;
+    explain(mesh, options, result);
+  }
   return result;
 }
 

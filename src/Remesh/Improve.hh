@@ -13,17 +13,18 @@
 #include "Parallel/Parallel.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/Statistics.hh"
+#include "Remesh/Limits.hh"
 
 namespace hfr {
 
 /// Operators that a run may use; a set of bits.
 enum class Ops : unsigned {
   kNone = 0,
-  kEdge = 1,     ///< edge removal
-  kFace = 2,     ///< 2-3 face swap; towards an angle, also removal of several faces
-  kNode = 4,     ///< vertex removal by collapse onto a neighbour
-  kSmooth = 8,   ///< vertex smoothing
-  kInsert = 16,  ///< a new vertex in a dug cavity, for the few cells that nothing else mends
+  kEdge = 1,      ///< edge removal
+  kFace = 2,      ///< 2-3 face swap; towards an angle, also removal of several faces
+  kNode = 4,      ///< vertex removal by collapse onto a neighbour
+  kSmooth = 8,    ///< vertex smoothing
+  kInsert = 16,   ///< a new vertex in a dug cavity, for the few cells that nothing else mends
   kCluster = 32,  ///< branch and bound over all ways to connect the points round such a cell
   kDefault = kEdge | kFace | kNode | kSmooth | kInsert | kCluster,
 };
@@ -69,12 +70,15 @@ struct ImproveOptions {
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
   Ops ops = Ops::kDefault;
   Metric metric = Metric::kVolumeLength;  ///< of the bulk passes
+  /// No vertex is inserted once the mesh has this many cells, nor where it could come to have more. 0 = no
+  /// bound. Swaps may still add a few.
+  std::size_t max_cells = 0;
   Smoother smoother = Smoother::kNewton;
   Rounds rounds = Rounds::kAuto;
   Compat compat = Compat::kNone;
   std::uint64_t seed = 1;  ///< of the priorities among candidates of equal worth
   par::Policy policy = par::Policy::all();
-  bool statistics = true;  ///< fill Result::before and after
+  bool statistics = true;  ///< fill Result::before and after, and what is said of stuck cells
   /// Called between passes, from the calling thread.
   std::function<void(const Progress&)> progress;
   /// Asked between passes; true stops the run with the mesh as it is then: valid, no worse than before.
@@ -108,7 +112,13 @@ struct Result {
   std::vector<PassReport> passes;
   Statistics before, after;               ///< when options.statistics
   std::vector<CellHandle> invalid_cells;  ///< inverted or flat cells that remain
-  double seconds = 0;                     ///< of the work itself, statistics apart
+  /// Boundary faces that lie on one another, when invalid cells remain; see folded_faces().
+  std::vector<HalfFaceHandle> folded_faces;
+  /// With options.statistics: the cells below `stuck_below` degrees, which is the goal or, where the worst
+  /// angle was raised as far as it goes, the first angle that was tried for and missed; and what keeps each.
+  std::vector<StuckCell> stuck;
+  double stuck_below = 0;
+  double seconds = 0;  ///< of the work itself, statistics apart
 };
 
 /// Improves `mesh` in place. The worst cell of every changed cluster gets better; boundary, region

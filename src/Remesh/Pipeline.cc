@@ -25,6 +25,15 @@ constexpr int kMaxIdle = 2;
 // Cells that the polish may insert vertices for: at most so many, or one in so many.
 constexpr std::size_t kFewPoor = 50;
 constexpr std::size_t kPoorShare = 50;
+constexpr std::size_t kPoorShareAtAnyCost = 4;  // where the worst angle is to be raised as far as it goes
+/// Cells whose surroundings are searched at most where nobody asked for an angle.
+constexpr std::size_t kFewToSearch = 100;
+
+/// Up to how many poor cells an expensive operator is worth it.
+struct Few {
+  std::size_t to_dig = 0;
+  std::size_t to_search = 0;
+};
 
 bool is_invalid(const TetMesh& mesh, CellHandle c) {
   const auto& v = mesh.cell(c).v;
@@ -56,7 +65,7 @@ void with_stage_metric(Metric metric, F&& f) {
 /// Iterates on cells below `goal` while it helps. Returns true when there are none any more.
 template <class Metric>
 bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& control, double goal,
-               std::size_t few) {
+               const Few& few) {
   const int limit = options.iterations > 0 ? options.iterations : kMaxPolishIterations;
   std::size_t n_poor = stage.n_below(goal);
   double worst = stage.worst();
@@ -72,14 +81,20 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     n_poor = n_poor_now;
     worst = stage.worst();
     if (n_poor == 0 || (changes > 0 && idle < kMaxIdle)) continue;
-    // A few cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex.
-    if (n_poor > few || !has(options.ops, Ops::kInsert)) break;
-    // Where the last ones have not paid, more of them would only fill the place with poor cells.
-    if (has_dug && 10 * n_poor > 9 * n_poor_dug && !(worst > worst_dug * kPolishGain)) break;
-    has_dug = true;
-    n_poor_dug = n_poor;
-    worst_dug = worst;
-    if (stage.insert_pass(i, Focus{goal}) == 0) break;
+    // Cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex. Where
+    // the last ones have not paid, more of them would only fill the place with poor cells.
+    const bool pays = !has_dug || 10 * n_poor <= 9 * n_poor_dug || worst > worst_dug * kPolishGain;
+    if (n_poor <= few.to_dig && has(options.ops, Ops::kInsert) && pays) {
+      has_dug = true;
+      n_poor_dug = n_poor;
+      worst_dug = worst;
+      if (stage.insert_pass(i, Focus{goal}) > 0) {
+        idle = kMaxIdle - 1;
+        continue;
+      }
+    }
+    if (n_poor > few.to_search || !has(options.ops, Ops::kCluster)) break;
+    if (stage.cluster_pass(i, Focus{goal}) == 0) break;
     idle = kMaxIdle - 1;
   }
   return n_poor == 0;
@@ -120,6 +135,16 @@ double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
   return report_value(Metric::kMinDihedral, std::min(survey(mesh, policy).worst, 8.0 / 9.0));
 }
 
+std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy) {
+  const double goal = dihedral_decision(degrees);
+  return par::reduce(
+      policy, mesh.n_cells(), std::size_t{0},
+      [&](std::size_t i) -> std::size_t {
+        return !mesh.is_deleted(CellHandle(i)) && min_dihedral_of(mesh, CellHandle(i)) < goal ? 1 : 0;
+      },
+      [](std::size_t a, std::size_t b) { return a + b; });
+}
+
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
   const auto indices = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
     return !mesh.is_deleted(CellHandle(i)) && is_invalid(mesh, CellHandle(i));
@@ -145,7 +170,10 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share) {
   const double decision = dihedral_decision(goal);
-  const std::size_t few = std::max(kFewPoor, mesh.n_logical_cells() / kPoorShare);
+  const std::size_t share = options.raise_min_dihedral ? kPoorShareAtAnyCost : kPoorShare;
+  Few few;
+  few.to_dig = std::max(kFewPoor, mesh.n_logical_cells() / share);
+  few.to_search = options.min_dihedral || options.raise_min_dihedral ? few.to_dig : kFewToSearch;
   {
     Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "polish");
     const auto n_poor = static_cast<double>(stage.n_below(decision));

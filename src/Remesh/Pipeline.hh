@@ -9,6 +9,9 @@
 
 namespace hfr {
 
+/// Cells that one inserted vertex may add, at most: twice a largest cavity and two, less the cavity.
+inline constexpr std::size_t kCellsPerVertex = 50;
+
 /// sin² of an angle in degrees: what the dihedral metrics call their decision value.
 double dihedral_decision(double degrees);
 /// The mesh in two numbers, from one pass over its cells.
@@ -19,6 +22,8 @@ struct Survey {
 Survey survey(const TetMesh& mesh, par::Policy policy);
 /// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
+/// Number of cells whose smallest dihedral is below so many degrees.
+std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy);
 /// Cells whose volume is not positive beyond rounding, ascending.
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy);
 

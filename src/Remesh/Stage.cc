@@ -12,9 +12,11 @@ namespace {
 template <class Metric>
 constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
 
-constexpr double kLeastGain = 1.02;   // in sin² of the worst, of a cavity that costs a vertex and cells
-constexpr int kMaxRounds = 12;        // of one operator in one pass
-constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/kLittle of the first one
+constexpr double kLeastGain = 1.02;        // in sin² of the worst, of a cavity that costs a vertex and cells
+constexpr std::size_t kSearchPoints = 14;  // of a cavity whose fillings are searched
+constexpr std::size_t kSearchNodes = 300;  // of each search: more found little more on the test meshes
+constexpr int kMaxRounds = 12;             // of one operator in one pass
+constexpr std::size_t kLittle = 200;       // stop when a round commits less than 1/kLittle of the first one
 
 }  // namespace
 
@@ -190,10 +192,25 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
         return Op{metric_, work_.quality, kLeastGain};
       },
       [&](auto& round, const auto& op, const Worklist& list) {
-        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
-          visit(typename Op::Seed(CellHandle(list.cells()[i])));
+        const std::vector<Index> cells = affordable(list);
+        return round.run(op, cells.size(), [&](std::size_t i, auto&& visit) {
+          visit(typename Op::Seed(CellHandle(cells[i])));
         });
       });
+}
+
+template <class Metric>
+std::vector<Index> Stage<Metric>::affordable(const Worklist& list) const {
+  std::vector<Index> cells(list.cells().begin(), list.cells().end());
+  if (options_.max_cells == 0) return cells;
+  const std::size_t now = mesh_.n_logical_cells();
+  const std::size_t n = options_.max_cells > now ? (options_.max_cells - now) / kCellsPerVertex : 0;
+  if (n >= cells.size()) return cells;
+  // The worst of them; of equal ones those that come first.
+  std::stable_sort(cells.begin(), cells.end(),
+                   [&](Index a, Index b) { return work_.quality[a] < work_.quality[b]; });
+  cells.resize(n);
+  return cells;
 }
 
 template <class Metric>
@@ -202,7 +219,7 @@ std::size_t Stage<Metric>::cluster_pass(int iteration, Focus focus) {
   return rounds(
       kCluster, iteration, focus,
       [&] {
-        return Op{metric_, work_.quality};
+        return Op{metric_, work_.quality, kLeastGain, kSearchPoints, kSearchNodes};
       },
       [&](auto& round, const auto& op, const Worklist& list) {
         return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {

@@ -121,6 +121,9 @@ class Stage {
   /// Vertices of the listed cells that an operator may take out.
   std::vector<VertexHandle> removable(const Worklist& list) const;
 
+  /// The listed cells that may get a vertex before the mesh has as many cells as options allow.
+  std::vector<Index> affordable(const Worklist& list) const;
+
   /// Rounds of one operator until they bring little, then a line in the report.
   template <class MakeOp, class RunRound>
   std::size_t rounds(Kind kind, int iteration, Focus focus, MakeOp&& make_op, RunRound&& run_round);

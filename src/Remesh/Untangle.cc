@@ -117,8 +117,9 @@ class Unfolding {
     std::vector<std::uint8_t> flags(cells_.size(), 0);
     par::for_each(policy_, cells_.size(), [&](std::size_t i) {
       const auto& v = mesh_.cell(cells_[i]).v;
-      flags[i] =
-          orientation(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])) <= 0 ? 1 : 0;
+      flags[i] = orientation(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])) <= 0
+                     ? 1
+                     : 0;
     });
     return flags;
   }
@@ -243,7 +244,8 @@ void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Run
     if (stage.n_invalid() > 0) stage.cluster_pass(restart, Focus{kUntangleFocus[0]});
     if (stage.n_invalid() > 0) stage.insert_pass(restart, Focus{kUntangleFocus[0]});
     if (stage.n_invalid() == 0) return;
-    const std::size_t left = moves ? unfold_by_moving(mesh, work, options, control, 1 + restart) : stage.n_invalid();
+    const std::size_t left =
+        moves ? unfold_by_moving(mesh, work, options, control, 1 + restart) : stage.n_invalid();
     if (left == 0 || left >= n_at_start) return;
   }
 }

@@ -30,7 +30,7 @@ TEST_P(Soak, RandomOperatorsKeepAMeshWhole) {
   for (int step = 0; step < 5; ++step) {
     const std::size_t inverted = invalid_cells(mesh, {}).size();
     ImproveOptions options = serial();
-    options.ops = static_cast<Ops>(1 + engine() % 31);
+    options.ops = static_cast<Ops>(1 + engine() % 63);
     options.smoother = kSmoothers[engine() % kSmoothers.size()];
     options.metric = kMetrics[engine() % kMetrics.size()];
     options.compat = engine() % 4 == 0 ? Compat::kJpdc2013 : Compat::kNone;

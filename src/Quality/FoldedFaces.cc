@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Quality/FoldedFaces.hh"
+
+#include <algorithm>
+#include <span>
+
+#include "Quality/Metrics.hh"
+
+namespace hfr {
+namespace {
+
+struct Corner {
+  VertexHandle vertex;
+  HalfFaceHandle face;
+};
+
+/// The two other vertices of a face at a vertex.
+std::array<VertexHandle, 2> others(const TetMesh& mesh, HalfFaceHandle h, VertexHandle v) {
+  const auto f = mesh.halfface_vertices(h);
+  return f[0] == v ? std::array{f[1], f[2]} : f[1] == v ? std::array{f[2], f[0]} : std::array{f[0], f[1]};
+}
+
+/// True when direction x, in the plane of the directions a and b, is strictly between them.
+bool between(Vec3 a, Vec3 b, Vec3 x) {
+  const Vec3 n = cross(a, b);
+  return dot(n, cross(a, x)) > 0 && dot(n, cross(x, b)) > 0;
+}
+
+/// Faces (v, a, b) and (v, a, d): on one another when they lie in a plane and on one side of the common edge.
+bool fold_at_edge(Vec3 v, Vec3 a, Vec3 b, Vec3 d) {
+  return orientation(v, a, b, d) == 0 && dot(cross(a - v, b - v), cross(a - v, d - v)) > 0;
+}
+
+/// Faces (v, a, b) and (v, c, d), seen from v as arcs: whether these meet other than at a common end.
+bool fold_at_vertex(Vec3 v, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const int sc = orientation(v, a, b, c);
+  const int sd = orientation(v, a, b, d);
+  const Vec3 va = a - v, vb = b - v, vc = c - v, vd = d - v;
+  if ((sc == 0 && between(va, vb, vc)) || (sd == 0 && between(va, vb, vd))) return true;
+  const int sa = orientation(v, c, d, a);
+  const int sb = orientation(v, c, d, b);
+  if ((sa == 0 && between(vc, vd, va)) || (sb == 0 && between(vc, vd, vb))) return true;
+  if (sc * sd >= 0 || sa * sb >= 0) return false;
+  // Where the arc from c to d goes through the plane of a and b; the other arc may be on the far side.
+  const Vec3 n = cross(va, vb);
+  const double hc = dot(n, vc);
+  const double hd = dot(n, vd);
+  const Vec3 x = (hc > 0 ? hc : -hc) * vd + (hd > 0 ? hd : -hd) * vc;
+  return between(va, vb, x);
+}
+
+bool fold(const TetMesh& mesh, VertexHandle v, HalfFaceHandle f, HalfFaceHandle g) {
+  auto [a, b] = others(mesh, f, v);
+  auto [c, d] = others(mesh, g, v);
+  const auto p = [&](VertexHandle w) { return mesh.point(w); };
+  if ((a == c && b == d) || (a == d && b == c)) return true;
+  if (b == c || b == d) std::swap(a, b);
+  if (d == a) std::swap(c, d);
+  if (a == c) return fold_at_edge(p(v), p(a), p(b), p(d));
+  return fold_at_vertex(p(v), p(a), p(b), p(c), p(d));
+}
+
+}  // namespace
+
+std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy) {
+  const auto boundary = par::compact<Index>(policy, 4 * mesh.n_cells(), [&](std::size_t i) {
+    const HalfFaceHandle h(i);
+    return !mesh.is_deleted(cell_of(h)) && !mesh.opposite_halfface(h).is_valid();
+  });
+  std::vector<Corner> corners;
+  corners.reserve(3 * boundary.size());
+  for (Index i : boundary)
+    for (VertexHandle v : mesh.halfface_vertices(HalfFaceHandle(i)))
+      corners.push_back({v, HalfFaceHandle(i)});
+  std::sort(corners.begin(), corners.end(), [](const Corner& x, const Corner& y) {
+    return x.vertex < y.vertex || (x.vertex == y.vertex && x.face < y.face);
+  });
+  std::vector<HalfFaceHandle> folded;
+  for (std::size_t begin = 0; begin < corners.size();) {
+    const VertexHandle v = corners[begin].vertex;
+    std::size_t end = begin;
+    while (end < corners.size() && corners[end].vertex == v) ++end;
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t j = i + 1; j < end; ++j) {
+        if (!fold(mesh, v, corners[i].face, corners[j].face)) continue;
+        folded.push_back(corners[i].face);
+        folded.push_back(corners[j].face);
+      }
+    }
+    begin = end;
+  }
+  std::sort(folded.begin(), folded.end());
+  folded.erase(std::unique(folded.begin(), folded.end()), folded.end());
+  return folded;
+}
+
+}  // namespace hfr

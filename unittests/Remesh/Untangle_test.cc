@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Quality/FoldedFaces.hh"
+#include "Remesh/Meshes.hh"
+#include "Remesh/Pipeline.hh"
+
+namespace hfr::test {
+namespace {
+
+ImproveOptions repair_only() {
+  ImproveOptions options = serial();
+  options.min_dihedral = 1;
+  return options;
+}
+
+/// The jittered box with its surface left where it was.
+TetMesh tangled_inside(Index n, double jitter, std::uint64_t seed) {
+  generate::Arrays arrays = generate::box({n, n, n});
+  const generate::Arrays jittered = generate::jittered_box({n, n, n}, jitter, seed);
+  for (std::size_t i = 0; i < arrays.points.size(); ++i) {
+    const Vec3 p = arrays.points[i];
+    const bool inside = p.x > 0 && p.x < 1 && p.y > 0 && p.y < 1 && p.z > 0 && p.z < 1;
+    if (inside) arrays.points[i] = jittered.points[i];
+  }
+  return built(arrays);
+}
+
+TEST(Untangle, BulkShearIsRepairedByMoving) {
+  generate::CavityOptions options;
+  options.counts = {12, 12, 12};
+  options.field = generate::CavityField::kBulkShear;
+  options.jitter = 0.2;
+  options.amplitude = 0.2;
+  TetMesh mesh = built(generate::cavity(options));
+  ASSERT_GT(n_inverted(mesh), 300U);
+  const auto boundary = boundary_of(mesh);
+  const double before = volume(mesh);
+  ImproveOptions only_moves = repair_only();
+  only_moves.ops = Ops::kSmooth;
+  const Result result = improve(mesh, only_moves);
+  EXPECT_TRUE(result.invalid_cells.empty());
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_NEAR(volume(mesh), before, 1e-12);
+  EXPECT_TRUE(boundary_of(mesh) == boundary);
+}
+
+TEST(Untangle, RandomlyTangledInsidesAreRepaired) {
+  std::size_t inverted = 0;
+  std::size_t left = 0;
+  for (std::uint64_t s = 1; s <= 12; ++s) {
+    TetMesh mesh = tangled_inside(6, 0.4 + 0.05 * static_cast<double>(s), s);
+    inverted += n_inverted(mesh);
+    const double before = volume(mesh);
+    const Result result = improve(mesh, repair_only());
+    left += result.invalid_cells.size();
+    EXPECT_EQ(check(mesh), Ok);
+    EXPECT_NEAR(volume(mesh), before, 1e-12);
+  }
+  EXPECT_GT(inverted, 2000U);
+  EXPECT_EQ(left, 0U);
+}
+
+TEST(Untangle, FoldedBoundaryLeavesOnlyWhatTouchesIt) {
+  std::size_t with_folds = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = jittered(6, 0.5, s);
+    const std::size_t inverted = invalid_cells(mesh, {}).size();
+    const Result result = improve(mesh, repair_only());
+    EXPECT_LE(result.invalid_cells.size(), inverted);
+    EXPECT_EQ(result.folded_faces,
+              folded_faces(mesh).empty() ? std::vector<HalfFaceHandle>() : folded_faces(mesh));
+    if (result.folded_faces.empty()) continue;
+    ++with_folds;
+    EXPECT_FALSE(result.goal_reached);
+    for (const StuckCell& stuck : result.stuck)
+      if (stuck.degrees <= 0) EXPECT_EQ(stuck.limit, Limit::kFoldedSurface);
+  }
+  EXPECT_GT(with_folds, 3U);
+}
+
+TEST(Untangle, ThreadsMakeNoDifference) {
+  for (std::uint64_t s = 1; s <= 3; ++s) {
+    const TetMesh start = tangled_inside(6, 0.6, s);
+    ImproveOptions options = repair_only();
+    TetMesh one = start;
+    improve(one, options);
+    for (int threads : {2, 3, 7}) {
+      TetMesh many = start;
+      options.policy = {threads, 1};
+      improve(many, options);
+      EXPECT_TRUE(identical(one, many)) << threads;
+    }
+  }
+}
+
+TEST(MaxCells, NoVertexIsInsertedBeyondIt) {
+  std::size_t free_cells = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    const TetMesh start = jittered(5, 0.3, s);
+    ImproveOptions options = serial();
+    options.raise_min_dihedral = true;
+    TetMesh free = start;
+    const std::size_t n_free = improve(free, options).after.vertices;
+    TetMesh bounded = start;
+    options.max_cells = start.n_cells() / 2;  // fewer than there are
+    const Result result = improve(bounded, options);
+    for (const PassReport& pass : result.passes)
+      if (pass.op == "insert") EXPECT_EQ(pass.winners, 0U);
+    free_cells += n_free > result.after.vertices ? 1 : 0;
+  }
+  EXPECT_GT(free_cells, 0U);
+}
+
+}  // namespace
+}  // namespace hfr::test
