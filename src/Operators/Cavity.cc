@@ -54,6 +54,36 @@ FixedVector<Tet, Cavity::kCapacity> dead_tets(const TetMesh& mesh, const Cavity&
   return tets;
 }
 
+/// True when the outer faces are a sphere. Where they touch themselves along an edge or in a vertex, which a
+/// cavity that grows among inverted cells may do, new cells can tear the cells round it into two groups.
+bool is_ball(const TetMesh& mesh, const Cavity& cavity) {
+  FixedVector<std::array<VertexHandle, 2>, 6 * Cavity::kCapacity> edges;
+  FixedVector<VertexHandle, 6 * Cavity::kCapacity> vertices;
+  std::size_t n_faces = 0;
+  for (CellHandle c : cavity.dead) {
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(c, k);
+      const HalfFaceHandle m = mesh.opposite_halfface(h);
+      if (m.is_valid() && std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m)) != cavity.dead.end())
+        continue;
+      ++n_faces;
+      const auto f = mesh.halfface_vertices(h);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
+        edges.push_back({low, high});
+        vertices.push_back(f[i]);
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i + 2 < edges.size(); ++i)
+    if (edges[i] == edges[i + 2]) return false;
+  std::sort(vertices.begin(), vertices.end());
+  const auto n_vertices =
+      static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
+  return n_vertices + n_faces == edges.size() / 2 + 2;  // Euler's number of a sphere
+}
+
 bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
   const Labels& labels = mesh.labels();
   if (!labels.faces.empty()) {
@@ -98,6 +128,7 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
   }
   if (!labels_survive(mesh, cavity)) return false;
   if (!check_links) return true;
+  if (!is_ball(mesh, cavity)) return false;
 
   const auto before = dead_tets(mesh, cavity);
   const SimplexSet<2> old_edges = edges_of(before);

@@ -71,9 +71,9 @@ struct Cavity {
 /// go:
 ///  - all dead cells lie in one region,
 ///  - no face between dead cells is labelled, and no labelled edge is lost,
-///  - no edge or face would exist twice (the full link condition; it can only fail where cells are inverted
-///  or
-///    the boundary meets itself, so callers leave it out elsewhere).
+///  - the outer faces are a sphere and no edge or face would exist twice (the full link condition; it can
+///  only
+///    fail where cells are inverted or the boundary meets itself, so callers leave it out elsewhere).
 bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch);
 
 /// Of the dead cells' vertices the one nearest to the new vertex, which inherits its data. Needs a new

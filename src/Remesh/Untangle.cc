@@ -208,6 +208,9 @@ std::size_t unfold_by_moving(TetMesh& mesh, Workspace& work, const ImproveOption
     pass.worst = survey(mesh, options.policy).worst;
     pass.seconds = pass.seconds_evaluate = control.seconds() - start;
     control.add(std::move(pass));
+    if (options.progress)
+      options.progress({"untangle", iteration, control.fraction(), invalid.size(),
+                        smallest_dihedral(mesh, options.policy)});
   }
   return invalid.size();
 }
@@ -241,8 +244,10 @@ void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Run
       stage.look_again();
       idle = 0;
     }
-    if (stage.n_invalid() > 0) stage.cluster_pass(restart, Focus{kUntangleFocus[0]});
-    if (stage.n_invalid() > 0) stage.insert_pass(restart, Focus{kUntangleFocus[0]});
+    if (stage.n_invalid() > 0 && has(options.ops, Ops::kCluster))
+      stage.cluster_pass(restart, Focus{kUntangleFocus[0]});
+    if (stage.n_invalid() > 0 && has(options.ops, Ops::kInsert))
+      stage.insert_pass(restart, Focus{kUntangleFocus[0]});
     if (stage.n_invalid() == 0) return;
     const std::size_t left =
         moves ? unfold_by_moving(mesh, work, options, control, 1 + restart) : stage.n_invalid();

@@ -79,7 +79,7 @@ std::vector<std::uint32_t> select_by_claims(par::Policy policy, const ScopeList&
     undecided = std::move(next);
   }
   auto winners = par::compact<std::uint32_t>(policy, state.size(),
-                                                   [&](std::size_t i) { return state[i] == State::kWon; });
+                                             [&](std::size_t i) { return state[i] == State::kWon; });
   par::for_each(policy, winners.size(), [&](std::size_t w) {
     for (CellHandle c : scopes[winners[w]]) claim[c.idx()] = static_cast<std::uint32_t>(w);
   });

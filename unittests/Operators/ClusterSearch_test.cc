@@ -119,7 +119,7 @@ TYPED_TEST(ClusterSearchMetrics, BestFillingOfACavityAmongOthersIsFound) {
   const TypeParam metric;
   int accepted = 0;
   int many = 0;
-  for (std::uint64_t s = 1; s <= 12; ++s) {
+  for (std::uint64_t s = 1; s <= 80; ++s) {
     const TetMesh mesh = jittered(3, 0.24, s);
     if (n_inverted(mesh) > 0) continue;
     const auto quality = qualities(mesh, metric);

@@ -196,6 +196,10 @@ void expect_monotone(const Result& result) {
     const PassReport& pass = result.passes[i];
     if (pass.stage != last.stage || pass.iteration < last.iteration) continue;
     ++steps;
+    if (pass.op == "unfold" || last.op == "unfold") {  // fewer inverted cells are worth a worse one
+      EXPECT_LE(pass.n_inverted, last.n_inverted) << pass.op;
+      continue;
+    }
     EXPECT_GE(pass.worst, last.worst) << pass.stage << ' ' << pass.op << ' ' << pass.iteration;
     EXPECT_TRUE(last.n_inverted > 0 || pass.n_inverted == 0) << "a cell was inverted by " << pass.op;
   }
@@ -239,7 +243,7 @@ TEST(Improve, EverySmootherRunsAndMends) {
 }
 
 TEST(Improve, EveryOperatorByItselfKeepsTheMeshWhole) {
-  for (const char* name : {"edge", "face", "node", "smooth", "insert"}) {
+  for (const char* name : {"edge", "face", "node", "smooth", "insert", "cluster"}) {
     SCOPED_TRACE(name);
     TetMesh mesh = small_cavity(8);
     const auto boundary = boundary_of(mesh);
@@ -255,7 +259,8 @@ TEST(Improve, EveryOperatorByItselfKeepsTheMeshWhole) {
     EXPECT_NEAR(volume(mesh), before, 1e-12);
     EXPECT_LE(n_inverted(mesh), inverted);
     EXPECT_TRUE(worst_quality(mesh, VolumeLength{}) >= worst || n_inverted(mesh) == 0);
-    for (const PassReport& pass : result.passes) EXPECT_EQ(pass.op, name);
+    for (const PassReport& pass : result.passes)
+      EXPECT_TRUE(pass.op == name || (pass.op == "unfold" && name == std::string("smooth"))) << pass.op;
   }
 }
 

@@ -61,7 +61,9 @@ TEST(StuckCells, WedgeThatOneCellHasToFillIsACeilingWhereThisCellIsPoor) {
   mesh.set_point(V(2), {0.9, 0.6, 0.2});
   const auto stuck = stuck_cells(mesh, 25, false, {});
   for (const StuckCell& cell : stuck)
-    if (cell.cell == C(0)) EXPECT_EQ(cell.limit, Limit::kSurfaceCeiling);
+    if (cell.cell == C(0)) {
+      EXPECT_EQ(cell.limit, Limit::kSurfaceCeiling);
+    }
   EXPECT_EQ(n_of(stuck_cells(mesh, 15, false, {}), Limit::kSurfaceCeiling), 0U);
 }
 
@@ -87,9 +89,9 @@ TEST(StuckCells, FoldsAreNamedBeforeAnythingElse) {
 }
 
 TEST(StuckCells, RunThatEndedEarlySaysBudget) {
-  const TetMesh mesh = jittered(4, 0.3, 2);
-  const auto done = stuck_cells(mesh, 10, false, {});
-  const auto early = stuck_cells(mesh, 10, true, {});
+  const TetMesh mesh = jittered(4, 0.35, 2);
+  const auto done = stuck_cells(mesh, 20, false, {});
+  const auto early = stuck_cells(mesh, 20, true, {});
   ASSERT_EQ(done.size(), early.size());
   EXPECT_EQ(n_of(done, Limit::kBudget), 0U);
   EXPECT_EQ(n_of(early, Limit::kBudget), n_of(done, Limit::kSearch) + n_of(done, Limit::kFrozenVertices));

@@ -9,11 +9,11 @@ namespace hfr::test {
 namespace {
 
 TEST(Ops, ListsRoundTrip) {
-  for (unsigned bits = 1; bits < 32; ++bits) {
+  for (unsigned bits = 1; bits < 64; ++bits) {
     const Ops ops = static_cast<Ops>(bits);
     EXPECT_EQ(ops_from_list(ops_to_list(ops)), ops) << ops_to_list(ops);
   }
-  EXPECT_EQ(ops_from_list("edge,face,node,smooth,insert"), Ops::kDefault);
+  EXPECT_EQ(ops_from_list("edge,face,node,smooth,insert,cluster"), Ops::kDefault);
   EXPECT_EQ(ops_from_list("smooth,edge"), Ops::kEdge | Ops::kSmooth);
   EXPECT_EQ(ops_from_list("edge,edge"), Ops::kEdge);
 }
