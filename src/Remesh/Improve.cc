@@ -8,6 +8,7 @@
 #include "HalfFace/Reorder.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/RunControl.hh"
+#include "Remesh/SurfaceRun.hh"
 
 namespace hfr {
 namespace {
@@ -76,16 +77,9 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
   }
 }
 
-/// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
-/// reordered.
-bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first,
-         std::vector<CellHandle>& cell_order) {
-  // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
-  if (!options.min_dihedral && is_scattered(mesh, options.policy))
-    cell_order =
-        reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
-  Workspace work;
-  work.attach(mesh, options.policy);
+/// True when every cell is known to meet the goal.
+bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                const Survey& at_first) {
   if (options.compat == Compat::kJpdc2013) {
     run_jpdc2013(mesh, work, options, control);
     return false;
@@ -103,6 +97,24 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   return false;
 }
 
+/// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
+/// reordered.
+bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first,
+         std::vector<CellHandle>& cell_order, SurfaceReport& surface_report) {
+  // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
+  if (!options.min_dihedral && is_scattered(mesh, options.policy))
+    cell_order =
+        reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
+  Workspace work;
+  work.attach(mesh, options.policy);
+  const SurfaceRun surface(mesh, options);
+  control.set_surface(surface.get());
+  const bool met = run_stages(mesh, work, options, control, at_first);
+  control.set_surface(nullptr);
+  surface_report = surface.report(mesh);
+  return met;
+}
+
 }  // namespace
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
@@ -115,7 +127,7 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   Survey found = survey(mesh, options.policy);
   const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && meets_goal(found);
   std::vector<CellHandle> cell_order;
-  const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order);
+  const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order, result.surface);
   result.passes = std::move(control.passes());
   result.changed = std::any_of(result.passes.begin(), result.passes.end(),
                                [](const PassReport& pass) { return pass.winners > 0; });

@@ -85,7 +85,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     if (counts.winners * kLittle <= first) break;
   }
   count(focus);
-  report(kind, iteration, total, control_.seconds() - start);
+  report(kNames[kind], iteration, total, control_.seconds() - start);
   return total.winners;
 }
 
@@ -230,7 +230,7 @@ std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
     }
   }
   count(focus);
-  report(kSmooth, iteration, counts, control_.seconds() - start);
+  report(kNames[kSmooth], iteration, counts, control_.seconds() - start);
   return counts.winners;
 }
 
@@ -241,15 +241,16 @@ std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
   if (has(options_.ops, Ops::kFace))
     changes += kMeasuresAngles<Metric> ? multi_face_pass(iteration, focus) : face_pass(iteration, focus);
   if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
+  if (control_.surface()) changes += surface_pass(iteration, focus, with_node);
   if (has(options_.ops, Ops::kSmooth)) changes += smooth_pass(iteration, focus);
   return changes;
 }
 
 template <class Metric>
-void Stage<Metric>::report(Kind kind, int iteration, const RoundCounts& counts, double seconds) {
+void Stage<Metric>::report(const char* op, int iteration, const RoundCounts& counts, double seconds) {
   PassReport pass;
   pass.stage = name_;
-  pass.op = kNames[kind];
+  pass.op = op;
   pass.iteration = iteration;
   pass.rounds = counts.rounds;
   pass.seeds = counts.seeds;

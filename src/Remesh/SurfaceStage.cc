@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The passes of a stage over the surface. A round evaluates and commits in parallel; the surface mesh follows
+// afterwards, one winner at a time in rank order.
+#include <algorithm>
+
+#include "Remesh/Stage.hh"
+#ifdef HFR_HAS_SURFACE
+#include "Surface/SurfaceCollapse.hh"
+#include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceSmooth.hh"
+#include "Surface/SurfaceSwap.hh"
+#endif
+
+namespace hfr {
+
+#ifdef HFR_HAS_SURFACE
+namespace {
+
+enum Looked : std::size_t { kSwaps, kCollapses, kMoves };
+
+/// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
+std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
+                                        const Worklist& list) {
+  std::vector<VertexHandle> vertices;
+  for (Index c : list.cells()) {
+    for (VertexHandle v : mesh.cell(CellHandle(c)).v) {
+      const SurfaceKind kind = surface.freedom(v).kind;
+      if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+template <class Metric>
+Worklist Stage<Metric>::changed_since(std::uint32_t since, Focus focus) {
+  const auto has_changed = [&](CellHandle c) {
+    for (VertexHandle v : mesh_.cell(c).v)
+      if (work_.changed[v.idx()] > since) return true;
+    return false;
+  };
+  if (focus.everything()) return Worklist(mesh_, options_.policy, has_changed);
+  return Worklist(mesh_, options_.policy, poor(focus.below), has_changed);
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
+  using Op = SurfaceSwap<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  std::vector<EdgeHandle> seeds;
+  for (Index c : list.cells()) {
+    const auto& v = mesh_.cell(CellHandle(c)).v;
+    for (Index e = 0; e < 6; ++e) {
+      const VertexHandle a = v[kEdgeCorners[e][0]];
+      const VertexHandle b = v[kEdgeCorners[e][1]];
+      if (surface.freedom(a).kind == SurfaceKind::kInside || surface.freedom(b).kind == SurfaceKind::kInside)
+        continue;
+      bool smallest = true;  // of the listed cells round the edge
+      const auto look = [&](CellHandle other, VertexHandle, VertexHandle) {
+        smallest = smallest && (!list.has(other) || other.idx() >= c);
+        return smallest;
+      };
+      const bool closed = mesh_.walk_ring(CellHandle(c), static_cast<int>(e), look);
+      if (closed || !smallest) continue;
+      mesh_.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
+      if (smallest && surface.may_swap(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
+    }
+  }
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    counts = round.run(Op{metric_, work_.quality, &surface}, seeds);
+    round.for_committed([&](const auto& plan, VertexHandle) { surface.swapped(plan.edge[0], plan.edge[1]); });
+    surface.write_labels(mesh_);
+  }
+  report("surface swap", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_collapses(int iteration, const Worklist& list) {
+  using Op = SurfaceCollapse<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  drop_pinched(mesh_, work_.star_size, vertices, options_.policy);
+  std::vector<VertexHandle> targets;
+  std::vector<typename Op::Seed> seeds;
+  for (VertexHandle v : vertices) {
+    const auto first = static_cast<std::uint32_t>(targets.size());
+    surface.collapse_targets(v, targets);
+    const auto n = static_cast<std::uint32_t>(targets.size()) - first;
+    if (n > 0) seeds.push_back({v, first, n});
+  }
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    counts = round.run(Op{metric_, work_.quality, &surface, targets}, seeds);
+    round.for_committed(
+        [&](const auto& plan, VertexHandle) { surface.collapsed(plan.seed.vertex, plan.onto); });
+    surface.write_labels(mesh_);
+  }
+  report("surface node", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_moves(int iteration, const Worklist& list) {
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  const std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  RoundCounts counts;
+  if (!vertices.empty()) {
+    counts = hfr::smooth_pass(mesh_, work_, SurfaceSearch{&surface}, metric_, vertices, options_.policy);
+    surface.moved(mesh_, vertices);
+  }
+  report("surface smooth", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_node) {
+  std::size_t changes = 0;
+  const auto run = [&](Looked kind, auto&& pass) {
+    if (control_.stopped()) return;
+    const std::uint32_t since = looked_at_surface_[kind];
+    looked_at_surface_[kind] = work_.clock;
+    const Worklist list = changed_since(since, focus);
+    if (!list.cells().empty()) changes += (this->*pass)(iteration, list);
+    if (n_invalid_ > 0) count(focus);
+  };
+  if (has(options_.ops, Ops::kEdge)) run(kSwaps, &Stage::surface_swaps);
+  if (with_node && has(options_.ops, Ops::kNode)) run(kCollapses, &Stage::surface_collapses);
+  if (has(options_.ops, Ops::kSmooth)) run(kMoves, &Stage::surface_moves);
+  count(focus);
+  return changes;
+}
+
+#else
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
+  return 0;  // without OpenMesh every surface is frozen
+}
+
+#endif
+
+template std::size_t Stage<VolumeLength>::surface_pass(int, Focus, bool);
+template std::size_t Stage<Untangling>::surface_pass(int, Focus, bool);
+template std::size_t Stage<MinSine2>::surface_pass(int, Focus, bool);
+template std::size_t Stage<MinDihedral>::surface_pass(int, Focus, bool);
+template std::size_t Stage<CustomMetric>::surface_pass(int, Focus, bool);
+
+}  // namespace hfr

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Private to src/Surface: the surface as arrays, and what of its shape has to be kept.
+#ifndef HFR_SURFACE_FEATURES_HH
+#define HFR_SURFACE_FEATURES_HH
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceOptions.hh"
+
+namespace hfr::surface {
+
+/// Triangles of the boundary and of the interfaces.
+struct Arrays {
+  std::vector<std::array<VertexHandle, 3>> faces;  ///< seen from outside, or from the larger region
+  std::vector<HalfFaceHandle> halffaces;           ///< inside of each
+  std::vector<int> patch;                          ///< label, 0 = none
+  std::vector<std::uint8_t> locked;                ///< may not change: interface, or fixed
+};
+Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
+
+/// An edge of the surface: faces f[0] and f[1] meet in it, local edge k from corner k to the next.
+struct Edge {
+  VertexHandle a, b;  ///< ascending
+  std::array<std::uint32_t, 2> f{};
+  std::array<std::uint8_t, 2> k{};
+  bool manifold = false;  ///< exactly two faces, seen from the same side
+  bool feature = false;   ///< that no vertex may leave and no swap may take away
+};
+
+struct Features {
+  std::vector<Edge> edges;           ///< by ascending vertices
+  std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
+  std::vector<Freedom> freedom;      ///< per vertex of the volume
+};
+Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options);
+
+/// Outward, as long as twice the area.
+inline Vec3 scaled_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+inline Vec3 unit(Vec3 n) {
+  const double length = norm(n);
+  return length > 0 ? (1.0 / length) * n : Vec3{};
+}
+inline Triangle corners(const TetMesh& mesh, const std::array<VertexHandle, 3>& f) {
+  return {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
+}
+
+}  // namespace hfr::surface
+
+#endif
