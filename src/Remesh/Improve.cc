@@ -29,6 +29,11 @@ constexpr double kEarlyGoal = 15;
 /// and going on would only remove vertices.
 constexpr double kLargestShare = 0.1;
 
+/// With a surface that may change, what most cells suffer from can be mended, too.
+double largest_share(const ImproveOptions& options) {
+  return options.surface.mode == SurfaceMode::kFree ? 1.0 : kLargestShare;
+}
+
 void validate(const ImproveOptions& options) {
   HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
               "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
@@ -56,7 +61,7 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
     if (rung > kCommonRung && now < below) return;
     below = rung;
-    polish(mesh, work, options, control, rung, kLargestShare);
+    polish(mesh, work, options, control, rung, largest_share(options));
   }
 }
 
@@ -89,7 +94,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, R
   control.set_fraction(0.1);
   if (options.min_dihedral) return polish(mesh, work, options, control, *options.min_dihedral);
   // The worst angles first: the bulk stage, which knows only volume-length, can box them in.
-  polish(mesh, work, options, control, kEarlyGoal, kLargestShare);
+  polish(mesh, work, options, control, kEarlyGoal, largest_share(options));
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);
@@ -110,6 +115,7 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   const SurfaceRun surface(mesh, options);
   control.set_surface(surface.get());
   const bool met = run_stages(mesh, work, options, control, at_first);
+  restore_volume(mesh, work, options, control);
   control.set_surface(nullptr);
   surface_report = surface.report(mesh);
   return met;

@@ -85,6 +85,8 @@ class Stage {
   std::size_t star_pass(int iteration);
   /// The operators on the surface that options allow: swap, collapse, smooth; nothing while it is frozen.
   std::size_t surface_pass(int iteration, Focus focus, bool with_node);
+  /// Moves the surface as a whole until the volume is what it was, where no cell suffers.
+  void restore_volume();
 
  private:
   enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kKinds };

@@ -2,6 +2,7 @@
 // The passes of a stage over the surface. A round evaluates and commits in parallel; the surface mesh follows
 // afterwards, one winner at a time in rank order.
 #include <algorithm>
+#include <cmath>
 
 #include "Remesh/Stage.hh"
 #ifdef HFR_HAS_SURFACE
@@ -140,7 +141,28 @@ std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_no
   return changes;
 }
 
+template <class Metric>
+void Stage<Metric>::restore_volume() {
+  constexpr int kMaxPasses = 8;
+  constexpr double kEnough = 5e-5;  // of the volume
+  SurfaceMesh& surface = *control_.surface();
+  const Worklist all(mesh_, options_.policy, [](CellHandle) { return true; });
+  const std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, all);
+  for (int i = 1; i <= kMaxPasses && std::abs(surface.volume_gain()) > kEnough; ++i) {
+    const double start = control_.seconds();
+    const RoundCounts counts =
+        hfr::smooth_pass(mesh_, work_, SurfaceOffset{&surface, worst_}, metric_, vertices, options_.policy);
+    surface.moved(mesh_, vertices);
+    count(Focus{});
+    report("surface volume", i, counts, control_.seconds() - start);
+    if (counts.winners == 0) break;
+  }
+}
+
 #else
+
+template <class Metric>
+void Stage<Metric>::restore_volume() {}
 
 template <class Metric>
 std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
@@ -149,6 +171,7 @@ std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
 
 #endif
 
+template void Stage<MinSine2>::restore_volume();
 template std::size_t Stage<VolumeLength>::surface_pass(int, Focus, bool);
 template std::size_t Stage<Untangling>::surface_pass(int, Focus, bool);
 template std::size_t Stage<MinSine2>::surface_pass(int, Focus, bool);

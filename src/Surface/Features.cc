@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <set>
@@ -105,6 +106,50 @@ std::vector<std::uint32_t> find_facets(const TetMesh& mesh, const Arrays& arrays
   return facet;
 }
 
+/// Edges that only turn, in connected sets that fit into a box of a few times the length that is taken for
+/// noise, are noise of the input and no features.
+void drop_small(const TetMesh& mesh, std::vector<Edge>& edges, const std::vector<std::uint8_t>& only_turns,
+                double detail) {
+  constexpr double kSmall = 3;
+  struct Set {
+    Vec3 low, high;
+    bool keeps = false;  // has an edge that is one for another reason
+  };
+  std::vector<Index> parent(mesh.n_vertices());
+  std::iota(parent.begin(), parent.end(), Index{0});
+  const auto root = [&](Index i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const Edge& e : edges) {
+    if (!e.feature) continue;
+    const Index a = root(e.a.idx());
+    const Index b = root(e.b.idx());
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  std::map<Index, Set> sets;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Edge& e = edges[i];
+    if (!e.feature) continue;
+    const auto [at, is_new] = sets.try_emplace(root(e.a.idx()));
+    Set& set = at->second;
+    if (is_new) set.low = set.high = mesh.point(e.a);
+    for (VertexHandle v : {e.a, e.b}) {
+      const Vec3 p = mesh.point(v);
+      for (int d = 0; d < 3; ++d) {
+        set.low[d] = std::min(set.low[d], p[d]);
+        set.high[d] = std::max(set.high[d], p[d]);
+      }
+    }
+    set.keeps = set.keeps || !only_turns[i];
+  }
+  for (Edge& e : edges) {
+    if (!e.feature) continue;
+    const Set& set = sets.at(root(e.a.idx()));
+    if (!set.keeps && norm(set.high - set.low) < kSmall * detail) e.feature = false;
+  }
+}
+
 struct Incidence {
   std::uint32_t n_features = 0;
   std::array<VertexHandle, 2> along;  // other ends of the first two
@@ -165,7 +210,15 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
   return arrays;
 }
 
-Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options) {
+double mean_edge(const TetMesh& mesh, const Arrays& arrays) {
+  double sum = 0;
+  for (const auto& f : arrays.faces)
+    for (std::size_t k = 0; k < 3; ++k) sum += norm(mesh.point(f[(k + 1) % 3]) - mesh.point(f[k]));
+  return arrays.faces.empty() ? 0 : sum / (3.0 * static_cast<double>(arrays.faces.size()));
+}
+
+Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options,
+                       double detail) {
   const bool flat = options.mode != SurfaceMode::kFree;
   const double tolerance = kCoplanar * diagonal(mesh, arrays);
   const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
@@ -185,22 +238,29 @@ Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceO
     for (VertexHandle v : arrays.faces[i]) {
       on_surface[v.idx()] = 1;
       at[v.idx()].face = static_cast<std::uint32_t>(i);
-      if (arrays.locked[i] && !interface) at[v.idx()].locked = true;
+      // An interface keeps its shape in both regions when its vertices slide within planes; nothing more yet.
+      if (arrays.locked[i] && !(interface && flat)) at[v.idx()].locked = true;
     }
   }
+  std::vector<std::uint8_t> only_turns;
   for (Edge& e : found.edges) {
     const bool turns = flat ? e.manifold && found.facet[e.f[0]] != found.facet[e.f[1]]
                             : e.manifold && dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
-    const bool is_fixed = fixed.contains({e.a, e.b});
-    e.feature = !e.manifold || turns || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] ||
-                mesh.is_labelled_edge(e.a, e.b) || is_fixed;
+    const bool other = !e.manifold || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] ||
+                       mesh.is_labelled_edge(e.a, e.b) || fixed.contains({e.a, e.b});
+    e.feature = turns || other;
+    only_turns.push_back(other ? 0 : 1);
+  }
+  if (!flat) drop_small(mesh, found.edges, only_turns, detail);
+  for (const Edge& e : found.edges) {
     if (!e.feature) continue;
+    const bool is_fixed = fixed.contains({e.a, e.b}) || mesh.is_labelled_edge(e.a, e.b);
     const std::array<VertexHandle, 2> ends = {e.a, e.b};
     for (std::size_t i = 0; i < 2; ++i) {
       Incidence& here = at[ends[i].idx()];
       if (here.n_features < 2) here.along[here.n_features] = ends[1 - i];
       ++here.n_features;
-      here.locked = here.locked || is_fixed || mesh.is_labelled_edge(e.a, e.b);
+      here.locked = here.locked || is_fixed;
     }
   }
   // Labelled faces inside a region are no part of the surface; they hold what they meet.

@@ -36,7 +36,15 @@ struct Features {
   std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
   std::vector<Freedom> freedom;      ///< per vertex of the volume
 };
-Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options);
+/// `detail`: what lies within a few times that length is too small to be a feature.
+Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options,
+                       double detail);
+/// Mean length of the triangles' edges; 0 without any.
+double mean_edge(const TetMesh& mesh, const Arrays& arrays);
+/// Six times the volume between a triangle and a point, positive seen from outside.
+inline double six_volume(const Triangle& t, Vec3 from) {
+  return dot(t[0] - from, cross(t[1] - from, t[2] - from));
+}
 
 /// Outward, as long as twice the area.
 inline Vec3 scaled_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }

@@ -83,10 +83,12 @@ struct InputSurface::Impl {
     Vec3 x;
     Eigen::Vector3d place;
     const Vec3* side;  // of the normals that count, or null
+    double limit2;     // boxes further away are left out
     Hit hit{{}, std::numeric_limits<double>::infinity(), 0};
 
     double minimumOnVolume(const Box& box) const {  // NOLINT(readability-identifier-naming): Eigen's name
-      return box.squaredExteriorDistance(place);
+      const double distance2 = box.squaredExteriorDistance(place);
+      return distance2 > limit2 ? std::numeric_limits<double>::infinity() : distance2;
     }
     double minimumOnObject(int item) {  // NOLINT(readability-identifier-naming): Eigen's name
       const auto i = static_cast<std::size_t>(item);
@@ -99,8 +101,8 @@ struct InputSurface::Impl {
     }
   };
 
-  Hit nearest(Vec3 x, const Vec3* side) const {
-    Search search{*this, x, eigen(x), side};
+  Hit nearest(Vec3 x, const Vec3* side, double limit = std::numeric_limits<double>::infinity()) const {
+    Search search{*this, x, eigen(x), side, limit * limit};
     Eigen::BVMinimize(tree, search);
     search.hit.distance = std::sqrt(search.hit.distance);
     return search.hit;
@@ -130,9 +132,15 @@ std::size_t InputSurface::size() const { return impl_->triangles.size() + impl_-
 Vec3 InputSurface::normal(std::size_t item) const { return impl_->normals[item]; }
 
 InputSurface::Hit InputSurface::nearest(Vec3 x) const { return impl_->nearest(x, nullptr); }
-InputSurface::Hit InputSurface::nearest(Vec3 x, Vec3 side) const {
-  const Hit hit = impl_->nearest(x, &side);
-  return hit.distance < std::numeric_limits<double>::infinity() ? hit : nearest(x);
+InputSurface::Hit InputSurface::nearest_within(Vec3 x, double limit) const {
+  Hit hit = impl_->nearest(x, nullptr, limit);
+  if (hit.distance > limit) hit.distance = std::numeric_limits<double>::infinity();
+  return hit;
+}
+InputSurface::Hit InputSurface::nearest_within(Vec3 x, double limit, Vec3 side) const {
+  Hit hit = impl_->nearest(x, &side, limit);
+  if (hit.distance > limit) hit.distance = std::numeric_limits<double>::infinity();
+  return hit;
 }
 
 }  // namespace hfr

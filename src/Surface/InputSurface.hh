@@ -31,8 +31,10 @@ class InputSurface {
   std::size_t size() const;
   /// Needs size() > 0.
   Hit nearest(Vec3 x) const;
-  /// The same among triangles whose normal does not point away from `side`; any when there is none.
-  Hit nearest(Vec3 x, Vec3 side) const;
+  /// The same when it is no further than `limit`; distance is infinite otherwise. The quicker the smaller
+  /// the limit. With `side`: only triangles whose normal does not point away from it count.
+  Hit nearest_within(Vec3 x, double limit) const;
+  Hit nearest_within(Vec3 x, double limit, Vec3 side) const;
   Vec3 normal(std::size_t item) const;  ///< of a triangle, length 1; zero when it has no area
 
  private:

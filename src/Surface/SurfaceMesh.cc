@@ -43,6 +43,13 @@ Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// Of the mean edge length of the surface: how far it may go in free mode unless told otherwise.
 constexpr double kHausdorff = 0.1;
+/// Points of a triangle by which its distance is judged, beside its corners and the middles of its edges.
+constexpr std::array<std::array<double, 2>, 4> kInner = {
+    {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
+/// The samples are judged by somewhat less than what is allowed, for what lies between them.
+constexpr double kBetween = 0.7;
+/// Share of the volume beyond which a change in the same direction is refused.
+constexpr double kVolume = 5e-4;
 
 struct FaceRecord {
   int patch = 0;
@@ -80,6 +87,7 @@ std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
 struct SurfaceMesh::Impl {
   SurfaceOptions options;
   double hausdorff = 0;
+  double detail = 0;  // what is no larger is noise
   Om om;
   std::vector<VertexHandle> vertex;              // of the volume, per OpenMesh vertex
   std::vector<OmVertex> first;                   // OpenMesh's per vertex of the volume; invalid inside
@@ -89,6 +97,9 @@ struct SurfaceMesh::Impl {
   std::optional<InputSurface> shape, curves;      // free mode
   std::vector<std::array<VertexHandle, 3>> gone;  // labelled faces that are no more
   std::set<int> fresh;                            // labelled faces with other vertices
+  Vec3 origin;                                    // from which volumes are measured
+  double six_volume = 0, area = 0;                // of the input
+  double six_gain = 0;                            // of the volume since
 
   bool flat() const { return options.mode != SurfaceMode::kFree; }
 
@@ -171,6 +182,11 @@ struct SurfaceMesh::Impl {
     }
     return t;
   }
+  double six_volume_of(const std::vector<OmFace>& some) const {
+    double sum = 0;
+    for (OmFace f : some) sum += surface::six_volume(corners(f), origin);
+    return sum;
+  }
   /// Every sample goes to the nearest of these faces.
   void share_samples(const std::vector<OmFace>& among, std::vector<Vec3> samples) {
     for (OmFace f : among) {
@@ -250,26 +266,30 @@ void SurfaceMesh::Impl::take_shape(const TetMesh& mesh, const Arrays& arrays,
   std::vector<Triangle> triangles;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<std::uint8_t> is_sampled(mesh.n_vertices(), 0);
+  const auto inside = [](const Triangle& t, double u, double v) {
+    return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+  };
+  if (!arrays.faces.empty()) origin = mesh.point(arrays.faces[0][0]);
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
     const Triangle t = surface::corners(mesh, arrays.faces[i]);
     triangles.push_back(t);
-    faces[i].samples.push_back((1.0 / 3.0) * ((t[0] + t[1]) + t[2]));
+    for (const auto& [u, v] : kInner) faces[i].samples.push_back(inside(t, u, v));
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint8_t& done = is_sampled[arrays.faces[i][k].idx()];
       if (!done) faces[i].samples.push_back(t[k]);
       done = 1;
     }
+    if (!mesh.is_boundary(arrays.halffaces[i])) continue;
+    six_volume += surface::six_volume(t, origin);
+    area += 0.5 * norm(scaled_normal(t));
   }
-  double sum = 0;
   for (const surface::Edge& e : features.edges) {
     const std::array<Vec3, 2> ends = {mesh.point(e.a), mesh.point(e.b)};
-    sum += norm(ends[1] - ends[0]);
+    faces[e.f[0]].samples.push_back(0.5 * (ends[0] + ends[1]));
     if (e.feature) segments.push_back(ends);
   }
   if (!triangles.empty()) shape.emplace(triangles);
   if (!segments.empty()) curves.emplace(segments);
-  const auto n = static_cast<double>(std::max<std::size_t>(features.edges.size(), 1));
-  hausdorff = options.hausdorff.value_or(kHausdorff * sum / n);
 }
 
 SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy)
@@ -283,7 +303,12 @@ SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par
   if (options.mode == SurfaceMode::kFree && options.hausdorff && *options.hausdorff == 0)
     impl_->options.mode = SurfaceMode::kFlat;
   const Arrays arrays = surface::gather(mesh, impl_->options, policy);
-  surface::Features features = surface::find_features(mesh, arrays, impl_->options);
+  if (!impl_->flat()) {
+    impl_->detail = kHausdorff * surface::mean_edge(mesh, arrays);
+    impl_->hausdorff = options.hausdorff.value_or(impl_->detail);
+    impl_->detail = std::min(impl_->detail, impl_->hausdorff);
+  }
+  surface::Features features = surface::find_features(mesh, arrays, impl_->options, impl_->detail);
   impl_->build(mesh, arrays, features);
   if (!impl_->flat()) impl_->take_shape(mesh, arrays, features);
   impl_->freedom = std::move(features.freedom);
@@ -371,8 +396,7 @@ Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
   const bool on_curve = f.kind == SurfaceKind::kCurve;
   if (f.kind == SurfaceKind::kInside) return x;
   if (f.kind == SurfaceKind::kFixed) return f.anchor;
-  if (!impl_->flat())
-    return on_curve ? impl_->curves->nearest(x).point : impl_->shape->nearest(x, f.axis).point;
+  if (!impl_->flat()) return on_curve ? impl_->curves->nearest(x).point : x;
   const Vec3 r = x - f.anchor;
   return on_curve ? f.anchor + dot(r, f.axis) * f.axis : x - dot(r, f.axis) * f.axis;
 }
@@ -391,24 +415,19 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   }
   if (impl_->flat()) return true;
 
+  double six_gain = 0;
+  for (const Triangle& t : born) six_gain += surface::six_volume(t, dead[0][0]);
+  for (const Triangle& t : dead) six_gain -= surface::six_volume(t, dead[0][0]);
+  const double enough = kVolume * std::abs(impl_->six_volume);
+  if (std::abs(impl_->six_gain) > enough && impl_->six_gain * six_gain > 0 &&
+      std::abs(six_gain) > 1e-6 * enough)
+    return false;
+
   const InputSurface& shape = *impl_->shape;
-  const double h = impl_->hausdorff;
-  const auto middle = [](const Triangle& t) { return (1.0 / 3.0) * ((t[0] + t[1]) + t[2]); };
-  const auto turned = [&](const Triangle& t, Vec3 n) {  // cosine of the angle with the input beneath
-    return dot(n, shape.normal(shape.nearest(middle(t), n).item));
+  const double h = kBetween * impl_->hausdorff;
+  const auto inside = [](const Triangle& t, double u, double v) {
+    return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
   };
-  // What is worse already must not get worse still: a surface that folds over has to be mended somehow.
-  double worst = std::cos(impl_->options.normal_angle * kDegree);
-  for (const Triangle& t : dead) worst = std::min(worst, turned(t, unit(scaled_normal(t))));
-  for (const Triangle& t : born) {
-    const Vec3 n = unit(scaled_normal(t));
-    const InputSurface::Hit hit = shape.nearest(middle(t), n);
-    if (hit.distance > h || dot(n, shape.normal(hit.item)) < worst) return false;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 x = 0.5 * (t[k] + t[(k + 1) % 3]);
-      if (shape.nearest(x).distance > h) return false;
-    }
-  }
   for (const auto& f : faces_dead) {
     const OmFace face = impl_->find(f);
     if (!face.is_valid()) return false;
@@ -419,7 +438,43 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
       if (!near) return false;
     }
   }
+  for (const Triangle& t : born) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(shape.nearest_within(0.5 * (t[k] + t[(k + 1) % 3]), h).distance <= h)) return false;
+      if (!(shape.nearest_within(t[k], h).distance <= h)) return false;
+    }
+    for (const auto& [u, v] : kInner)
+      if (!(shape.nearest_within(inside(t, u, v), h).distance <= h)) return false;
+  }
+  // The normals of triangles that are smaller than the distance allowed say nothing. What is worse already
+  // must not get worse still: a surface that folds over has to be mended somehow.
+  const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
+    const Vec3 n = unit(scaled_normal(t));
+    const InputSurface::Hit hit = shape.nearest_within(inside(t, 1.0 / 3, 1.0 / 3), 2 * h, n);
+    return hit.distance <= 2 * h ? dot(n, shape.normal(hit.item)) : -1.0;
+  };
+  const double bound = std::cos(impl_->options.normal_angle * kDegree);
+  double worst_dead = 2;  // not known yet
+  for (const Triangle& t : born) {
+    const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+    if (size2 < 4 * impl_->detail * impl_->detail) continue;
+    const double now = turned(t);
+    if (now >= bound) continue;
+    if (worst_dead == 2)
+      for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
+    if (now < worst_dead) return false;
+  }
   return true;
+}
+
+double SurfaceMesh::volume_gain() const {
+  return impl_->six_volume != 0 ? impl_->six_gain / impl_->six_volume : 0.0;
+}
+
+double SurfaceMesh::outward() const {
+  if (!(impl_->area > 0)) return 0;
+  const double limit = 0.1 * impl_->hausdorff;
+  return std::clamp(-impl_->six_gain / (6.0 * impl_->area), -limit, limit);
 }
 
 void SurfaceMesh::moved(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
@@ -427,8 +482,11 @@ void SurfaceMesh::moved(const TetMesh& mesh, std::span<const VertexHandle> verti
     const Eigen::Vector3d place = eigen(mesh.point(v));
     impl_->for_sheets(v, [&](OmVertex w) {
       if (impl_->om.point(w) == place) return;
+      const std::vector<OmFace> round = impl_->faces_round(w);
+      impl_->six_gain -= impl_->six_volume_of(round);
       impl_->om.set_point(w, place);
-      if (!impl_->flat()) impl_->share_samples(impl_->faces_round(w), {});
+      impl_->six_gain += impl_->six_volume_of(round);
+      if (!impl_->flat()) impl_->share_samples(round, {});
     });
   }
 }
@@ -439,7 +497,9 @@ void SurfaceMesh::swapped(VertexHandle a, VertexHandle b) {
   HFR_ASSERT(h.is_valid() && om.is_flip_ok(om.edge_handle(h)));
   const std::vector<OmFace> both = {om.face_handle(h), om.face_handle(om.opposite_halfedge_handle(h))};
   for (OmFace f : both) impl_->note_gone(f);
+  impl_->six_gain -= impl_->six_volume_of(both);
   om.flip(om.edge_handle(h));
+  impl_->six_gain += impl_->six_volume_of(both);
   for (OmFace f : both) impl_->note_fresh(f);
   if (!impl_->flat()) impl_->share_samples(both, {});
 }
@@ -461,13 +521,17 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
                          om.status(om.edge_handle(last)).feature());
   }
   std::vector<Vec3> samples;
-  for (OmFace f : impl_->faces_round(from)) {
+  std::vector<OmFace> old = impl_->faces_round(from);
+  impl_->six_gain -= impl_->six_volume_of(old);
+  for (OmFace f : old) {
     impl_->note_gone(f);
     auto& of_f = impl_->record(f).samples;
     samples.insert(samples.end(), of_f.begin(), of_f.end());
     of_f.clear();
   }
   om.collapse(h);
+  std::erase_if(old, [&](OmFace f) { return om.status(f).deleted(); });
+  impl_->six_gain += impl_->six_volume_of(old);
   for (std::size_t i = 0; i < 2; ++i) {
     const OmHalfedge side = om.find_halfedge(to, sides[i]);
     om.status(om.edge_handle(side)).set_feature(is_feature[i] != 0);

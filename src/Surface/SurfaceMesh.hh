@@ -73,8 +73,14 @@ class SurfaceMesh {
   void collapse_targets(VertexHandle v, std::vector<VertexHandle>& out);
 
   // --- the shape ---
-  /// Point of the shape that v may move to, nearest to x.
+  /// Point of the shape that v may move to, nearest to x. In free mode only curves hold a vertex: one on a
+  /// facet moves where keeps_shape() allows it.
   Vec3 project(VertexHandle v, Vec3 x) const;
+  /// What the enclosed volume has gained, as a share of it.
+  double volume_gain() const;
+  /// By how far the whole surface would have to move outwards for the volume to be what it was; at most a
+  /// tenth of hausdorff() either way.
+  double outward() const;
   /// May the triangles `born` replace `dead` (vertices in outward order; a vertex that is moved or new stands
   /// with its new place in `born`)? Orientation and normals, and in free mode the distance from the input
   /// and of the input from them.

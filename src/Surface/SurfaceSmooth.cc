@@ -48,6 +48,15 @@ struct Patch {
     for (std::size_t i = 0; i < born.size(); ++i) born[i][corner[i]] = x;
     return surface.keeps_shape(faces, dead, born);
   }
+  /// True when the faces lie in one plane, as far as rounding lets them: such a vertex stays in it.
+  bool is_flat() const {
+    constexpr double kLevel = 1.0 - 1e-9;
+    const Vec3 n = normal();
+    return std::all_of(dead.begin(), dead.end(), [&](const Triangle& t) {
+      const Vec3 m = cross(t[1] - t[0], t[2] - t[0]);
+      return dot(n, m) >= kLevel * norm(m);
+    });
+  }
   Vec3 normal() const {
     Vec3 sum;
     for (const Triangle& t : dead) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
@@ -71,13 +80,16 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
   Vec3 axis = freedom.axis;
   if (!on_curve && surface->options().mode == SurfaceMode::kFree) axis = patch.normal();
   if (axis == Vec3{}) return std::nullopt;
+  // In the plane normal to the axis the volume stays; a little outwards makes up for what swaps have cost.
+  const bool bulges = surface->options().mode == SurfaceMode::kFree && !on_curve && !patch.is_flat();
+  const Vec3 lift = bulges ? surface->outward() * axis : Vec3{};
 
   Move move;
   move.old_worst = worst_of(link, quality);
   double worst_now = move.old_worst;
   Vec3 place = origin;
   const auto consider = [&](Vec3 x) {
-    const Vec3 candidate = surface->project(v, x);
+    const Vec3 candidate = surface->project(v, x + lift);
     const double worst = worst_with(mesh, v, link, candidate, metric, worst_now);
     if (!(worst > worst_now)) return false;
     worst_now = worst;
@@ -129,6 +141,27 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
   return std::nullopt;
 }
 
+template <class Metric>
+std::optional<Move> SurfaceOffset::operator()(const TetMesh& mesh, VertexHandle v,
+                                              std::span<const HalfFaceHandle> link, const Metric& metric,
+                                              std::span<const double> quality) const {
+  constexpr double kTrifle = 0.97;   // of a cell's decision value
+  constexpr double kFarAbove = 1.1;  // the worst
+  if (surface->freedom(v).kind != SurfaceKind::kFacet) return std::nullopt;
+  Patch patch;
+  if (!patch.gather(mesh, v, link) || patch.is_flat()) return std::nullopt;
+  Move move;
+  move.old_worst = worst_of(link, quality);
+  move.target = mesh.point(v) + surface->outward() * patch.normal();
+  const double floor = move.old_worst > kFarAbove * worst
+                           ? std::max(kFarAbove * worst, kTrifle * move.old_worst)
+                           : move.old_worst;
+  move.new_worst = worst_with(mesh, v, link, move.target, metric, floor);
+  if (!(move.new_worst > floor) || !patch.keeps_shape(*surface, move.target)) return std::nullopt;
+  return move;
+}
+
 HFR_INSTANTIATE_SEARCH(SurfaceSearch)
+HFR_INSTANTIATE_SEARCH(SurfaceOffset)
 
 }  // namespace hfr
