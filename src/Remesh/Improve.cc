@@ -29,9 +29,10 @@ constexpr double kEarlyGoal = 15;
 /// and going on would only remove vertices.
 constexpr double kLargestShare = 0.1;
 
-/// With a surface that may change, what most cells suffer from can be mended, too.
+/// With a surface that may change, what many cells suffer from can be mended, too.
 double largest_share(const ImproveOptions& options) {
-  return options.surface.mode == SurfaceMode::kFree ? 1.0 : kLargestShare;
+  constexpr double kWithSurface = 0.35;
+  return options.surface.mode == SurfaceMode::kFree ? kWithSurface : kLargestShare;
 }
 
 void validate(const ImproveOptions& options) {
@@ -94,7 +95,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, R
   control.set_fraction(0.1);
   if (options.min_dihedral) return polish(mesh, work, options, control, *options.min_dihedral);
   // The worst angles first: the bulk stage, which knows only volume-length, can box them in.
-  polish(mesh, work, options, control, kEarlyGoal, largest_share(options));
+  polish(mesh, work, options, control, kEarlyGoal, kLargestShare);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);

@@ -153,7 +153,7 @@ std::size_t Stage<Metric>::multi_face_pass(int iteration, Focus focus) {
 template <class Metric>
 std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
   using Op = VertexInsertion<Metric>;
-  return rounds(
+  const std::size_t n_inside = rounds(
       kInsert, iteration, focus,
       [&] {
         return Op{metric_, work_.quality, kLeastGain};
@@ -163,6 +163,7 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
           visit(typename Op::Seed(CellHandle(list.cells()[i])));
         });
       });
+  return n_inside + (control_.surface() ? surface_splits(iteration, focus) : 0);
 }
 
 template <class Metric>

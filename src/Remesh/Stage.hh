@@ -135,6 +135,10 @@ class Stage {
   std::size_t surface_swaps(int iteration, const Worklist& list);
   std::size_t surface_collapses(int iteration, const Worklist& list);
   std::size_t surface_moves(int iteration, const Worklist& list);
+  std::size_t surface_splits(int iteration, Focus focus);
+  /// Edges of the boundary in the listed cells, each from its smallest listed cell, that allow(a, b) lets by.
+  template <class Allow>
+  std::vector<EdgeHandle> surface_edges(const Worklist& list, Allow&& allow) const;
 
   TetMesh& mesh_;
   Workspace& work_;
@@ -147,7 +151,7 @@ class Stage {
   std::vector<Index> poor_;  // below poor_below_, but for what work_ has as touched
   double poor_below_ = -std::numeric_limits<double>::infinity();
   std::array<std::uint32_t, kKinds> looked_{};
-  std::array<std::uint32_t, 3> looked_at_surface_{};  // swap, collapse, smooth
+  std::array<std::uint32_t, 4> looked_at_surface_{};  // swap, collapse, smooth, split
 };
 
 }  // namespace hfr

@@ -3,12 +3,14 @@
 // afterwards, one winner at a time in rank order.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "Remesh/Stage.hh"
 #ifdef HFR_HAS_SURFACE
 #include "Surface/SurfaceCollapse.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceSmooth.hh"
+#include "Surface/SurfaceSplit.hh"
 #include "Surface/SurfaceSwap.hh"
 #endif
 
@@ -17,7 +19,7 @@ namespace hfr {
 #ifdef HFR_HAS_SURFACE
 namespace {
 
-enum Looked : std::size_t { kSwaps, kCollapses, kMoves };
+enum Looked : std::size_t { kSwaps, kCollapses, kMoves, kSplits };
 
 /// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
 std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
@@ -48,10 +50,9 @@ Worklist Stage<Metric>::changed_since(std::uint32_t since, Focus focus) {
 }
 
 template <class Metric>
-std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
-  using Op = SurfaceSwap<Metric>;
-  SurfaceMesh& surface = *control_.surface();
-  const double start = control_.seconds();
+template <class Allow>
+std::vector<EdgeHandle> Stage<Metric>::surface_edges(const Worklist& list, Allow&& allow) const {
+  const SurfaceMesh& surface = *control_.surface();
   std::vector<EdgeHandle> seeds;
   for (Index c : list.cells()) {
     const auto& v = mesh_.cell(CellHandle(c)).v;
@@ -68,9 +69,50 @@ std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
       const bool closed = mesh_.walk_ring(CellHandle(c), static_cast<int>(e), look);
       if (closed || !smallest) continue;
       mesh_.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
-      if (smallest && surface.may_swap(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
+      if (smallest && allow(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
     }
   }
+  return seeds;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
+  using Op = SurfaceSplit<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  const std::uint32_t since = looked_at_surface_[kSplits];
+  looked_at_surface_[kSplits] = work_.clock;
+  std::vector<typename Op::Seed> seeds;
+  for (EdgeHandle e : surface_edges(changed_since(since, focus),
+                                    [&](VertexHandle a, VertexHandle b) { return surface.may_split(a, b); }))
+    seeds.push_back(typename Op::Seed(e));
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    const Op op{metric_, work_.quality, &surface};
+    // The ends of the edges are asked for before the cells that name them are gone.
+    std::map<Index, std::array<VertexHandle, 2>> ends;
+    for (const auto& seed : seeds) ends[seed.edge.idx()] = Op::ends(mesh_, seed.edge);
+    counts = round.run(op, seeds);
+    round.for_committed([&](const auto& plan, VertexHandle middle) {
+      const auto [a, b] = ends.at(plan.seed.edge.idx());
+      surface.was_split(a, b, middle, plan.place);
+      work_.frozen[middle.idx()] = 1;  // for what works inside
+    });
+    surface.write_labels(mesh_);
+  }
+  count(focus);
+  report("surface split", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
+  using Op = SurfaceSwap<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  const std::vector<EdgeHandle> seeds =
+      surface_edges(list, [&](VertexHandle a, VertexHandle b) { return surface.may_swap(a, b); });
   RoundCounts counts;
   if (!seeds.empty()) {
     Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
@@ -165,6 +207,11 @@ template <class Metric>
 void Stage<Metric>::restore_volume() {}
 
 template <class Metric>
+std::size_t Stage<Metric>::surface_splits(int, Focus) {
+  return 0;
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
   return 0;  // without OpenMesh every surface is frozen
 }
@@ -172,10 +219,13 @@ std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
 #endif
 
 template void Stage<MinSine2>::restore_volume();
-template std::size_t Stage<VolumeLength>::surface_pass(int, Focus, bool);
-template std::size_t Stage<Untangling>::surface_pass(int, Focus, bool);
-template std::size_t Stage<MinSine2>::surface_pass(int, Focus, bool);
-template std::size_t Stage<MinDihedral>::surface_pass(int, Focus, bool);
-template std::size_t Stage<CustomMetric>::surface_pass(int, Focus, bool);
+#define HFR_INSTANTIATE(Metric)                                                   \
+  template std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus); \
+  template std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_node);
+HFR_INSTANTIATE(VolumeLength)
+HFR_INSTANTIATE(Untangling)
+HFR_INSTANTIATE(MinSine2)
+HFR_INSTANTIATE(MinDihedral)
+HFR_INSTANTIATE(CustomMetric)
 
 }  // namespace hfr

@@ -196,10 +196,13 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
   for (Index i : halffaces) {
     const HalfFaceHandle h(i);
     const auto f = mesh.halfface_vertices(h);
-    const int* label = labels.empty() ? nullptr : labels.find(f);
+    const std::size_t entry = labels.position(f);
+    const int* label = entry < labels.size() ? &labels.entries()[entry].value : nullptr;
     arrays.faces.push_back({f[0], f[2], f[1]});
     arrays.halffaces.push_back(h);
     arrays.patch.push_back(label ? *label : 0);
+    const bool inward = label && CyclicOrder::key(labels.entries()[entry].vertices) == CyclicOrder::key(f);
+    arrays.inward.push_back(inward ? 1 : 0);
     auto key = f;
     std::sort(key.begin(), key.end());
     const auto& patches = options.fixed_patches;
@@ -246,21 +249,20 @@ Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceO
   for (Edge& e : found.edges) {
     const bool turns = flat ? e.manifold && found.facet[e.f[0]] != found.facet[e.f[1]]
                             : e.manifold && dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
-    const bool other = !e.manifold || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] ||
-                       mesh.is_labelled_edge(e.a, e.b) || fixed.contains({e.a, e.b});
+    e.locked = mesh.is_labelled_edge(e.a, e.b) || fixed.contains({e.a, e.b});
+    const bool other = !e.manifold || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] || e.locked;
     e.feature = turns || other;
     only_turns.push_back(other ? 0 : 1);
   }
   if (!flat) drop_small(mesh, found.edges, only_turns, detail);
   for (const Edge& e : found.edges) {
     if (!e.feature) continue;
-    const bool is_fixed = fixed.contains({e.a, e.b}) || mesh.is_labelled_edge(e.a, e.b);
     const std::array<VertexHandle, 2> ends = {e.a, e.b};
     for (std::size_t i = 0; i < 2; ++i) {
       Incidence& here = at[ends[i].idx()];
       if (here.n_features < 2) here.along[here.n_features] = ends[1 - i];
       ++here.n_features;
-      here.locked = here.locked || is_fixed;
+      here.locked = here.locked || e.locked;
     }
   }
   // Labelled faces inside a region are no part of the surface; they hold what they meet.
@@ -275,6 +277,8 @@ Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceO
     }
     for (VertexHandle v : entry.vertices) at[v.idx()].locked = true;
   }
+  for (const auto& entry : mesh.labels().edges.entries())  // inside, too
+    for (VertexHandle v : entry.vertices) at[v.idx()].locked = true;
   for (VertexHandle v : options.fixed_vertices)
     if (v.idx() < at.size()) at[v.idx()].locked = true;
   found.freedom.resize(mesh.n_vertices());

@@ -18,6 +18,7 @@ struct Arrays {
   std::vector<std::array<VertexHandle, 3>> faces;  ///< seen from outside, or from the larger region
   std::vector<HalfFaceHandle> halffaces;           ///< inside of each
   std::vector<int> patch;                          ///< label, 0 = none
+  std::vector<std::uint8_t> inward;                ///< the label names the face as seen from inside
   std::vector<std::uint8_t> locked;                ///< may not change: interface, or fixed
 };
 Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
@@ -29,6 +30,7 @@ struct Edge {
   std::array<std::uint8_t, 2> k{};
   bool manifold = false;  ///< exactly two faces, seen from the same side
   bool feature = false;   ///< that no vertex may leave and no swap may take away
+  bool locked = false;    ///< a feature that the user wants as it is
 };
 
 struct Features {
@@ -48,9 +50,10 @@ inline double six_volume(const Triangle& t, Vec3 from) {
 
 /// Outward, as long as twice the area.
 inline Vec3 scaled_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+/// By division, so that a normal along an axis is that axis to the last bit; zero stays zero.
 inline Vec3 unit(Vec3 n) {
   const double length = norm(n);
-  return length > 0 ? (1.0 / length) * n : Vec3{};
+  return length > 0 ? Vec3{n.x / length, n.y / length, n.z / length} : Vec3{};
 }
 inline Triangle corners(const TetMesh& mesh, const std::array<VertexHandle, 3>& f) {
   return {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};

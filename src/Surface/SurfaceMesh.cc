@@ -54,6 +54,7 @@ constexpr double kVolume = 5e-4;
 struct FaceRecord {
   int patch = 0;
   bool locked = false;
+  bool inward = false;        // its label names it as seen from inside
   HalfFaceHandle inside;      // where it was when last asked for
   std::uint32_t facet = 0;    // flat mode
   std::vector<Vec3> samples;  // of the input, free mode: points that were nearest to this face
@@ -248,6 +249,7 @@ void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const s
     FaceRecord& record_of_f = record(f);
     record_of_f.patch = arrays.patch[i];
     record_of_f.locked = arrays.locked[i] != 0;
+    record_of_f.inward = arrays.inward[i] != 0;
     record_of_f.inside = arrays.halffaces[i];
     if (!features.facet.empty()) record_of_f.facet = features.facet[i];
   }
@@ -256,7 +258,10 @@ void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const s
     if (!e.feature) continue;
     for_sheets(e.a, [&](OmVertex from) {
       for (auto it = om.cvoh_iter(from); it.is_valid(); ++it)
-        if (vertex_of(om.to_vertex_handle(*it)) == e.b) om.status(om.edge_handle(*it)).set_feature(true);
+        if (vertex_of(om.to_vertex_handle(*it)) == e.b) {
+          om.status(om.edge_handle(*it)).set_feature(true);
+          om.status(om.edge_handle(*it)).set_locked(e.locked);
+        }
     });
   }
 }
@@ -372,7 +377,8 @@ bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
 bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
   const Om& om = impl_->om;
   const OmHalfedge h = impl_->find(a, b);
-  if (!h.is_valid() || om.is_boundary(om.edge_handle(h))) return false;
+  if (!h.is_valid() || om.is_boundary(om.edge_handle(h)) || om.status(om.edge_handle(h)).locked())
+    return false;
   return !impl_->record(om.face_handle(h)).locked &&
          !impl_->record(om.face_handle(om.opposite_halfedge_handle(h))).locked;
 }
@@ -563,11 +569,13 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
     if (impl_->flat() && impl_->freedom[v.idx()].kind == freedom.kind) freedom = impl_->freedom[v.idx()];
 
   for (OmFace f : halves) impl_->note_gone(f);
+  impl_->six_gain -= impl_->six_volume_of({halves[0], halves[1]});
   const std::array<FaceRecord, 2> was = {impl_->record(halves[0]), impl_->record(halves[1])};
   const OmVertex m = impl_->add_vertex(middle, place);
   om.split_edge(e, m);
   impl_->faces.resize(om.n_faces());
   const std::vector<OmFace> round = impl_->faces_round(m);
+  impl_->six_gain += impl_->six_volume_of(round);
   for (OmFace f : round) {
     const auto v = impl_->vertices(f);
     const bool first = v[0] == apex || v[1] == apex || v[2] == apex;
@@ -594,9 +602,13 @@ void SurfaceMesh::write_labels(TetMesh& mesh) {
   for (const auto& f : impl_->gone) gone.insert(sorted(f));
   labels.rename_vertices([](VertexHandle v) { return v; },
                          [&](const auto& f) { return !gone.contains(sorted(f)); });
-  for (int f : impl_->fresh)
-    if (!impl_->om.status(OmFace(f)).deleted())
-      labels.set(impl_->vertices(OmFace(f)), impl_->record(OmFace(f)).patch);
+  for (int i : impl_->fresh) {
+    const OmFace f(i);
+    if (impl_->om.status(f).deleted()) continue;
+    auto v = impl_->vertices(f);
+    if (impl_->record(f).inward) std::swap(v[1], v[2]);
+    labels.set(v, impl_->record(f).patch);
+  }
   impl_->gone.clear();
   impl_->fresh.clear();
 }

@@ -60,8 +60,8 @@ struct Patch {
   Vec3 normal() const {
     Vec3 sum;
     for (const Triangle& t : dead) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
-    const double length = norm(sum);
-    return length > 0 ? (1.0 / length) * sum : sum;
+    const double length = norm(sum);  // by division: along an axis it is that axis to the last bit
+    return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : sum;
   }
 };
 
