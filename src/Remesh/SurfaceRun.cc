@@ -17,13 +17,16 @@ namespace {
 /// Of the mean edge: how far apart the points are by which surfaces are compared.
 constexpr double kSpacing = 0.25;
 
-double enclosed_volume(const std::vector<Triangle>& surface) {
-  if (surface.empty()) return 0;
-  const Vec3 origin = surface[0][0];
+/// What the boundary encloses; interfaces take no part.
+double enclosed_volume(const TetMesh& mesh) {
+  if (mesh.n_vertices() == 0) return 0;
+  const Vec3 origin = mesh.points()[0];
   double sum = 0;
   double lost = 0;  // Kahan's: the volume is to be right to the last digits
-  for (const Triangle& t : surface) {
-    const double term = dot(t[0] - origin, cross(t[1] - origin, t[2] - origin)) / 6.0 - lost;
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) {
+    const auto f = mesh.halfface_vertices(h);  // seen from inside
+    const Vec3 a = mesh.point(f[0]) - origin;
+    const double term = dot(a, cross(mesh.point(f[2]) - origin, mesh.point(f[1]) - origin)) / 6.0 - lost;
     const double next = sum + term;
     lost = (next - sum) - term;
     sum = next;
@@ -59,6 +62,7 @@ struct SurfaceRun::Impl {
   par::Policy policy;
   bool measure = false;
   std::vector<Triangle> before;
+  double volume = 0;
   std::unique_ptr<SurfaceMesh> surface;
 };
 
@@ -66,7 +70,10 @@ SurfaceRun::SurfaceRun(const TetMesh& mesh, const ImproveOptions& options) : imp
   if (options.surface.mode == SurfaceMode::kFrozen) return;
   impl_->policy = options.policy;
   impl_->measure = options.statistics;
-  if (impl_->measure) impl_->before = surface_triangles(mesh, options.policy);
+  if (impl_->measure) {
+    impl_->before = surface_triangles(mesh, options.policy);
+    impl_->volume = enclosed_volume(mesh);
+  }
   impl_->surface = std::make_unique<SurfaceMesh>(mesh, options.surface, options.policy);
 }
 
@@ -86,8 +93,7 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   if (spacing > 0)
     report.hausdorff = surface_distance(impl_->before, after, spacing, impl_->policy).hausdorff();
   report.diagonal = diagonal(impl_->before);
-  const double volume = enclosed_volume(impl_->before);
-  if (volume != 0) report.volume_change = (enclosed_volume(after) - volume) / volume;
+  if (impl_->volume != 0) report.volume_change = (enclosed_volume(mesh) - impl_->volume) / impl_->volume;
   return report;
 }
 

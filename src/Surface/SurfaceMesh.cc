@@ -48,6 +48,8 @@ constexpr std::array<std::array<double, 2>, 4> kInner = {
     {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
 /// The samples are judged by somewhat less than what is allowed, for what lies between them.
 constexpr double kBetween = 0.7;
+/// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
+constexpr double kNotBack = 0.1;
 /// Share of the volume beyond which a change in the same direction is refused.
 constexpr double kVolume = 5e-4;
 
@@ -452,8 +454,8 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
     for (const auto& [u, v] : kInner)
       if (!(shape.nearest_within(inside(t, u, v), h).distance <= h)) return false;
   }
-  // The normals of triangles that are smaller than the distance allowed say nothing. What is worse already
-  // must not get worse still: a surface that folds over has to be mended somehow.
+  // The normals of triangles no larger than noise say little, but they must not turn back. What is worse
+  // already must not get worse still: a surface that folds over has to be mended somehow.
   const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
     const Vec3 n = unit(scaled_normal(t));
     const InputSurface::Hit hit = shape.nearest_within(inside(t, 1.0 / 3, 1.0 / 3), 2 * h, n);
@@ -463,9 +465,9 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   double worst_dead = 2;  // not known yet
   for (const Triangle& t : born) {
     const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
-    if (size2 < 4 * impl_->detail * impl_->detail) continue;
+    const bool small = size2 < 4 * impl_->detail * impl_->detail;
     const double now = turned(t);
-    if (now >= bound) continue;
+    if (now >= (small ? kNotBack : bound)) continue;
     if (worst_dead == 2)
       for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
     if (now < worst_dead) return false;

@@ -133,7 +133,7 @@ TEST(SurfaceRuns, FreeStaysWithinItsDistanceAndKeepsTheVolume) {
 }
 
 TEST(SurfaceRuns, FreeKeepsTheCornersAndEdgesOfABox) {
-  TetMesh mesh = jittered(5, 0.4, 9);
+  TetMesh mesh = jittered(5, 0.3, 9);
   const Result result = improve(mesh, with(SurfaceMode::kFree));
   EXPECT_GT(surface_changes(result), 20U);
   EXPECT_NEAR(volume(mesh), 1, 1e-12);
