@@ -24,6 +24,9 @@ struct CommandLine {
   bool dry_run = false;
   bool progress = false;
   std::string ops, metric, smoother, rounds, compat;
+  std::string surface;
+  std::vector<std::string> fix, periodic;
+  double hausdorff = -1;  ///< negative = not given
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
   std::string ids;           ///< file for the cells that are stuck, empty for none
@@ -31,6 +34,50 @@ struct CommandLine {
   io::WriteOptions write;
   ImproveOptions improve;
 };
+
+/// What follows `prefix`, split at `separator` into `n` numbers; an empty list when the text is something
+/// else.
+std::vector<unsigned> numbers_after(const std::string& text, const std::string& prefix, char separator,
+                                    std::size_t n) {
+  if (!text.starts_with(prefix)) return {};
+  std::vector<unsigned> numbers;
+  std::size_t at = prefix.size();
+  while (at < text.size()) {
+    const std::size_t end = std::min(text.find(separator, at), text.size());
+    unsigned number = 0;
+    if (!CLI::detail::lexical_cast(text.substr(at, end - at), number)) return {};
+    numbers.push_back(number);
+    at = end + 1;
+  }
+  if (numbers.size() != n) numbers.clear();
+  return numbers;
+}
+
+/// --fix and --periodic, whose patches could only be torn apart by letting them change.
+void add_locks(SurfaceOptions& surface, const std::vector<std::string>& fix,
+               const std::vector<std::string>& periodic) {
+  for (const std::string& what : fix) {
+    const auto handle = [](unsigned number) { return VertexHandle(number); };
+    if (const auto p = numbers_after(what, "patch:", '-', 1); !p.empty()) {
+      surface.fixed_patches.push_back(static_cast<int>(p[0]));
+    } else if (const auto v = numbers_after(what, "vertex:", '-', 1); !v.empty()) {
+      surface.fixed_vertices.push_back(handle(v[0]));
+    } else if (const auto e = numbers_after(what, "edge:", '-', 2); !e.empty()) {
+      surface.fixed_edges.push_back({handle(e[0]), handle(e[1])});
+    } else if (const auto f = numbers_after(what, "face:", '-', 3); !f.empty()) {
+      surface.fixed_faces.push_back({handle(f[0]), handle(f[1]), handle(f[2])});
+    } else {
+      throw Failure(ExitCode::kUsage,
+                    "--fix takes patch:N, vertex:N, edge:N-N and face:N-N-N, not '" + what + "'");
+    }
+  }
+  for (const std::string& pair : periodic) {
+    const auto patches = numbers_after(pair, "", ':', 2);
+    if (patches.empty())
+      throw Failure(ExitCode::kUsage, "--periodic takes A:B, two patches, not '" + pair + "'");
+    for (unsigned patch : patches) surface.fixed_patches.push_back(static_cast<int>(patch));
+  }
+}
 
 ImproveOptions improve_options(const CommandLine& line, const CommonOptions& common) {
   ImproveOptions options = line.improve;
@@ -45,6 +92,10 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (!line.rounds.empty()) options.rounds = rounds_from_name(line.rounds);
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
   if (line.time_limit > 0) options.time_limit = line.time_limit;
+  if (line.surface == "flat") options.surface.mode = SurfaceMode::kFlat;
+  if (line.surface == "free") options.surface.mode = SurfaceMode::kFree;
+  if (line.hausdorff >= 0) options.surface.hausdorff = line.hausdorff;
+  add_locks(options.surface, line.fix, line.periodic);
   options.policy = common.policy();
   options.statistics = common.prints_table() || !common.json.empty() || !line.ids.empty();
   return options;
@@ -62,6 +113,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
   json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
+  json["surface"] = line.surface.empty() ? "frozen" : line.surface;
   json["seed"] = options.seed;
   json["dry_run"] = line.dry_run;
   return json;
@@ -102,6 +154,19 @@ Json outcome(const TetMesh& mesh, const Result& result) {
   json["invalid_cells"] = ids(result.invalid_cells);
   json["n_folded_faces"] = result.folded_faces.size();
   json["folded_faces"] = faces_json(mesh, result.folded_faces);
+  return json;
+}
+
+Json surface_json(const SurfaceReport& surface) {
+  Json json;
+  json["mode"] = surface.mode == SurfaceMode::kFlat ? "flat" : "free";
+  json["bound"] = surface.bound;
+  json["hausdorff"] = surface.hausdorff;
+  json["diagonal"] = surface.diagonal;
+  json["volume_change"] = surface.volume_change;
+  json["feature_edges"] = surface.feature_edges;
+  json["triangles_before"] = surface.triangles_before;
+  json["triangles_after"] = surface.triangles_after;
   return json;
 }
 
@@ -146,6 +211,14 @@ void print_result(const Result& result, const Seconds& seconds, const CommandLin
   fmt::print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
              result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,
              seconds.statistics, seconds.write);
+  if (result.surface.mode != SurfaceMode::kFrozen) {
+    const SurfaceReport& s = result.surface;
+    fmt::print(
+        "surface: {} triangles, {} before; Hausdorff distance {:.3g} ({:.2g} % of the diagonal), at most "
+        "{:.3g} allowed; volume {:+.2e}\n",
+        grouped(s.triangles_after), grouped(s.triangles_before), s.hausdorff,
+        s.diagonal > 0 ? 100 * s.hausdorff / s.diagonal : 0.0, s.bound, s.volume_change);
+  }
   if (line.dry_run) fmt::print("dry run: nothing was written\n");
 }
 
@@ -189,6 +262,7 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
     report["after"] = to_json(result.after);
     report["limits"] = limits_json(result);
   }
+  if (result.surface.mode != SurfaceMode::kFrozen) report["surface"] = surface_json(result.surface);
   report["passes"] = Json::array();
   for (const PassReport& pass : result.passes) report["passes"].push_back(to_json(pass));
   report["notes"] = notes;
@@ -250,6 +324,33 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
   command->add_option("--compat", line->compat, "Run a published pipeline exactly: jpdc2013")
       ->type_name("NAME")
       ->check(CLI::IsMember({"jpdc2013"}));
+  command
+      ->add_option("--surface", line->surface,
+                   "What may happen to the surface: frozen (nothing, the default), flat (new triangles in "
+                   "planar faces), free (within --hausdorff of the input)")
+      ->type_name("MODE")
+      ->check(CLI::IsMember({"frozen", "flat", "free"}));
+  command
+      ->add_option("--hausdorff", line->hausdorff,
+                   "Largest distance between input and output surface, with --surface free; 0: as flat")
+      ->type_name("LENGTH")
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--feature-angle", line->improve.surface.feature_angle,
+                   "Edges sharper than this stay, with --surface free; 40 by default")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 180.0));
+  command
+      ->add_option("--fix", line->fix,
+                   "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "
+                   "separate by commas")
+      ->type_name("WHAT")
+      ->delimiter(',');
+  command
+      ->add_option("--periodic", line->periodic,
+                   "Patches A:B that match each other; they are kept as they are")
+      ->type_name("A:B")
+      ->delimiter(',');
   command->add_option("--seed", line->improve.seed, "Seed of the order among equal candidates")
       ->type_name("N");
   command->add_flag("--progress", line->progress, "Print progress as lines on stderr");

@@ -174,6 +174,11 @@ void MaxMinForm::slopes(Vec3 x, double below, Slopes& out) const {
             {side, (2.0 * side) * ((1.0 / norm2(sides.r[i])) * sides.r[i] + rise - dq[(i + 2) % 3] - dq[i])});
     }
   }
+  if (room_ == Room::kSpace) return;
+  for (Slope& slope : out) {
+    const Vec3 along = dot(slope.gradient, axis_) * axis_;
+    slope.gradient = room_ == Room::kLine ? along : slope.gradient - along;
+  }
 }
 
 Vec3 MaxMinForm::ascend(Vec3 start, int iterations) {

@@ -24,6 +24,14 @@ class MaxMinForm {
 
   explicit MaxMinForm(Vec3 origin, Angles angles = Angles::kAll) : origin_(origin), angles_(angles) {}
 
+  /// Where the point may go: anywhere, in the plane through its place normal to `axis`, or along `axis`,
+  /// which has length 1.
+  enum class Room { kSpace, kPlane, kLine };
+  void confine(Room room, Vec3 axis) {
+    room_ = room;
+    axis_ = axis;
+  }
+
   /// Adds the cell (a, b, c, point); positive in this order.
   void add(Vec3 a, Vec3 b, Vec3 c);
   bool full() const { return cells_.full(); }
@@ -52,6 +60,8 @@ class MaxMinForm {
 
   Vec3 origin_;
   Angles angles_;
+  Room room_ = Room::kSpace;
+  Vec3 axis_;
   double unit_ = 0;
   FixedVector<Link, Star::kCapacity> cells_;
 };

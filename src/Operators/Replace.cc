@@ -81,6 +81,7 @@ void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle
   for (std::size_t i = 0; i < cavity.born.size(); ++i) {
     Cell& cell = mesh.mutable_cell(slots[i]);
     cell.v = cavity.born[i];
+    cell.mate = {};  // a face that nothing is behind, new or old, stays on the boundary
     for (VertexHandle& v : cell.v)
       if (v == Cavity::kNewVertex) v = new_vertex;
     for (int k = 0; k < 4; ++k) {

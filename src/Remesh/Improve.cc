@@ -9,6 +9,7 @@
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/RunControl.hh"
+#include "Remesh/SurfaceRun.hh"
 
 namespace hfr {
 namespace {
@@ -30,6 +31,12 @@ constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
 /// and going on would only remove vertices.
 constexpr double kLargestShare = 0.1;
+
+/// With a surface that may change, what many cells suffer from can be mended, too.
+double largest_share(const ImproveOptions& options) {
+  constexpr double kWithSurface = 0.35;
+  return options.surface.mode == SurfaceMode::kFree ? kWithSurface : kLargestShare;
+}
 
 void validate(const ImproveOptions& options) {
   HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
@@ -58,7 +65,7 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
     if (rung > kCommonRung && now < below) return;
     below = rung;
-    polish(mesh, work, options, control, rung, kLargestShare);
+    polish(mesh, work, options, control, rung, largest_share(options));
   }
 }
 
@@ -82,16 +89,9 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
   }
 }
 
-/// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
-/// reordered.
-bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first,
-         std::vector<CellHandle>& cell_order) {
-  // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
-  if (!options.min_dihedral && is_scattered(mesh, options.policy))
-    cell_order =
-        reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
-  Workspace work;
-  work.attach(mesh, options.policy);
+/// True when every cell is known to meet the goal.
+bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                const Survey& at_first) {
   if (options.compat == Compat::kJpdc2013) {
     run_jpdc2013(mesh, work, options, control);
     return false;
@@ -134,6 +134,25 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, Result& result)
       stuck_cells(mesh, result.stuck_below, ended_early || full, result.folded_faces, options.policy);
 }
 
+/// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
+/// reordered.
+bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first,
+         std::vector<CellHandle>& cell_order, SurfaceReport& surface_report) {
+  // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
+  if (!options.min_dihedral && is_scattered(mesh, options.policy))
+    cell_order =
+        reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
+  Workspace work;
+  work.attach(mesh, options.policy);
+  const SurfaceRun surface(mesh, options);
+  control.set_surface(surface.get());
+  const bool met = run_stages(mesh, work, options, control, at_first);
+  restore_volume(mesh, work, options, control);
+  control.set_surface(nullptr);
+  surface_report = surface.report(mesh);
+  return met;
+}
+
 }  // namespace
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
@@ -146,7 +165,7 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   Survey found = survey(mesh, options.policy);
   const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && meets_goal(found);
   std::vector<CellHandle> cell_order;
-  const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order);
+  const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order, result.surface);
   result.passes = std::move(control.passes());
   result.changed = std::any_of(result.passes.begin(), result.passes.end(),
                                [](const PassReport& pass) { return pass.winners > 0; });

@@ -14,6 +14,7 @@
 #include "Quality/Metrics.hh"
 #include "Quality/Statistics.hh"
 #include "Remesh/Limits.hh"
+#include "Surface/SurfaceOptions.hh"
 
 namespace hfr {
 
@@ -25,8 +26,8 @@ enum class Ops : unsigned {
   kNode = 4,      ///< vertex removal by collapse onto a neighbour
   kSmooth = 8,    ///< vertex smoothing
   kInsert = 16,   ///< a new vertex in a dug cavity, for the few cells that nothing else mends
-  kCluster = 32,  ///< branch and bound over all ways to connect the points round such a cell
-  kDefault = kEdge | kFace | kNode | kSmooth | kInsert | kCluster,
+  kCluster = 32,  ///< branch and bound over all ways to connect the points round such a cell; not by default
+  kDefault = kEdge | kFace | kNode | kSmooth | kInsert,
 };
 constexpr Ops operator|(Ops a, Ops b) {
   return static_cast<Ops>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
@@ -76,6 +77,7 @@ struct ImproveOptions {
   Smoother smoother = Smoother::kNewton;
   Rounds rounds = Rounds::kAuto;
   Compat compat = Compat::kNone;
+  SurfaceOptions surface;  ///< frozen by default; other modes need a build with OpenMesh
   std::uint64_t seed = 1;  ///< of the priorities among candidates of equal worth
   par::Policy policy = par::Policy::all();
   bool statistics = true;  ///< fill Result::before and after, and what is said of stuck cells
@@ -105,12 +107,25 @@ struct PassReport {
   double seconds_commit = 0;
 };
 
+/// What became of the surface, measured by itself; all 0 while it is frozen, and but for the first two where
+/// no statistics are asked for. Lengths are in the mesh's units.
+struct SurfaceReport {
+  SurfaceMode mode = SurfaceMode::kFrozen;
+  double bound = 0;      ///< largest distance that was allowed
+  double hausdorff = 0;  ///< largest distance of the result from the input or of the input from the result
+  double diagonal = 0;   ///< of the input's bounding box
+  double volume_change = 0;  ///< of the enclosed volume, as a share of it
+  std::size_t feature_edges = 0;
+  std::size_t triangles_before = 0, triangles_after = 0;
+};
+
 struct Result {
   bool changed = false;
   bool goal_reached = false;  ///< nothing inverted or flat, and min_dihedral met where given
   Stop stop = Stop::kNoProgress;
   std::vector<PassReport> passes;
-  Statistics before, after;               ///< when options.statistics
+  Statistics before, after;  ///< when options.statistics
+  SurfaceReport surface;
   std::vector<CellHandle> invalid_cells;  ///< inverted or flat cells that remain
   /// Boundary faces that lie on one another, when invalid cells remain; see folded_faces().
   std::vector<HalfFaceHandle> folded_faces;
@@ -122,7 +137,8 @@ struct Result {
 };
 
 /// Improves `mesh` in place. The worst cell of every changed cluster gets better; boundary, region
-/// interfaces, labelled faces and edges and fixed vertices keep every bit. Deleted cells and vertices are
+/// interfaces, labelled faces and edges and fixed vertices keep every bit, unless options.surface lets the
+/// surface change. Deleted cells and vertices are
 /// collected before it returns. Throws InvalidInput for options out of range.
 Result improve(TetMesh& mesh, const ImproveOptions& options = {});
 

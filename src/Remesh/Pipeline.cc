@@ -167,6 +167,11 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
   });
 }
 
+void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+  if (!control.surface() || options.surface.mode != SurfaceMode::kFree) return;
+  Stage<MinSine2>(mesh, work, options, control, MinSine2{}, "volume").restore_volume();
+}
+
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share) {
   const double decision = dihedral_decision(goal);

@@ -36,6 +36,8 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
 /// cells miss the goal.
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share = 1);
+/// With a surface that may change its shape: moves it so that the enclosed volume is what it was.
+void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
 /// The paper's pipeline in the paper's form: star operators and candidate smoothing over the whole mesh,
 /// edge → face → node → smooth, a fixed number of iterations.
 void run_jpdc2013(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);

@@ -10,6 +10,8 @@
 
 namespace hfr {
 
+class SurfaceMesh;
+
 /// Clock, cancel and report of one run; asked between rounds, so that a stop leaves a valid mesh.
 class RunControl {
  public:
@@ -25,6 +27,10 @@ class RunControl {
   }
   std::optional<Stop> reason() const { return reason_; }
 
+  /// The surface that operators may work on; null while it is frozen.
+  SurfaceMesh* surface() const { return surface_; }
+  void set_surface(SurfaceMesh* surface) { surface_ = surface; }
+
   void add(PassReport pass) { passes_.push_back(std::move(pass)); }
   std::vector<PassReport>& passes() { return passes_; }
   /// Estimate of how much of the run is done, 0 … 1; never goes back.
@@ -37,6 +43,7 @@ class RunControl {
   Clock::time_point start_ = Clock::now();
   std::optional<Stop> reason_;
   double fraction_ = 0;
+  SurfaceMesh* surface_ = nullptr;
   std::vector<PassReport> passes_;
 };
 

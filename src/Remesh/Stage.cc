@@ -88,7 +88,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     if (counts.winners * kLittle <= first) break;
   }
   count(focus);
-  report(kind, iteration, total, control_.seconds() - start);
+  report(kNames[kind], iteration, total, control_.seconds() - start);
   return total.winners;
 }
 
@@ -186,7 +186,7 @@ std::size_t Stage<Metric>::multi_face_pass(int iteration, Focus focus) {
 template <class Metric>
 std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
   using Op = VertexInsertion<Metric>;
-  return rounds(
+  const std::size_t n_inside = rounds(
       kInsert, iteration, focus,
       [&] {
         return Op{metric_, work_.quality, kLeastGain};
@@ -226,6 +226,7 @@ std::size_t Stage<Metric>::cluster_pass(int iteration, Focus focus) {
           visit(typename Op::Seed(CellHandle(list.cells()[i])));
         });
       });
+  return n_inside + (control_.surface() ? surface_splits(iteration, focus) : 0);
 }
 
 template <class Metric>
@@ -293,7 +294,7 @@ std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
     }
   }
   count(focus);
-  report(kSmooth, iteration, counts, control_.seconds() - start);
+  report(kNames[kSmooth], iteration, counts, control_.seconds() - start);
   return counts.winners;
 }
 
@@ -317,15 +318,16 @@ std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
       changes += kMeasuresAngles<Metric> ? multi_face_pass(iteration, focus) : face_pass(iteration, focus);
     if (with_node && has(options_.ops, Ops::kNode)) changes += node_pass(iteration, focus);
   }
+  if (control_.surface()) changes += surface_pass(iteration, focus, with_node);
   if (has(options_.ops, Ops::kSmooth)) changes += smooth_pass(iteration, focus);
   return changes;
 }
 
 template <class Metric>
-void Stage<Metric>::report(Kind kind, int iteration, const RoundCounts& counts, double seconds) {
+void Stage<Metric>::report(const char* op, int iteration, const RoundCounts& counts, double seconds) {
   PassReport pass;
   pass.stage = name_;
-  pass.op = kNames[kind];
+  pass.op = op;
   pass.iteration = iteration;
   pass.rounds = counts.rounds;
   pass.seeds = counts.seeds;

@@ -66,6 +66,7 @@ class Stage {
   /// Forgets what was looked at, so that a pass with a wider focus or other operators sees every cell again.
   void look_again() {
     looked_.fill(0);
+    looked_at_surface_.fill(0);
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
   }
 
@@ -89,6 +90,10 @@ class Stage {
   /// The paper's star form of an operator over all cells that are pending.
   template <Cluster kStar>
   std::size_t star_pass(int iteration);
+  /// The operators on the surface that options allow: swap, collapse, smooth; nothing while it is frozen.
+  std::size_t surface_pass(int iteration, Focus focus, bool with_node);
+  /// Moves the surface as a whole until the volume is what it was, where no cell suffers.
+  void restore_volume();
 
  private:
   enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kMixed, kCluster, kKinds };
@@ -135,7 +140,18 @@ class Stage {
   /// Brings n_invalid_ and worst_ up to date. With a focus that holds a cell, both are found inside it.
   void count(Focus focus);
 
-  void report(Kind kind, int iteration, const RoundCounts& counts, double seconds);
+  void report(const char* op, int iteration, const RoundCounts& counts, double seconds);
+
+  // --- SurfaceStage.cc ---
+  /// Cells in focus that, or whose surroundings, have changed since the clock stood at `since`.
+  Worklist changed_since(std::uint32_t since, Focus focus);
+  std::size_t surface_swaps(int iteration, const Worklist& list);
+  std::size_t surface_collapses(int iteration, const Worklist& list);
+  std::size_t surface_moves(int iteration, const Worklist& list);
+  std::size_t surface_splits(int iteration, Focus focus);
+  /// Edges of the boundary in the listed cells, each from its smallest listed cell, that allow(a, b) lets by.
+  template <class Allow>
+  std::vector<EdgeHandle> surface_edges(const Worklist& list, Allow&& allow) const;
 
   TetMesh& mesh_;
   Workspace& work_;
@@ -148,6 +164,7 @@ class Stage {
   std::vector<Index> poor_;  // below poor_below_, but for what work_ has as touched
   double poor_below_ = -std::numeric_limits<double>::infinity();
   std::array<std::uint32_t, kKinds> looked_{};
+  std::array<std::uint32_t, 4> looked_at_surface_{};  // swap, collapse, smooth, split
 };
 
 }  // namespace hfr

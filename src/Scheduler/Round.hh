@@ -76,6 +76,13 @@ class Round {
     return counts;
   }
 
+  /// visit(plan, new vertex or invalid) for what the last run() committed, in rank order: for bookkeeping
+  /// that is not the round's.
+  template <class Visit>
+  void for_committed(Visit&& visit) const {
+    for (const Winner& winner : winners_) visit(candidates_[winner.candidate], winner.new_vertex);
+  }
+
  private:
   static constexpr int kPiecesAThread = 16;
   using Plan = typename Op::Plan;

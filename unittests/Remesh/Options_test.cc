@@ -13,7 +13,7 @@ TEST(Ops, ListsRoundTrip) {
     const Ops ops = static_cast<Ops>(bits);
     EXPECT_EQ(ops_from_list(ops_to_list(ops)), ops) << ops_to_list(ops);
   }
-  EXPECT_EQ(ops_from_list("edge,face,node,smooth,insert,cluster"), Ops::kDefault);
+  EXPECT_EQ(ops_from_list("edge,face,node,smooth,insert"), Ops::kDefault);
   EXPECT_EQ(ops_from_list("smooth,edge"), Ops::kEdge | Ops::kSmooth);
   EXPECT_EQ(ops_from_list("edge,edge"), Ops::kEdge);
 }

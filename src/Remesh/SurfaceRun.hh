@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_SURFACE_RUN_HH
+#define HFR_REMESH_SURFACE_RUN_HH
+
+#include <memory>
+
+#include "HalfFace/TetMesh.hh"
+#include "Remesh/Improve.hh"
+#include "Remesh/RunControl.hh"
+
+namespace hfr {
+
+/// The surface of one run: made before its first pass unless it is frozen, and measured after its last.
+class SurfaceRun {
+ public:
+  /// Throws InvalidInput where the surface is not to be frozen but the build has no OpenMesh.
+  SurfaceRun(const TetMesh& mesh, const ImproveOptions& options);
+  ~SurfaceRun();
+  SurfaceRun(const SurfaceRun&) = delete;
+  SurfaceRun& operator=(const SurfaceRun&) = delete;
+
+  SurfaceMesh* get() const;
+  /// What became of it; independent of the bounds that the operators kept to.
+  SurfaceReport report(const TetMesh& mesh) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hfr
+
+#endif

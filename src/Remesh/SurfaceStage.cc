@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The passes of a stage over the surface. A round evaluates and commits in parallel; the surface mesh follows
+// afterwards, one winner at a time in rank order.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "Remesh/Stage.hh"
+#ifdef HFR_HAS_SURFACE
+#include "Surface/SurfaceCollapse.hh"
+#include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceSmooth.hh"
+#include "Surface/SurfaceSplit.hh"
+#include "Surface/SurfaceSwap.hh"
+#endif
+
+namespace hfr {
+
+#ifdef HFR_HAS_SURFACE
+namespace {
+
+enum Looked : std::size_t { kSwaps, kCollapses, kMoves, kSplits };
+
+/// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
+std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
+                                        const Worklist& list) {
+  std::vector<VertexHandle> vertices;
+  for (Index c : list.cells()) {
+    for (VertexHandle v : mesh.cell(CellHandle(c)).v) {
+      const SurfaceKind kind = surface.freedom(v).kind;
+      if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+template <class Metric>
+Worklist Stage<Metric>::changed_since(std::uint32_t since, Focus focus) {
+  const auto has_changed = [&](CellHandle c) {
+    for (VertexHandle v : mesh_.cell(c).v)
+      if (work_.changed[v.idx()] > since) return true;
+    return false;
+  };
+  if (focus.everything()) return Worklist(mesh_, options_.policy, has_changed);
+  return Worklist(mesh_, options_.policy, poor(focus.below), has_changed);
+}
+
+template <class Metric>
+template <class Allow>
+std::vector<EdgeHandle> Stage<Metric>::surface_edges(const Worklist& list, Allow&& allow) const {
+  const SurfaceMesh& surface = *control_.surface();
+  std::vector<EdgeHandle> seeds;
+  for (Index c : list.cells()) {
+    const auto& v = mesh_.cell(CellHandle(c)).v;
+    for (Index e = 0; e < 6; ++e) {
+      const VertexHandle a = v[kEdgeCorners[e][0]];
+      const VertexHandle b = v[kEdgeCorners[e][1]];
+      if (surface.freedom(a).kind == SurfaceKind::kInside || surface.freedom(b).kind == SurfaceKind::kInside)
+        continue;
+      bool smallest = true;  // of the listed cells round the edge
+      const auto look = [&](CellHandle other, VertexHandle, VertexHandle) {
+        smallest = smallest && (!list.has(other) || other.idx() >= c);
+        return smallest;
+      };
+      const bool closed = mesh_.walk_ring(CellHandle(c), static_cast<int>(e), look);
+      if (closed || !smallest) continue;
+      mesh_.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
+      if (smallest && allow(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
+    }
+  }
+  return seeds;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
+  using Op = SurfaceSplit<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  const std::uint32_t since = looked_at_surface_[kSplits];
+  looked_at_surface_[kSplits] = work_.clock;
+  std::vector<typename Op::Seed> seeds;
+  for (EdgeHandle e : surface_edges(changed_since(since, focus),
+                                    [&](VertexHandle a, VertexHandle b) { return surface.may_split(a, b); }))
+    seeds.push_back(typename Op::Seed(e));
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    const Op op{metric_, work_.quality, &surface};
+    // The ends of the edges are asked for before the cells that name them are gone.
+    std::map<Index, std::array<VertexHandle, 2>> ends;
+    for (const auto& seed : seeds) ends[seed.edge.idx()] = Op::ends(mesh_, seed.edge);
+    counts = round.run(op, seeds);
+    round.for_committed([&](const auto& plan, VertexHandle middle) {
+      const auto [a, b] = ends.at(plan.seed.edge.idx());
+      surface.was_split(a, b, middle, plan.place);
+      work_.frozen[middle.idx()] = 1;  // for what works inside
+    });
+    surface.write_labels(mesh_);
+  }
+  count(focus);
+  report("surface split", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
+  using Op = SurfaceSwap<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  const std::vector<EdgeHandle> seeds =
+      surface_edges(list, [&](VertexHandle a, VertexHandle b) { return surface.may_swap(a, b); });
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    counts = round.run(Op{metric_, work_.quality, &surface}, seeds);
+    round.for_committed([&](const auto& plan, VertexHandle) { surface.swapped(plan.edge[0], plan.edge[1]); });
+    surface.write_labels(mesh_);
+  }
+  report("surface swap", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_collapses(int iteration, const Worklist& list) {
+  using Op = SurfaceCollapse<Metric>;
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  drop_pinched(mesh_, work_.star_size, vertices, options_.policy);
+  std::vector<VertexHandle> targets;
+  std::vector<typename Op::Seed> seeds;
+  for (VertexHandle v : vertices) {
+    const auto first = static_cast<std::uint32_t>(targets.size());
+    surface.collapse_targets(v, targets);
+    const auto n = static_cast<std::uint32_t>(targets.size()) - first;
+    if (n > 0) seeds.push_back({v, first, n});
+  }
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    counts = round.run(Op{metric_, work_.quality, &surface, targets}, seeds);
+    round.for_committed(
+        [&](const auto& plan, VertexHandle) { surface.collapsed(plan.seed.vertex, plan.onto); });
+    surface.write_labels(mesh_);
+  }
+  report("surface node", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_moves(int iteration, const Worklist& list) {
+  SurfaceMesh& surface = *control_.surface();
+  const double start = control_.seconds();
+  const std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  RoundCounts counts;
+  if (!vertices.empty()) {
+    counts = hfr::smooth_pass(mesh_, work_, SurfaceSearch{&surface}, metric_, vertices, options_.policy);
+    surface.moved(mesh_, vertices);
+  }
+  report("surface smooth", iteration, counts, control_.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_node) {
+  std::size_t changes = 0;
+  const auto run = [&](Looked kind, auto&& pass) {
+    if (control_.stopped()) return;
+    const std::uint32_t since = looked_at_surface_[kind];
+    looked_at_surface_[kind] = work_.clock;
+    const Worklist list = changed_since(since, focus);
+    if (!list.cells().empty()) changes += (this->*pass)(iteration, list);
+    if (n_invalid_ > 0) count(focus);
+  };
+  if (has(options_.ops, Ops::kEdge)) run(kSwaps, &Stage::surface_swaps);
+  if (with_node && has(options_.ops, Ops::kNode)) run(kCollapses, &Stage::surface_collapses);
+  if (has(options_.ops, Ops::kSmooth)) run(kMoves, &Stage::surface_moves);
+  count(focus);
+  return changes;
+}
+
+template <class Metric>
+void Stage<Metric>::restore_volume() {
+  constexpr int kMaxPasses = 8;
+  constexpr double kEnough = 5e-5;  // of the volume
+  SurfaceMesh& surface = *control_.surface();
+  const Worklist all(mesh_, options_.policy, [](CellHandle) { return true; });
+  const std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, all);
+  for (int i = 1; i <= kMaxPasses && std::abs(surface.volume_gain()) > kEnough; ++i) {
+    const double start = control_.seconds();
+    const RoundCounts counts =
+        hfr::smooth_pass(mesh_, work_, SurfaceOffset{&surface, worst_}, metric_, vertices, options_.policy);
+    surface.moved(mesh_, vertices);
+    count(Focus{});
+    report("surface volume", i, counts, control_.seconds() - start);
+    if (counts.winners == 0) break;
+  }
+}
+
+#else
+
+template <class Metric>
+void Stage<Metric>::restore_volume() {}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_splits(int, Focus) {
+  return 0;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
+  return 0;  // without OpenMesh every surface is frozen
+}
+
+#endif
+
+template void Stage<MinSine2>::restore_volume();
+#define HFR_INSTANTIATE(Metric)                                                   \
+  template std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus); \
+  template std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_node);
+HFR_INSTANTIATE(VolumeLength)
+HFR_INSTANTIATE(Untangling)
+HFR_INSTANTIATE(MinSine2)
+HFR_INSTANTIATE(MinDihedral)
+HFR_INSTANTIATE(CustomMetric)
+
+}  // namespace hfr

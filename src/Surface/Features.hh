@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Private to src/Surface: the surface as arrays, and what of its shape has to be kept.
+#ifndef HFR_SURFACE_FEATURES_HH
+#define HFR_SURFACE_FEATURES_HH
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceOptions.hh"
+
+namespace hfr::surface {
+
+/// Triangles of the boundary and of the interfaces.
+struct Arrays {
+  std::vector<std::array<VertexHandle, 3>> faces;  ///< seen from outside, or from the larger region
+  std::vector<HalfFaceHandle> halffaces;           ///< inside of each
+  std::vector<int> patch;                          ///< label, 0 = none
+  std::vector<std::uint8_t> inward;                ///< the label names the face as seen from inside
+  std::vector<std::uint8_t> locked;                ///< may not change: interface, or fixed
+};
+Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
+
+/// An edge of the surface: faces f[0] and f[1] meet in it, local edge k from corner k to the next.
+struct Edge {
+  VertexHandle a, b;  ///< ascending
+  std::array<std::uint32_t, 2> f{};
+  std::array<std::uint8_t, 2> k{};
+  bool manifold = false;  ///< exactly two faces, seen from the same side
+  bool feature = false;   ///< that no vertex may leave and no swap may take away
+  bool locked = false;    ///< a feature that the user wants as it is
+};
+
+struct Features {
+  std::vector<Edge> edges;           ///< by ascending vertices
+  std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
+  std::vector<Freedom> freedom;      ///< per vertex of the volume
+};
+/// `detail`: what lies within a few times that length is too small to be a feature.
+Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options,
+                       double detail);
+/// Mean length of the triangles' edges; 0 without any.
+double mean_edge(const TetMesh& mesh, const Arrays& arrays);
+/// Six times the volume between a triangle and a point, positive seen from outside.
+inline double six_volume(const Triangle& t, Vec3 from) {
+  return dot(t[0] - from, cross(t[1] - from, t[2] - from));
+}
+
+/// Outward, as long as twice the area.
+inline Vec3 scaled_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
+/// By division, so that a normal along an axis is that axis to the last bit; zero stays zero.
+inline Vec3 unit(Vec3 n) {
+  const double length = norm(n);
+  return length > 0 ? Vec3{n.x / length, n.y / length, n.z / length} : Vec3{};
+}
+inline Triangle corners(const TetMesh& mesh, const std::array<VertexHandle, 3>& f) {
+  return {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
+}
+
+}  // namespace hfr::surface
+
+#endif

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SURFACE_INPUT_SURFACE_HH
+#define HFR_SURFACE_INPUT_SURFACE_HH
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "HalfFace/Vec3.hh"
+
+namespace hfr {
+
+/// Triangles, or line segments, that can be asked for their point nearest to another. Copies what it is
+/// given. Const members may be called from several threads.
+class InputSurface {
+ public:
+  struct Hit {
+    Vec3 point;
+    double distance = 0;
+    std::size_t item = 0;  ///< number of the triangle or segment; of several as near, the one found first
+  };
+
+  explicit InputSurface(std::span<const std::array<Vec3, 3>> triangles);
+  explicit InputSurface(std::span<const std::array<Vec3, 2>> segments);
+  ~InputSurface();
+  InputSurface(InputSurface&&) noexcept;
+  InputSurface& operator=(InputSurface&&) noexcept;
+
+  std::size_t size() const;
+  /// Needs size() > 0.
+  Hit nearest(Vec3 x) const;
+  /// The same when it is no further than `limit`; distance is infinite otherwise. The quicker the smaller
+  /// the limit. With `side`: only triangles whose normal does not point away from it count.
+  Hit nearest_within(Vec3 x, double limit) const;
+  Hit nearest_within(Vec3 x, double limit, Vec3 side) const;
+  Vec3 normal(std::size_t item) const;  ///< of a triangle, length 1; zero when it has no area
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Point of a triangle or segment nearest to x. Where all corners agree in a coordinate, so does the result,
+/// to the last bit.
+Vec3 nearest_point(const std::array<Vec3, 3>& triangle, Vec3 x);
+Vec3 nearest_point(const std::array<Vec3, 2>& segment, Vec3 x);
+
+}  // namespace hfr
+
+#endif

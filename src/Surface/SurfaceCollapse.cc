@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surface/SurfaceCollapse.hh"
+
+#include <algorithm>
+#include <limits>
+
+#include "Operators/Metrics.hh"
+
+namespace hfr {
+namespace {
+
+/// A vertex that has only one or two cells of the star may have none left that is born anew; the hook of
+/// such a vertex would point nowhere. So the cells behind those that belong to it come along. Which these are
+/// must not depend on the target: all cells behind link faces at vertices with at most two cells in the star.
+void gather_scope(const TetMesh& mesh, VertexHandle v, Star& star, Scope& out) {
+  out.clear();
+  if (!mesh.gather_star(v, star)) return;
+  const auto n = static_cast<std::size_t>(star.size);
+  struct Count {
+    VertexHandle v;
+    int n = 0;
+  };
+  FixedVector<Count, 3 * Star::kCapacity> counts;
+  const auto in_star = [&](CellHandle c) {
+    return std::find(star.cells.begin(), star.cells.begin() + static_cast<std::ptrdiff_t>(n), c) !=
+           star.cells.begin() + static_cast<std::ptrdiff_t>(n);
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    for (VertexHandle w : mesh.halfface_vertices(halfface_of(star.cells[i], star.corners[i]))) {
+      auto at = std::find_if(counts.begin(), counts.end(), [&](const Count& c) { return c.v == w; });
+      if (at != counts.end())
+        ++at->n;
+      else
+        counts.push_back({w, 1});
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const HalfFaceHandle h = halfface_of(star.cells[i], star.corners[i]);
+    const auto f = mesh.halfface_vertices(h);
+    const bool rare = std::any_of(f.begin(), f.end(), [&](VertexHandle w) {
+      return std::find_if(counts.begin(), counts.end(), [&](const Count& c) { return c.v == w; })->n <= 2;
+    });
+    const HalfFaceHandle m = mesh.opposite_halfface(h);
+    if (!rare || !m.is_valid() || in_star(cell_of(m))) continue;
+    if (std::find(out.begin(), out.end(), cell_of(m)) == out.end()) out.push_back(cell_of(m));
+  }
+  if (out.size() + n > Star::kCapacity) {
+    out.clear();
+    return;
+  }
+  for (std::size_t i = 0; i < n; ++i) out.push_back(star.cells[i]);
+}
+
+bool has(const std::array<VertexHandle, 3>& f, VertexHandle v) { return f[0] == v || f[1] == v || f[2] == v; }
+
+/// Boundary faces of the star at v, as seen from outside.
+template <class Faces>
+bool gather_faces(const TetMesh& mesh, VertexHandle v, const Star& star, Faces& out) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) {
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(star.cells[i], k);
+      if (k == star.corners[i] || !mesh.is_boundary(h)) continue;
+      const auto f = mesh.halfface_vertices(h);
+      if (out.full()) return false;
+      if (has(f, v)) out.push_back({f[0], f[2], f[1]});
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+template <class Metric>
+void SurfaceCollapse<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope& out) const {
+  Star star;
+  gather_scope(mesh, seed.vertex, star, out);
+}
+
+template <class Metric>
+auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
+  const VertexHandle v = seed.vertex;
+  if (mesh.labels().vertex(v) != 0) return std::nullopt;
+  Star star;
+  Scope cells;
+  gather_scope(mesh, v, star, cells);
+  if (cells.empty()) return std::nullopt;
+  const auto n = static_cast<std::size_t>(star.size);
+  const std::size_t n_behind = cells.size() - n;
+  FixedVector<std::array<VertexHandle, 3>, 64> faces;
+  if (!gather_faces(mesh, v, star, faces)) return std::nullopt;
+
+  double old_worst = std::numeric_limits<double>::infinity();
+  double floor = std::numeric_limits<double>::infinity();  // cells behind cannot get better
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    old_worst = std::min(old_worst, quality[cells[i].idx()]);
+    if (i < n_behind) floor = std::min(floor, quality[cells[i].idx()]);
+  }
+  Plan plan;
+  plan.old_worst = old_worst;
+  plan.new_worst = old_worst;
+  for (std::uint32_t i = seed.first; i < seed.first + seed.n; ++i) {
+    const VertexHandle onto = targets[i];
+    const Vec3 p = mesh.point(onto);
+    double worst = floor;
+    std::uint32_t n_born = 0;
+    for (std::size_t k = 0; k < n && worst > plan.new_worst; ++k) {
+      const auto f = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
+      if (has(f, onto)) continue;
+      ++n_born;
+      worst = std::min(worst, metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p));
+    }
+    if (!(worst > plan.new_worst) || n_born == 0) continue;
+    FixedVector<Triangle, 64> dead, born;
+    bool meets_twice = false;  // an inner face (v, onto, x) whose edge (v, x) is on the surface
+    for (const auto& f : faces) {
+      Triangle t = {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
+      dead.push_back(t);
+      if (has(f, onto)) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (f[k] == v) t[k] = p;
+      born.push_back(t);
+    }
+    for (std::size_t k = 0; k < n && !meets_twice; ++k) {
+      const auto f = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
+      if (!has(f, onto)) continue;
+      for (VertexHandle x : f) {
+        if (x == onto) continue;
+        int n_with_x = 0;
+        int n_with_both = 0;
+        for (const auto& g : faces) {
+          n_with_x += has(g, x) ? 1 : 0;
+          n_with_both += has(g, x) && has(g, onto) ? 1 : 0;
+        }
+        meets_twice = meets_twice || (n_with_x > 0 && n_with_both == 0);
+      }
+    }
+    if (meets_twice || !surface->keeps_shape(faces, dead, born)) continue;
+    plan.new_worst = worst;
+    plan.onto = onto;
+    plan.n_born = n_born + static_cast<std::uint32_t>(n_behind);
+  }
+  if (!plan.onto.is_valid()) return std::nullopt;
+  plan.n_dead = static_cast<std::uint32_t>(cells.size());
+  plan.removes_vertex = true;
+  plan.seed = seed;
+  return plan;
+}
+
+template <class Metric>
+void SurfaceCollapse<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  Star star;
+  Scope cells;
+  gather_scope(mesh, plan.seed.vertex, star, cells);
+  out.clear();
+  out.removed = plan.seed.vertex;
+  for (CellHandle c : cells) out.dead.push_back(c);
+  const std::size_t n_behind = cells.size() - static_cast<std::size_t>(star.size);
+  for (std::size_t i = 0; i < n_behind; ++i) out.born.push_back(mesh.cell(cells[i]).v);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) {
+    const auto f = mesh.halfface_vertices(halfface_of(star.cells[i], star.corners[i]));
+    if (!has(f, plan.onto)) out.born.push_back({f[0], f[1], f[2], plan.onto});
+  }
+}
+
+HFR_INSTANTIATE_FOR_METRICS(SurfaceCollapse)
+
+}  // namespace hfr

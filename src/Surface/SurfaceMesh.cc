@@ -1,0 +1,636 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The one file that includes OpenMesh: a translation unit with it takes ten seconds to compile.
+#include "Surface/SurfaceMesh.hh"
+
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+// After the mesh, whose traits it specialises.
+#include <OpenMesh/Core/Geometry/EigenVectorT.hh>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <unordered_set>
+
+#include "Surface/Features.hh"
+#include "Surface/InputSurface.hh"
+
+namespace hfr {
+namespace {
+
+using surface::Arrays;
+using surface::scaled_normal;
+using surface::unit;
+
+struct Traits : OpenMesh::DefaultTraits {
+  using Point = Eigen::Vector3d;
+  using Normal = Eigen::Vector3d;
+  VertexAttributes(OpenMesh::Attributes::Status);
+  EdgeAttributes(OpenMesh::Attributes::Status);
+  HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge);
+  FaceAttributes(OpenMesh::Attributes::Status);
+};
+using Om = OpenMesh::TriMesh_ArrayKernelT<Traits>;
+using OmVertex = Om::VertexHandle;
+using OmEdge = Om::EdgeHandle;
+using OmHalfedge = Om::HalfedgeHandle;
+using OmFace = Om::FaceHandle;
+
+Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// Of the mean edge length of the surface: how far it may go in free mode unless told otherwise.
+constexpr double kHausdorff = 0.1;
+/// Points of a triangle by which its distance is judged, beside its corners and the middles of its edges.
+constexpr std::array<std::array<double, 2>, 4> kInner = {
+    {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
+/// The samples are judged by somewhat less than what is allowed, for what lies between them.
+constexpr double kBetween = 0.7;
+/// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
+constexpr double kNotBack = 0.1;
+/// Share of the volume beyond which a change in the same direction is refused.
+constexpr double kVolume = 5e-4;
+
+struct FaceRecord {
+  int patch = 0;
+  bool locked = false;
+  bool inward = false;        // its label names it as seen from inside
+  HalfFaceHandle inside;      // where it was when last asked for
+  std::uint32_t facet = 0;    // flat mode
+  std::vector<Vec3> samples;  // of the input, free mode: points that were nearest to this face
+};
+
+/// Disjoint sets of corners.
+class Union {
+ public:
+  explicit Union(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t i, std::uint32_t j) {
+    i = find(i);
+    j = find(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
+  std::sort(f.begin(), f.end());
+  return f;
+}
+
+}  // namespace
+
+struct SurfaceMesh::Impl {
+  SurfaceOptions options;
+  double hausdorff = 0;
+  double detail = 0;  // what is no larger is noise
+  Om om;
+  std::vector<VertexHandle> vertex;              // of the volume, per OpenMesh vertex
+  std::vector<OmVertex> first;                   // OpenMesh's per vertex of the volume; invalid inside
+  std::vector<std::pair<Index, OmVertex>> more;  // where there are several, ascending
+  std::vector<FaceRecord> faces;
+  std::vector<Freedom> freedom;
+  std::optional<InputSurface> shape, curves;      // free mode
+  std::vector<std::array<VertexHandle, 3>> gone;  // labelled faces that are no more
+  std::set<int> fresh;                            // labelled faces with other vertices
+  Vec3 origin;                                    // from which volumes are measured
+  double six_volume = 0, area = 0;                // of the input
+  double six_gain = 0;                            // of the volume since
+
+  bool flat() const { return options.mode != SurfaceMode::kFree; }
+
+  template <class Visit>
+  void for_sheets(VertexHandle v, Visit&& visit) const {
+    if (v.idx() >= first.size() || !first[v.idx()].is_valid()) return;
+    visit(first[v.idx()]);
+    auto at = std::lower_bound(more.begin(), more.end(), v.idx(),
+                               [](const auto& entry, Index wanted) { return entry.first < wanted; });
+    for (; at != more.end() && at->first == v.idx(); ++at) visit(at->second);
+  }
+  bool has_one_sheet(VertexHandle v) const {
+    int n = 0;
+    for_sheets(v, [&](OmVertex) { ++n; });
+    return n == 1;
+  }
+  /// Invalid when the surface has no such edge; where it has several, one of them.
+  OmHalfedge find(VertexHandle a, VertexHandle b) const {
+    OmHalfedge found;
+    for_sheets(a, [&](OmVertex from) {
+      for (auto it = om.cvoh_iter(from); it.is_valid(); ++it)
+        if (vertex[static_cast<std::size_t>(om.to_vertex_handle(*it).idx())] == b) found = *it;
+    });
+    return found;
+  }
+  OmFace find(const std::array<VertexHandle, 3>& f) const {
+    OmFace found;
+    for_sheets(f[0], [&](OmVertex from) {
+      for (auto it = om.cvoh_iter(from); it.is_valid(); ++it) {
+        if (om.is_boundary(*it)) continue;
+        const VertexHandle to = vertex_of(om.to_vertex_handle(*it));
+        const VertexHandle third = vertex_of(om.to_vertex_handle(om.next_halfedge_handle(*it)));
+        if ((to == f[1] && third == f[2]) || (to == f[2] && third == f[1])) found = om.face_handle(*it);
+      }
+    });
+    return found;
+  }
+  VertexHandle vertex_of(OmVertex v) const { return vertex[static_cast<std::size_t>(v.idx())]; }
+  std::array<VertexHandle, 3> vertices(OmFace f) const {
+    OmHalfedge h = om.halfedge_handle(f);
+    std::array<VertexHandle, 3> v;
+    for (VertexHandle& w : v) {
+      w = vertex_of(om.to_vertex_handle(h));
+      h = om.next_halfedge_handle(h);
+    }
+    return v;
+  }
+  FaceRecord& record(OmFace f) { return faces[static_cast<std::size_t>(f.idx())]; }
+  const FaceRecord& record(OmFace f) const { return faces[static_cast<std::size_t>(f.idx())]; }
+
+  void build(const TetMesh& mesh, const Arrays& arrays, const surface::Features& features);
+  void take_shape(const TetMesh& mesh, const Arrays& arrays, const surface::Features& features);
+
+  OmVertex add_vertex(VertexHandle v, Vec3 p) {
+    const OmVertex w = om.add_vertex(eigen(p));
+    vertex.resize(static_cast<std::size_t>(w.idx()) + 1);
+    vertex[static_cast<std::size_t>(w.idx())] = v;
+    if (v.idx() >= first.size()) first.resize(v.idx() + 1);
+    if (!first[v.idx()].is_valid())
+      first[v.idx()] = w;
+    else
+      more.emplace_back(v.idx(), w);
+    return w;
+  }
+
+  /// Before the vertices of a face change.
+  void note_gone(OmFace f) {
+    if (record(f).patch != 0) gone.push_back(vertices(f));
+  }
+  void note_fresh(OmFace f) {
+    if (record(f).patch != 0) fresh.insert(f.idx());
+  }
+  Triangle corners(OmFace f) const {
+    OmHalfedge h = om.halfedge_handle(f);
+    Triangle t;
+    for (Vec3& p : t) {
+      const auto& q = om.point(om.to_vertex_handle(h));
+      p = {q[0], q[1], q[2]};
+      h = om.next_halfedge_handle(h);
+    }
+    return t;
+  }
+  double six_volume_of(const std::vector<OmFace>& some) const {
+    double sum = 0;
+    for (OmFace f : some) sum += surface::six_volume(corners(f), origin);
+    return sum;
+  }
+  /// Every sample goes to the nearest of these faces.
+  void share_samples(const std::vector<OmFace>& among, std::vector<Vec3> samples) {
+    for (OmFace f : among) {
+      samples.insert(samples.end(), record(f).samples.begin(), record(f).samples.end());
+      record(f).samples.clear();
+    }
+    for (Vec3 s : samples) {
+      OmFace nearest;
+      double least = std::numeric_limits<double>::infinity();
+      for (OmFace f : among) {
+        const double d = norm2(nearest_point(corners(f), s) - s);
+        if (d < least) {
+          least = d;
+          nearest = f;
+        }
+      }
+      if (nearest.is_valid()) record(nearest).samples.push_back(s);
+    }
+  }
+  std::vector<OmFace> faces_round(OmVertex v) const {
+    std::vector<OmFace> round;
+    for (auto it = om.cvf_iter(v); it.is_valid(); ++it) round.push_back(*it);
+    return round;
+  }
+};
+
+void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const surface::Features& features) {
+  const std::size_t n = arrays.faces.size();
+  Union corners_of(3 * n);
+  for (const surface::Edge& e : features.edges) {
+    if (!e.manifold) continue;
+    const auto corner = [&](std::size_t i, unsigned step) { return 3 * e.f[i] + (e.k[i] + step) % 3; };
+    corners_of.join(corner(0, 0), corner(1, 1));  // the faces have the edge in opposite directions
+    corners_of.join(corner(0, 1), corner(1, 0));
+  }
+  first.resize(mesh.n_vertices());
+  std::vector<OmVertex> sheet(3 * n);
+  // A pair of vertices may be joined by several edges that meet no face in common; OpenMesh would take them
+  // for one.
+  std::unordered_set<std::uint64_t> used;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::array<OmVertex, 3> w;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t root = corners_of.find(static_cast<std::uint32_t>(3 * i + k));
+      if (!sheet[root].is_valid())
+        sheet[root] = add_vertex(arrays.faces[i][k], mesh.point(arrays.faces[i][k]));
+      w[k] = sheet[root];
+    }
+    const auto key = [&](std::size_t k) {
+      return static_cast<std::uint64_t>(w[k].idx()) << 32 | static_cast<std::uint64_t>(w[(k + 1) % 3].idx());
+    };
+    if (used.contains(key(0)) || used.contains(key(1)) || used.contains(key(2)))
+      for (std::size_t k = 0; k < 3; ++k)
+        w[k] = add_vertex(arrays.faces[i][k], mesh.point(arrays.faces[i][k]));
+    for (std::size_t k = 0; k < 3; ++k) used.insert(key(k));
+    const OmFace f = om.add_face(w[0], w[1], w[2]);
+    HFR_ASSERT(f.is_valid());
+    faces.resize(om.n_faces());
+    FaceRecord& record_of_f = record(f);
+    record_of_f.patch = arrays.patch[i];
+    record_of_f.locked = arrays.locked[i] != 0;
+    record_of_f.inward = arrays.inward[i] != 0;
+    record_of_f.inside = arrays.halffaces[i];
+    if (!features.facet.empty()) record_of_f.facet = features.facet[i];
+  }
+  std::sort(more.begin(), more.end());
+  for (const surface::Edge& e : features.edges) {
+    if (!e.feature) continue;
+    for_sheets(e.a, [&](OmVertex from) {
+      for (auto it = om.cvoh_iter(from); it.is_valid(); ++it)
+        if (vertex_of(om.to_vertex_handle(*it)) == e.b) {
+          om.status(om.edge_handle(*it)).set_feature(true);
+          om.status(om.edge_handle(*it)).set_locked(e.locked);
+        }
+    });
+  }
+}
+
+void SurfaceMesh::Impl::take_shape(const TetMesh& mesh, const Arrays& arrays,
+                                   const surface::Features& features) {
+  std::vector<Triangle> triangles;
+  std::vector<std::array<Vec3, 2>> segments;
+  std::vector<std::uint8_t> is_sampled(mesh.n_vertices(), 0);
+  const auto inside = [](const Triangle& t, double u, double v) {
+    return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+  };
+  if (!arrays.faces.empty()) origin = mesh.point(arrays.faces[0][0]);
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
+    const Triangle t = surface::corners(mesh, arrays.faces[i]);
+    triangles.push_back(t);
+    for (const auto& [u, v] : kInner) faces[i].samples.push_back(inside(t, u, v));
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint8_t& done = is_sampled[arrays.faces[i][k].idx()];
+      if (!done) faces[i].samples.push_back(t[k]);
+      done = 1;
+    }
+    if (!mesh.is_boundary(arrays.halffaces[i])) continue;
+    six_volume += surface::six_volume(t, origin);
+    area += 0.5 * norm(scaled_normal(t));
+  }
+  for (const surface::Edge& e : features.edges) {
+    const std::array<Vec3, 2> ends = {mesh.point(e.a), mesh.point(e.b)};
+    faces[e.f[0]].samples.push_back(0.5 * (ends[0] + ends[1]));
+    if (e.feature) segments.push_back(ends);
+  }
+  if (!triangles.empty()) shape.emplace(triangles);
+  if (!segments.empty()) curves.emplace(segments);
+}
+
+SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy)
+    : impl_(new Impl) {
+  HFR_REQUIRE(
+      options.feature_angle >= 0 && options.feature_angle <= 180,
+      "the feature angle must lie between 0 and 180 degrees, not " + std::to_string(options.feature_angle));
+  HFR_REQUIRE(!options.hausdorff || *options.hausdorff >= 0,
+              "the distance from the surface must not be negative");
+  impl_->options = options;
+  if (options.mode == SurfaceMode::kFree && options.hausdorff && *options.hausdorff == 0)
+    impl_->options.mode = SurfaceMode::kFlat;
+  const Arrays arrays = surface::gather(mesh, impl_->options, policy);
+  if (!impl_->flat()) {
+    impl_->detail = kHausdorff * surface::mean_edge(mesh, arrays);
+    impl_->hausdorff = options.hausdorff.value_or(impl_->detail);
+    impl_->detail = std::min(impl_->detail, impl_->hausdorff);
+  }
+  surface::Features features = surface::find_features(mesh, arrays, impl_->options, impl_->detail);
+  impl_->build(mesh, arrays, features);
+  if (!impl_->flat()) impl_->take_shape(mesh, arrays, features);
+  impl_->freedom = std::move(features.freedom);
+}
+
+SurfaceMesh::~SurfaceMesh() = default;
+
+const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }
+double SurfaceMesh::hausdorff() const { return impl_->hausdorff; }
+
+std::size_t SurfaceMesh::n_faces() const { return impl_->om.n_faces(); }
+std::size_t SurfaceMesh::n_edges() const { return impl_->om.n_edges(); }
+std::size_t SurfaceMesh::n_feature_edges() const {
+  return static_cast<std::size_t>(std::count_if(
+      impl_->om.edges_begin(), impl_->om.edges_end(),
+      [&](OmEdge e) { return !impl_->om.status(e).deleted() && impl_->om.status(e).feature(); }));
+}
+std::size_t SurfaceMesh::n_vertices(SurfaceKind kind) const {
+  return static_cast<std::size_t>(std::count_if(impl_->freedom.begin(), impl_->freedom.end(),
+                                                [&](const Freedom& f) { return f.kind == kind; }));
+}
+
+const Freedom& SurfaceMesh::freedom(VertexHandle v) const {
+  static const Freedom kInner;
+  return v.idx() < impl_->freedom.size() ? impl_->freedom[v.idx()] : kInner;
+}
+
+bool SurfaceMesh::is_feature(VertexHandle a, VertexHandle b) const {
+  const OmHalfedge h = impl_->find(a, b);
+  return h.is_valid() && impl_->om.status(impl_->om.edge_handle(h)).feature();
+}
+
+HalfFaceHandle SurfaceMesh::halfface(const TetMesh& mesh, std::size_t f) {
+  const OmFace face(static_cast<int>(f));
+  if (impl_->om.status(face).deleted()) return {};
+  const auto wanted = impl_->vertices(face);
+  HalfFaceHandle& known = impl_->record(face).inside;
+  const auto is_it = [&](HalfFaceHandle h) {
+    return h.is_valid() && mesh.exists(h) && sorted(mesh.halfface_vertices(h)) == sorted(wanted);
+  };
+  if (!is_it(known)) known = mesh.find_halfface({wanted[0], wanted[2], wanted[1]});
+  return known;
+}
+
+std::size_t SurfaceMesh::face(const TetMesh& mesh, HalfFaceHandle h) const {
+  const OmFace f = impl_->find(mesh.halfface_vertices(h));
+  return f.is_valid() ? static_cast<std::size_t>(f.idx()) : kNoFace;
+}
+
+bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
+  const Om& om = impl_->om;
+  const OmHalfedge h = impl_->find(a, b);
+  if (!h.is_valid()) return false;
+  const OmEdge e = om.edge_handle(h);
+  if (om.is_boundary(e) || om.status(e).feature()) return false;
+  const FaceRecord& f = impl_->record(om.face_handle(h));
+  const FaceRecord& g = impl_->record(om.face_handle(om.opposite_halfedge_handle(h)));
+  return !f.locked && !g.locked && f.patch == g.patch && f.facet == g.facet && om.is_flip_ok(e);
+}
+
+bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
+  const Om& om = impl_->om;
+  const OmHalfedge h = impl_->find(a, b);
+  if (!h.is_valid() || om.is_boundary(om.edge_handle(h)) || om.status(om.edge_handle(h)).locked())
+    return false;
+  return !impl_->record(om.face_handle(h)).locked &&
+         !impl_->record(om.face_handle(om.opposite_halfedge_handle(h))).locked;
+}
+
+void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& out) {
+  const SurfaceKind kind = freedom(v).kind;
+  if ((kind != SurfaceKind::kFacet && kind != SurfaceKind::kCurve) || !impl_->has_one_sheet(v)) return;
+  Om& om = impl_->om;
+  const OmVertex from = impl_->first[v.idx()];
+  if (om.is_boundary(from)) return;
+  for (auto it = om.cvf_iter(from); it.is_valid(); ++it)
+    if (impl_->record(*it).locked) return;
+  for (auto it = om.cvoh_iter(from); it.is_valid(); ++it) {
+    if (kind == SurfaceKind::kCurve && !om.status(om.edge_handle(*it)).feature()) continue;
+    if (om.is_collapse_ok(*it)) out.push_back(impl_->vertex_of(om.to_vertex_handle(*it)));
+  }
+}
+
+Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
+  const Freedom& f = freedom(v);
+  const bool on_curve = f.kind == SurfaceKind::kCurve;
+  if (f.kind == SurfaceKind::kInside) return x;
+  if (f.kind == SurfaceKind::kFixed) return f.anchor;
+  if (!impl_->flat()) return on_curve ? impl_->curves->nearest(x).point : x;
+  const Vec3 r = x - f.anchor;
+  return on_curve ? f.anchor + dot(r, f.axis) * f.axis : x - dot(r, f.axis) * f.axis;
+}
+
+bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_dead,
+                              std::span<const Triangle> dead, std::span<const Triangle> born) const {
+  constexpr double kSameSide = 0.5;
+  for (const Triangle& t : born) {
+    const Vec3 n = unit(scaled_normal(t));
+    if (n == Vec3{}) return false;
+    if (!impl_->flat()) continue;
+    const bool found = std::any_of(dead.begin(), dead.end(), [&](const Triangle& d) {
+      return dot(n, unit(scaled_normal(d))) > kSameSide;
+    });
+    if (!found) return false;
+  }
+  if (impl_->flat()) return true;
+
+  double six_gain = 0;
+  for (const Triangle& t : born) six_gain += surface::six_volume(t, dead[0][0]);
+  for (const Triangle& t : dead) six_gain -= surface::six_volume(t, dead[0][0]);
+  const double enough = kVolume * std::abs(impl_->six_volume);
+  if (std::abs(impl_->six_gain) > enough && impl_->six_gain * six_gain > 0 &&
+      std::abs(six_gain) > 1e-6 * enough)
+    return false;
+
+  const InputSurface& shape = *impl_->shape;
+  const double h = kBetween * impl_->hausdorff;
+  const auto inside = [](const Triangle& t, double u, double v) {
+    return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+  };
+  for (const auto& f : faces_dead) {
+    const OmFace face = impl_->find(f);
+    if (!face.is_valid()) return false;
+    for (Vec3 s : impl_->record(face).samples) {
+      const bool near = std::any_of(born.begin(), born.end(), [&](const Triangle& t) {
+        return norm2(nearest_point(t, s) - s) <= h * h;
+      });
+      if (!near) return false;
+    }
+  }
+  for (const Triangle& t : born) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(shape.nearest_within(0.5 * (t[k] + t[(k + 1) % 3]), h).distance <= h)) return false;
+      if (!(shape.nearest_within(t[k], h).distance <= h)) return false;
+    }
+    for (const auto& [u, v] : kInner)
+      if (!(shape.nearest_within(inside(t, u, v), h).distance <= h)) return false;
+  }
+  // The normals of triangles no larger than noise say little, but they must not turn back. What is worse
+  // already must not get worse still: a surface that folds over has to be mended somehow.
+  const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
+    const Vec3 n = unit(scaled_normal(t));
+    const InputSurface::Hit hit = shape.nearest_within(inside(t, 1.0 / 3, 1.0 / 3), 2 * h, n);
+    return hit.distance <= 2 * h ? dot(n, shape.normal(hit.item)) : -1.0;
+  };
+  const double bound = std::cos(impl_->options.normal_angle * kDegree);
+  double worst_dead = 2;  // not known yet
+  for (const Triangle& t : born) {
+    const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+    const bool small = size2 < 4 * impl_->detail * impl_->detail;
+    const double now = turned(t);
+    if (now >= (small ? kNotBack : bound)) continue;
+    if (worst_dead == 2)
+      for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
+    if (now < worst_dead) return false;
+  }
+  return true;
+}
+
+double SurfaceMesh::volume_gain() const {
+  return impl_->six_volume != 0 ? impl_->six_gain / impl_->six_volume : 0.0;
+}
+
+double SurfaceMesh::outward() const {
+  if (!(impl_->area > 0)) return 0;
+  const double limit = 0.1 * impl_->hausdorff;
+  return std::clamp(-impl_->six_gain / (6.0 * impl_->area), -limit, limit);
+}
+
+void SurfaceMesh::moved(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
+  for (VertexHandle v : vertices) {
+    const Eigen::Vector3d place = eigen(mesh.point(v));
+    impl_->for_sheets(v, [&](OmVertex w) {
+      if (impl_->om.point(w) == place) return;
+      const std::vector<OmFace> round = impl_->faces_round(w);
+      impl_->six_gain -= impl_->six_volume_of(round);
+      impl_->om.set_point(w, place);
+      impl_->six_gain += impl_->six_volume_of(round);
+      if (!impl_->flat()) impl_->share_samples(round, {});
+    });
+  }
+}
+
+void SurfaceMesh::swapped(VertexHandle a, VertexHandle b) {
+  Om& om = impl_->om;
+  const OmHalfedge h = impl_->find(a, b);
+  HFR_ASSERT(h.is_valid() && om.is_flip_ok(om.edge_handle(h)));
+  const std::vector<OmFace> both = {om.face_handle(h), om.face_handle(om.opposite_halfedge_handle(h))};
+  for (OmFace f : both) impl_->note_gone(f);
+  impl_->six_gain -= impl_->six_volume_of(both);
+  om.flip(om.edge_handle(h));
+  impl_->six_gain += impl_->six_volume_of(both);
+  for (OmFace f : both) impl_->note_fresh(f);
+  if (!impl_->flat()) impl_->share_samples(both, {});
+}
+
+void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
+  Om& om = impl_->om;
+  const OmHalfedge h = impl_->find(v, onto);
+  HFR_ASSERT(h.is_valid() && om.is_collapse_ok(h));
+  const OmVertex from = om.from_vertex_handle(h);
+  const OmVertex to = om.to_vertex_handle(h);
+  // The two edges on either side of h become one each, which is a feature when one of them was.
+  std::vector<OmVertex> sides;
+  std::vector<std::uint8_t> is_feature;
+  for (OmHalfedge side : {h, om.opposite_halfedge_handle(h)}) {
+    const OmHalfedge next = om.next_halfedge_handle(side);
+    const OmHalfedge last = om.next_halfedge_handle(next);
+    sides.push_back(om.to_vertex_handle(next));
+    is_feature.push_back(om.status(om.edge_handle(next)).feature() ||
+                         om.status(om.edge_handle(last)).feature());
+  }
+  std::vector<Vec3> samples;
+  std::vector<OmFace> old = impl_->faces_round(from);
+  impl_->six_gain -= impl_->six_volume_of(old);
+  for (OmFace f : old) {
+    impl_->note_gone(f);
+    auto& of_f = impl_->record(f).samples;
+    samples.insert(samples.end(), of_f.begin(), of_f.end());
+    of_f.clear();
+  }
+  om.collapse(h);
+  std::erase_if(old, [&](OmFace f) { return om.status(f).deleted(); });
+  impl_->six_gain += impl_->six_volume_of(old);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const OmHalfedge side = om.find_halfedge(to, sides[i]);
+    om.status(om.edge_handle(side)).set_feature(is_feature[i] != 0);
+  }
+  const std::vector<OmFace> round = impl_->faces_round(to);
+  for (OmFace f : round) impl_->note_fresh(f);
+  if (!impl_->flat()) impl_->share_samples(round, std::move(samples));
+  impl_->first[v.idx()] = OmVertex();
+  impl_->freedom[v.idx()] = {};
+}
+
+void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place) {
+  Om& om = impl_->om;
+  const OmHalfedge h = impl_->find(a, b);
+  HFR_ASSERT(h.is_valid() && !om.is_boundary(om.edge_handle(h)));
+  const OmEdge e = om.edge_handle(h);
+  const std::array<OmFace, 2> halves = {om.face_handle(h), om.face_handle(om.opposite_halfedge_handle(h))};
+  const std::array<OmVertex, 2> ends = {om.from_vertex_handle(h), om.to_vertex_handle(h)};
+  const VertexHandle apex = impl_->vertex_of(om.to_vertex_handle(om.next_halfedge_handle(h)));
+  const bool feature = om.status(e).feature();
+  const auto place_of = [&](OmVertex v) {
+    const auto& p = om.point(v);
+    return Vec3{p[0], p[1], p[2]};
+  };
+  Freedom freedom{SurfaceKind::kFacet, place, unit(scaled_normal(impl_->corners(halves[0])))};
+  if (feature) freedom = {SurfaceKind::kCurve, place, unit(place_of(ends[1]) - place_of(ends[0]))};
+  // In flat mode the middle lies where both ends may go, or in the plane that one of them names.
+  for (VertexHandle v : {a, b})
+    if (impl_->flat() && impl_->freedom[v.idx()].kind == freedom.kind) freedom = impl_->freedom[v.idx()];
+
+  for (OmFace f : halves) impl_->note_gone(f);
+  impl_->six_gain -= impl_->six_volume_of({halves[0], halves[1]});
+  const std::array<FaceRecord, 2> was = {impl_->record(halves[0]), impl_->record(halves[1])};
+  const OmVertex m = impl_->add_vertex(middle, place);
+  om.split_edge(e, m);
+  impl_->faces.resize(om.n_faces());
+  const std::vector<OmFace> round = impl_->faces_round(m);
+  impl_->six_gain += impl_->six_volume_of(round);
+  for (OmFace f : round) {
+    const auto v = impl_->vertices(f);
+    const bool first = v[0] == apex || v[1] == apex || v[2] == apex;
+    impl_->record(f) = was[first ? 0 : 1];
+    impl_->record(f).samples.clear();
+    impl_->note_fresh(f);
+  }
+  for (auto it = om.cvoh_iter(m); it.is_valid(); ++it) {
+    const OmVertex to = om.to_vertex_handle(*it);
+    om.status(om.edge_handle(*it)).set_feature(feature && (to == ends[0] || to == ends[1]));
+  }
+  impl_->freedom.resize(std::max<std::size_t>(impl_->freedom.size(), middle.idx() + 1));
+  impl_->freedom[middle.idx()] = freedom;
+  if (impl_->flat()) return;
+  std::vector<Vec3> samples = was[0].samples;
+  samples.insert(samples.end(), was[1].samples.begin(), was[1].samples.end());
+  impl_->share_samples(round, std::move(samples));
+}
+
+void SurfaceMesh::write_labels(TetMesh& mesh) {
+  if (impl_->gone.empty() && impl_->fresh.empty()) return;
+  auto& labels = mesh.labels().faces;
+  std::set<std::array<VertexHandle, 3>> gone;
+  for (const auto& f : impl_->gone) gone.insert(sorted(f));
+  labels.rename_vertices([](VertexHandle v) { return v; },
+                         [&](const auto& f) { return !gone.contains(sorted(f)); });
+  for (int i : impl_->fresh) {
+    const OmFace f(i);
+    if (impl_->om.status(f).deleted()) continue;
+    auto v = impl_->vertices(f);
+    if (impl_->record(f).inward) std::swap(v[1], v[2]);
+    labels.set(v, impl_->record(f).patch);
+  }
+  impl_->gone.clear();
+  impl_->fresh.clear();
+}
+
+bool SurfaceMesh::in_step(const TetMesh& mesh) const {
+  const Arrays arrays = surface::gather(mesh, impl_->options, {});
+  std::size_t n_live = 0;
+  for (OmFace f : impl_->om.all_faces())
+    if (!impl_->om.status(f).deleted()) ++n_live;
+  if (n_live != arrays.faces.size()) return false;
+  for (const auto& face : arrays.faces) {
+    const OmFace f = impl_->find(face);
+    if (!f.is_valid() || impl_->om.status(f).deleted()) return false;
+    const auto v = impl_->vertices(f);
+    if (CyclicOrder::key(v) != CyclicOrder::key(face)) return false;
+    const Triangle t = impl_->corners(f);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (t[k] != mesh.point(v[k])) return false;
+  }
+  return true;
+}
+
+}  // namespace hfr

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SURFACE_SURFACE_MESH_HH
+#define HFR_SURFACE_SURFACE_MESH_HH
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Surface/SurfaceOptions.hh"
+
+namespace hfr {
+
+/// What a vertex may do.
+enum class SurfaceKind : std::uint8_t {
+  kInside,  ///< not on the surface
+  kFacet,   ///< may move within its facet
+  kCurve,   ///< may move along its two feature edges
+  kFixed,   ///< corner, where surfaces meet otherwise, or locked
+};
+
+/// Where a vertex of the surface may go: the plane through `anchor` with the normal `axis`, or the line
+/// through it in the direction of `axis`, both of length 1. In free mode axis is that of the input near the
+/// vertex's first place and only says which side is out.
+struct Freedom {
+  SurfaceKind kind = SurfaceKind::kInside;
+  Vec3 anchor, axis;
+};
+
+/// Corners of a triangle, counter-clockwise seen from outside.
+using Triangle = std::array<Vec3, 3>;
+
+/// The boundary of a tetrahedral mesh and the interfaces between its regions as an OpenMesh triangle mesh,
+/// which decides what may become of the surface, and the shape that must be kept. Vertices are those of the
+/// tetrahedral mesh; where several sheets meet in one, OpenMesh has it several times.
+///
+/// Const members may be called from several threads at once. What changes the surface is told to it one
+/// change at a time, in the order of rank.
+class SurfaceMesh {
+ public:
+  /// Takes the surface as it is now as the shape to keep. Throws InvalidInput for options out of range.
+  SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
+  ~SurfaceMesh();
+  SurfaceMesh(const SurfaceMesh&) = delete;
+  SurfaceMesh& operator=(const SurfaceMesh&) = delete;
+
+  const SurfaceOptions& options() const;
+  /// Largest distance from the input that is allowed; 0 in flat mode.
+  double hausdorff() const;
+
+  // --- what there is ---
+  std::size_t n_faces() const;
+  std::size_t n_edges() const;
+  std::size_t n_feature_edges() const;
+  std::size_t n_vertices(SurfaceKind kind) const;
+  const Freedom& freedom(VertexHandle v) const;
+  bool is_feature(VertexHandle a, VertexHandle b) const;  ///< false when it is no edge of the surface
+  /// The half-face of the volume that face number f (0 … n_faces()-1 at first; numbers of deleted faces stay
+  /// unused) is the outside of; searched anew when cells have changed. Invalid for a deleted face.
+  HalfFaceHandle halfface(const TetMesh& mesh, std::size_t f);
+  /// Number of the surface's face with the vertices of h; kNoFace when it is none.
+  std::size_t face(const TetMesh& mesh, HalfFaceHandle h) const;
+  static constexpr std::size_t kNoFace = ~std::size_t{0};
+
+  // --- what is legal: topology by OpenMesh, features, labels, locks ---
+  /// May the edge from a to b be swapped?
+  bool may_swap(VertexHandle a, VertexHandle b) const;
+  /// May the edge from a to b be split?
+  bool may_split(VertexHandle a, VertexHandle b) const;
+  /// Appends the vertices onto which v may be collapsed. Not for several threads: OpenMesh tags vertices.
+  void collapse_targets(VertexHandle v, std::vector<VertexHandle>& out);
+
+  // --- the shape ---
+  /// Point of the shape that v may move to, nearest to x. In free mode only curves hold a vertex: one on a
+  /// facet moves where keeps_shape() allows it.
+  Vec3 project(VertexHandle v, Vec3 x) const;
+  /// What the enclosed volume has gained, as a share of it.
+  double volume_gain() const;
+  /// By how far the whole surface would have to move outwards for the volume to be what it was; at most a
+  /// tenth of hausdorff() either way.
+  double outward() const;
+  /// May the triangles `born` replace `dead` (vertices in outward order; a vertex that is moved or new stands
+  /// with its new place in `born`)? Orientation and normals, and in free mode the distance from the input
+  /// and of the input from them.
+  bool keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_dead, std::span<const Triangle> dead,
+                   std::span<const Triangle> born) const;
+
+  // --- what has happened ---
+  /// Vertices of the list may have been moved.
+  void moved(const TetMesh& mesh, std::span<const VertexHandle> vertices);
+  void swapped(VertexHandle a, VertexHandle b);
+  void collapsed(VertexHandle v, VertexHandle onto);
+  /// The edge from a to b has got the vertex `middle`.
+  void was_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place);
+  /// Brings patch labels of the volume up to date with what has happened since.
+  void write_labels(TetMesh& mesh);
+
+  /// True when the surface is that of the mesh, face by face and point by point.
+  bool in_step(const TetMesh& mesh) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Largest distance of points of one surface from another, and the other way round, by points spread over all
+/// triangles at most `spacing` apart. Independent of what the operators keep account of.
+struct SurfaceDistance {
+  double there = 0, back = 0;
+  double hausdorff() const { return there > back ? there : back; }
+};
+SurfaceDistance surface_distance(std::span<const Triangle> from, std::span<const Triangle> to, double spacing,
+                                 par::Policy policy = {});
+/// Triangles of the boundary, counter-clockwise seen from outside, and of the interfaces, each once.
+std::vector<Triangle> surface_triangles(const TetMesh& mesh, par::Policy policy = {});
+
+}  // namespace hfr
+
+#endif

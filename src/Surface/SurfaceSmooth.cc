@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surface/SurfaceSmooth.hh"
+
+#include <algorithm>
+#include <cmath>
+
+#include "Operators/MaxMinForm.hh"
+#include "Operators/Metrics.hh"
+
+namespace hfr {
+namespace {
+
+constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
+
+/// Two directions of length 1 that are normal to n and to each other. Exact zeros stay zeros, so that a
+/// vertex of a facet along two axes keeps the third coordinate to the last bit.
+std::array<Vec3, 2> tangents(Vec3 n) {
+  const Vec3 a = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  Vec3 u = a.x <= a.y && a.x <= a.z ? Vec3{0, n.z, -n.y}
+           : a.y <= a.z             ? Vec3{-n.z, 0, n.x}
+                                    : Vec3{n.y, -n.x, 0};
+  u = (1.0 / norm(u)) * u;
+  return {u, cross(n, u)};
+}
+
+/// The surface round a vertex, before and after a move.
+struct Patch {
+  FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
+  FixedVector<Triangle, kMaxFaces> dead;
+  FixedVector<std::uint8_t, kMaxFaces> corner;  // of the vertex
+
+  /// False when there are too many faces.
+  bool gather(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
+    for (HalfFaceHandle h : link) {
+      for (HalfFaceHandle g : mesh.cell_halffaces(cell_of(h))) {
+        if (g == h || !mesh.is_boundary(g)) continue;
+        const auto f = mesh.halfface_vertices(g);
+        if (faces.full()) return false;
+        faces.push_back({f[0], f[2], f[1]});
+        dead.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
+        corner.push_back(f[0] == v ? 0 : f[2] == v ? 1 : 2);
+      }
+    }
+    return true;
+  }
+  bool keeps_shape(const SurfaceMesh& surface, Vec3 x) const {
+    FixedVector<Triangle, kMaxFaces> born = dead;
+    for (std::size_t i = 0; i < born.size(); ++i) born[i][corner[i]] = x;
+    return surface.keeps_shape(faces, dead, born);
+  }
+  /// True when the faces lie in one plane, as far as rounding lets them: such a vertex stays in it.
+  bool is_flat() const {
+    constexpr double kLevel = 1.0 - 1e-9;
+    const Vec3 n = normal();
+    return std::all_of(dead.begin(), dead.end(), [&](const Triangle& t) {
+      const Vec3 m = cross(t[1] - t[0], t[2] - t[0]);
+      return dot(n, m) >= kLevel * norm(m);
+    });
+  }
+  Vec3 normal() const {
+    Vec3 sum;
+    for (const Triangle& t : dead) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
+    const double length = norm(sum);  // by division: along an axis it is that axis to the last bit
+    return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : sum;
+  }
+};
+
+}  // namespace
+
+template <class Metric>
+std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle v,
+                                              std::span<const HalfFaceHandle> link, const Metric& metric,
+                                              std::span<const double> quality) const {
+  const Freedom& freedom = surface->freedom(v);
+  const bool on_curve = freedom.kind == SurfaceKind::kCurve;
+  if (!on_curve && freedom.kind != SurfaceKind::kFacet) return std::nullopt;
+  Patch patch;
+  if (!patch.gather(mesh, v, link)) return std::nullopt;
+  const Vec3 origin = mesh.point(v);
+  Vec3 axis = freedom.axis;
+  if (!on_curve && surface->options().mode == SurfaceMode::kFree) axis = patch.normal();
+  if (axis == Vec3{}) return std::nullopt;
+  // In the plane normal to the axis the volume stays; a little outwards makes up for what swaps have cost.
+  const bool bulges = surface->options().mode == SurfaceMode::kFree && !on_curve && !patch.is_flat();
+  const Vec3 lift = bulges ? surface->outward() * axis : Vec3{};
+
+  Move move;
+  move.old_worst = worst_of(link, quality);
+  double worst_now = move.old_worst;
+  Vec3 place = origin;
+  const auto consider = [&](Vec3 x) {
+    const Vec3 candidate = surface->project(v, x + lift);
+    const double worst = worst_with(mesh, v, link, candidate, metric, worst_now);
+    if (!(worst > worst_now)) return false;
+    worst_now = worst;
+    place = candidate;
+    return true;
+  };
+  constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
+  if (kMeasuresAngles && move.old_worst > 0) {
+    MaxMinForm form(origin, MaxMinForm::kAnglesOf<Metric>);
+    form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
+    for (HalfFaceHandle h : link) {
+      const auto f = mesh.halfface_vertices(h);
+      form.add(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]));
+    }
+    consider(form.ascend(origin, iterations));
+  }
+  if (place == origin) {
+    double length = 0;
+    for (HalfFaceHandle h : link)
+      for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - origin);
+    double radius = 0.5 * length / (3.0 * static_cast<double>(link.size()));
+    const auto uv = tangents(axis);
+    for (int level = 0; level < halvings;) {
+      const Vec3 centre = place;
+      bool better = false;
+      if (on_curve) {
+        for (double s : {1.0, -1.0}) better = consider(centre + (s * radius) * axis) || better;
+      } else {
+        for (int i = -1; i <= 1; ++i)
+          for (int j = -1; j <= 1; ++j)
+            if (i != 0 || j != 0)
+              better = consider(centre + radius * ((i * 1.0) * uv[0] + (j * 1.0) * uv[1])) || better;
+      }
+      if (better) continue;
+      radius *= 0.5;
+      ++level;
+    }
+  }
+  // Where the shape forbids the place, one nearer by may do.
+  for (int i = 0; i < 3 && place != origin; ++i) {
+    const double worst = worst_with(mesh, v, link, place, metric, move.old_worst);
+    if (worst > move.old_worst && patch.keeps_shape(*surface, place)) {
+      move.target = place;
+      move.new_worst = worst;
+      return move;
+    }
+    place = surface->project(v, origin + 0.5 * (place - origin));
+  }
+  return std::nullopt;
+}
+
+template <class Metric>
+std::optional<Move> SurfaceOffset::operator()(const TetMesh& mesh, VertexHandle v,
+                                              std::span<const HalfFaceHandle> link, const Metric& metric,
+                                              std::span<const double> quality) const {
+  constexpr double kTrifle = 0.97;   // of a cell's decision value
+  constexpr double kFarAbove = 1.1;  // the worst
+  if (surface->freedom(v).kind != SurfaceKind::kFacet) return std::nullopt;
+  Patch patch;
+  if (!patch.gather(mesh, v, link) || patch.is_flat()) return std::nullopt;
+  Move move;
+  move.old_worst = worst_of(link, quality);
+  move.target = mesh.point(v) + surface->outward() * patch.normal();
+  const double floor = move.old_worst > kFarAbove * worst
+                           ? std::max(kFarAbove * worst, kTrifle * move.old_worst)
+                           : move.old_worst;
+  move.new_worst = worst_with(mesh, v, link, move.target, metric, floor);
+  if (!(move.new_worst > floor) || !patch.keeps_shape(*surface, move.target)) return std::nullopt;
+  return move;
+}
+
+HFR_INSTANTIATE_SEARCH(SurfaceSearch)
+HFR_INSTANTIATE_SEARCH(SurfaceOffset)
+
+}  // namespace hfr

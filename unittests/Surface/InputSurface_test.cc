@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surface/InputSurface.hh"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "Operators/Clusters.hh"
+
+namespace hfr::test {
+namespace {
+
+std::vector<std::array<Vec3, 3>> random_triangles(std::size_t n, Engine& engine) {
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 at = random_point(engine, -1, 1);
+    triangles.push_back({at, at + random_point(engine, -0.2, 0.2), at + random_point(engine, -0.2, 0.2)});
+  }
+  return triangles;
+}
+
+TEST(NearestPoint, IsNoFurtherThanAnyPointOfTheTriangle) {
+  Engine engine(1);
+  for (int i = 0; i < 300; ++i) {
+    const auto t = random_triangles(1, engine)[0];
+    const Vec3 x = t[0] + random_point(engine, -0.4, 0.4);
+    const double distance = norm(nearest_point(t, x) - x);
+    double least = std::numeric_limits<double>::infinity();
+    constexpr int kCuts = 40;
+    for (int u = 0; u <= kCuts; ++u)
+      for (int v = 0; u + v <= kCuts; ++v)
+        least = std::min(
+            least, norm(t[0] + (1.0 * u / kCuts) * (t[1] - t[0]) + (1.0 * v / kCuts) * (t[2] - t[0]) - x));
+    EXPECT_LE(distance, least + 1e-12);
+    EXPECT_GE(distance, least - 0.02);  // a step of the grid
+  }
+}
+
+TEST(NearestPoint, OfALevelTriangleIsLevelToTheLastBit) {
+  const double z = 0.1 + 0.2;
+  const std::array<Vec3, 3> t = {{{0.1, 0.3, z}, {1.7, 0.2, z}, {0.4, 2.9, z}}};
+  Engine engine(2);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(nearest_point(t, random_point(engine, -1, 3)).z, z);
+}
+
+TEST(InputSurface, FindsWhatASearchOfAllTrianglesFinds) {
+  Engine engine(3);
+  const auto triangles = random_triangles(200, engine);
+  const InputSurface surface(triangles);
+  EXPECT_EQ(surface.size(), triangles.size());
+  std::size_t n_within = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 x = random_point(engine, -1.5, 1.5);
+    const Vec3 side = random_point(engine, -1, 1);
+    double least = std::numeric_limits<double>::infinity();
+    double least_of_side = least;
+    for (std::size_t k = 0; k < triangles.size(); ++k) {
+      const double distance = norm(nearest_point(triangles[k], x) - x);
+      least = std::min(least, distance);
+      if (dot(surface.normal(k), side) >= 0) least_of_side = std::min(least_of_side, distance);
+    }
+    EXPECT_DOUBLE_EQ(surface.nearest(x).distance, least);
+    constexpr double kLimit = 0.3;
+    const InputSurface::Hit hit = surface.nearest_within(x, kLimit);
+    n_within += least <= kLimit;
+    EXPECT_EQ(hit.distance <= kLimit, least <= kLimit);
+    if (least <= kLimit) {
+      EXPECT_DOUBLE_EQ(hit.distance, least);
+    }
+    EXPECT_DOUBLE_EQ(surface.nearest_within(x, 10, side).distance, least_of_side);
+  }
+  EXPECT_GT(n_within, 20U) << "the limit is never met";
+  EXPECT_LT(n_within, 180U) << "the limit is always met";
+}
+
+TEST(InputSurface, OfOneTriangleOrOneSegmentAnswersToo) {
+  const std::vector<std::array<Vec3, 3>> triangle = {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}};
+  EXPECT_DOUBLE_EQ(InputSurface(triangle).nearest({0.2, 0.2, 3}).distance, 3);
+  const std::vector<std::array<Vec3, 2>> segment = {{{{0, 0, 0}, {1, 0, 0}}}};
+  EXPECT_EQ(InputSurface(segment).nearest({0.25, 1, 0}).point, (Vec3{0.25, 0, 0}));
+}
+
+}  // namespace
+}  // namespace hfr::test

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surface/SurfaceMesh.hh"
+
+#include <gtest/gtest.h>
+
+#include "HalfFace/Check.hh"
+#include "HalfFace/Errors.hh"
+#include "Operators/Clusters.hh"
+
+namespace hfr::test {
+namespace {
+
+SurfaceOptions flat() {
+  SurfaceOptions options;
+  options.mode = SurfaceMode::kFlat;
+  return options;
+}
+SurfaceOptions free_within(double hausdorff) {
+  SurfaceOptions options;
+  options.mode = SurfaceMode::kFree;
+  options.hausdorff = hausdorff;
+  return options;
+}
+
+/// A box without some of its cells, chosen at random: pinched vertices and edges.
+TetMesh torn(std::uint64_t seed) {
+  const generate::Arrays arrays = generate::box({3, 3, 3});
+  std::vector<Corners> kept;
+  for (std::size_t i = 0; i < arrays.cells.size(); ++i)
+    if (generate::random_unit(seed, i) < 0.6) kept.push_back(arrays.cells[i]);
+  return build(arrays.points, kept);
+}
+
+VertexHandle at(const TetMesh& mesh, Vec3 p) {
+  for (VertexHandle v : mesh.vertices())
+    if (norm(mesh.point(v) - p) < 1e-12) return v;
+  return {};
+}
+
+TEST(SurfaceMesh, BoxHasCornersEdgesAndFacets) {
+  const TetMesh mesh = built(generate::box({3, 3, 3}));
+  for (const SurfaceOptions& options : {flat(), free_within(0.1)}) {
+    const SurfaceMesh surface(mesh, options);
+    EXPECT_EQ(surface.n_faces(), 6U * 9 * 2);
+    EXPECT_EQ(surface.n_feature_edges(), 12U * 3);
+    EXPECT_EQ(surface.n_vertices(SurfaceKind::kFixed), 8U);
+    EXPECT_EQ(surface.n_vertices(SurfaceKind::kCurve), 12U * 2);
+    EXPECT_EQ(surface.n_vertices(SurfaceKind::kFacet), 6U * 4);
+    EXPECT_TRUE(surface.in_step(mesh));
+  }
+}
+
+TEST(SurfaceMesh, FacesAndHalfFacesAreLinkedBothWays) {
+  const TetMesh mesh = jittered(3, 0.2, 1);
+  SurfaceMesh surface(mesh, flat());
+  for (std::size_t f = 0; f < surface.n_faces(); ++f) {
+    const HalfFaceHandle h = surface.halfface(mesh, f);
+    ASSERT_TRUE(h.is_valid());
+    EXPECT_TRUE(mesh.is_boundary(h));
+    EXPECT_EQ(surface.face(mesh, h), f);
+  }
+  for (HalfFaceHandle h : mesh.halffaces()) {
+    if (mesh.is_boundary(h)) continue;
+    EXPECT_EQ(surface.face(mesh, h), SurfaceMesh::kNoFace);
+    break;
+  }
+}
+
+TEST(SurfaceMesh, OnlyDiagonalsWithinAFacetMayBeSwapped) {
+  const TetMesh mesh = built(generate::box({2, 2, 2}));
+  const SurfaceMesh surface(mesh, flat());
+  std::size_t n_diagonals = 0;
+  for (EdgeHandle e : mesh.boundary_edges()) {
+    const auto [a, b] = mesh.edge_vertices(e);
+    const Vec3 along = mesh.point(b) - mesh.point(a);
+    const int n_axes = (along.x != 0) + (along.y != 0) + (along.z != 0);
+    if (surface.is_feature(a, b)) {
+      EXPECT_FALSE(surface.may_swap(a, b));
+    }
+    if (n_axes == 2 && surface.may_swap(a, b)) ++n_diagonals;
+  }
+  EXPECT_EQ(n_diagonals, 6U * 4);
+}
+
+TEST(SurfaceMesh, CollapsesGoAlongTheSurfaceAndAlongItsEdges) {
+  const TetMesh mesh = built(generate::box({4, 4, 4}));
+  SurfaceMesh surface(mesh, flat());
+  std::vector<VertexHandle> targets;
+  surface.collapse_targets(at(mesh, {0, 0, 0}), targets);
+  EXPECT_TRUE(targets.empty()) << "a corner must stay";
+  surface.collapse_targets(at(mesh, {0.5, 0, 0}), targets);
+  ASSERT_EQ(targets.size(), 2U);
+  for (VertexHandle t : targets) EXPECT_EQ(mesh.point(t).y + mesh.point(t).z, 0);
+  targets.clear();
+  surface.collapse_targets(at(mesh, {0.5, 0.5, 0}), targets);
+  EXPECT_EQ(targets.size(), 6U);
+  targets.clear();
+  surface.collapse_targets(at(mesh, {0.5, 0.5, 0.5}), targets);
+  EXPECT_TRUE(targets.empty()) << "an inner vertex is not the surface's";
+}
+
+TEST(SurfaceMesh, PatchBordersAreFeatures) {
+  TetMesh mesh = built(generate::box({4, 4, 4}));
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) {
+    const auto f = mesh.halfface_vertices(h);
+    const Vec3 sum = mesh.point(f[0]) + mesh.point(f[1]) + mesh.point(f[2]);
+    if (sum.z == 0) mesh.labels().faces.set(f, sum.x < 1.5 ? 1 : 2);
+  }
+  const SurfaceMesh surface(mesh, flat());
+  EXPECT_EQ(surface.n_feature_edges(), 12U * 4 + 4);
+  EXPECT_EQ(surface.freedom(at(mesh, {0.5, 0.5, 0})).kind, SurfaceKind::kCurve);
+  EXPECT_EQ(surface.freedom(at(mesh, {0.5, 0, 0})).kind, SurfaceKind::kFixed);
+}
+
+TEST(SurfaceMesh, WhatTheUserHasLockedStays) {
+  TetMesh mesh = built(generate::box({4, 4, 4}));
+  const VertexHandle middle = at(mesh, {0.5, 0.5, 0});
+  const auto kind_with = [&](auto&& lock) {
+    SurfaceOptions options = flat();
+    lock(options);
+    return SurfaceMesh(mesh, options).freedom(middle).kind;
+  };
+  const VertexHandle next = at(mesh, {0.75, 0.5, 0});
+  EXPECT_EQ(kind_with([](SurfaceOptions&) {}), SurfaceKind::kFacet);
+  EXPECT_EQ(kind_with([&](SurfaceOptions& o) { o.fixed_vertices = {middle}; }), SurfaceKind::kFixed);
+  EXPECT_EQ(kind_with([&](SurfaceOptions& o) { o.fixed_edges = {{middle, next}}; }), SurfaceKind::kFixed);
+  std::array<VertexHandle, 3> face;
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) {
+    const auto f = mesh.halfface_vertices(h);
+    if (f[0] == middle || f[1] == middle || f[2] == middle) {
+      face = f;
+      mesh.labels().faces.set(f, 5);
+    }
+  }
+  EXPECT_EQ(kind_with([&](SurfaceOptions& o) { o.fixed_faces = {face}; }), SurfaceKind::kFixed);
+  EXPECT_EQ(kind_with([&](SurfaceOptions& o) { o.fixed_patches = {5}; }), SurfaceKind::kFixed);
+  mesh.labels().faces.clear();
+  mesh.set_fixed(middle);
+  EXPECT_EQ(kind_with([](SurfaceOptions&) {}), SurfaceKind::kFixed);
+}
+
+TEST(SurfaceMesh, InterfaceBelongsToTheSurfaceAndIsNeverSwapped) {
+  const TetMesh mesh = built(generate::two_region_box({4, 4, 4}));
+  const SurfaceMesh surface(mesh, flat());
+  EXPECT_EQ(surface.n_faces(), 6U * 16 * 2 + 16 * 2);
+  EXPECT_TRUE(surface.in_step(mesh));
+  const VertexHandle inside = at(mesh, {0.5, 0.5, 0.5});
+  EXPECT_EQ(surface.freedom(inside).kind, SurfaceKind::kFacet);
+  std::size_t n_edges = 0;
+  for (EdgeHandle e : mesh.edges()) {
+    const auto [a, b] = mesh.edge_vertices(e);
+    if (mesh.point(a).x != 0.5 || mesh.point(b).x != 0.5) continue;
+    ++n_edges;
+    EXPECT_FALSE(surface.may_swap(a, b));
+  }
+  EXPECT_GT(n_edges, 20U);
+}
+
+TEST(SurfaceMesh, PinchedSurfacesAreTakenApart) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const TetMesh mesh = torn(seed);
+    for (const SurfaceOptions& options : {flat(), free_within(0.05)}) {
+      const SurfaceMesh surface(mesh, options);
+      EXPECT_TRUE(surface.in_step(mesh)) << "seed " << seed;
+    }
+  }
+}
+
+TEST(SurfaceMesh, OptionsOutOfRangeAreRefused) {
+  const TetMesh mesh = built(generate::box({1, 1, 1}));
+  SurfaceOptions options = free_within(-1);
+  EXPECT_THROW(SurfaceMesh(mesh, options), InvalidInput);
+  options = flat();
+  options.feature_angle = 181;
+  EXPECT_THROW(SurfaceMesh(mesh, options), InvalidInput);
+}
+
+TEST(SurfaceDistance, OfSurfacesThatAreShiftedIsTheShift) {
+  const TetMesh mesh = built(generate::box({3, 3, 3}));
+  const std::vector<Triangle> here = surface_triangles(mesh);
+  ASSERT_EQ(here.size(), 108U);
+  std::vector<Triangle> there = here;
+  for (Triangle& t : there)
+    for (Vec3& p : t) p = p + Vec3{0.125, 0, 0};
+  EXPECT_NEAR(surface_distance(here, there, 0.1).hausdorff(), 0.125, 1e-15);
+  EXPECT_LT(surface_distance(here, here, 0.1).hausdorff(), 1e-15);
+  // A surface that lacks a part is near to the whole, but not the whole to it.
+  const SurfaceDistance part = surface_distance(std::span(here).first(18), here, 0.1);
+  EXPECT_LT(part.there, 1e-15);
+  EXPECT_GT(part.back, 0.5);
+}
+
+}  // namespace
+}  // namespace hfr::test
