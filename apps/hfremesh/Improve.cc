@@ -24,6 +24,7 @@ struct CommandLine {
   bool dry_run = false;
   bool progress = false;
   std::string ops, metric, smoother, compat;
+  std::string device;  ///< as device_choice_from_name() has it
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
   double time_limit = 0;     ///< 0 = none
@@ -42,6 +43,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
+  if (!line.device.empty()) options.device = device_choice_from_name(line.device);
   if (line.time_limit > 0) options.time_limit = line.time_limit;
   options.policy = common.policy();
   options.statistics = common.prints_table() || !common.json.empty();
@@ -58,6 +60,8 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["metric"] = metric_name(options.metric);
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
+  json["device"] = line.device.empty() ? "cpu" : line.device;
+  json["hybrid"] = options.hybrid;
   json["seed"] = options.seed;
   json["dry_run"] = line.dry_run;
   return json;
@@ -65,6 +69,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
 
 ExitCode exit_code_of(const Result& result) {
   if (result.stop == Stop::kCancelled) return ExitCode::kCancelled;
+  if (result.stop == Stop::kDeviceLost) return ExitCode::kDevice;
   if (result.goal_reached) return ExitCode::kDone;
   if (result.stop == Stop::kTimeLimit) return ExitCode::kLimit;
   return result.invalid_cells.empty() ? ExitCode::kGoalMissed : ExitCode::kInvalidCells;
@@ -74,6 +79,9 @@ ExitCode exit_code_of(const Result& result) {
 std::string shortfall(const Result& result, const ImproveOptions& options) {
   std::string text;
   if (result.stop == Stop::kCancelled) text = "cancelled; the mesh is the best so far";
+  if (result.stop == Stop::kDeviceLost)
+    text = fmt::format("the device failed, and the mesh is that of the last finished round: {}",
+                       result.device_note);
   if (result.stop == Stop::kTimeLimit && !result.goal_reached)
     text = "the time limit was met; the mesh is the best so far";
   if (!result.invalid_cells.empty())
@@ -93,6 +101,18 @@ Json outcome(const Result& result) {
   json["stop"] = stop_name(result.stop);
   json["n_invalid_cells"] = result.invalid_cells.size();
   json["invalid_cells"] = ids(result.invalid_cells);
+  return json;
+}
+
+Json device_json(const Result& result) {
+  Json json;
+  json["name"] = result.device.empty() ? Json() : Json(result.device);
+  json["note"] = result.device_note.empty() ? Json() : Json(result.device_note);
+  json["seconds_open"] = result.seconds_device;
+  json["kernels"] = Json::array();
+  for (const KernelTime& time : result.kernel_times)
+    json["kernels"].push_back(
+        {{"kernel", time.kernel}, {"launches", time.launches}, {"seconds", time.seconds}});
   return json;
 }
 
@@ -157,6 +177,8 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
                        {"statistics", seconds.statistics},
                        {"write", seconds.write}};
   report["result"] = outcome(result);
+  report["device"] = device_json(result);
+  if (!result.device_note.empty()) notes.push_back("no device, or not to the end: " + result.device_note);
   if (options.statistics) {
     report["before"] = to_json(result.before);
     report["after"] = to_json(result.after);
@@ -209,6 +231,16 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
   command->add_option("--compat", line->compat, "Run a published pipeline exactly: jpdc2013")
       ->type_name("NAME")
       ->check(CLI::IsMember({"jpdc2013"}));
+  command
+      ->add_option(
+          "--device", line->device,
+          "Where the large passes run: cpu, auto, opencl or opencl:PLATFORM.DEVICE; the output is the "
+          "same everywhere")
+      ->type_name("NAME");
+  command->add_flag("--hybrid", line->improve.hybrid,
+                    "On a device, smooth only, and reconnect on the processor");
+  command->add_flag("--profile", line->improve.device_tuning.profile,
+                    "Measure every kernel; in the JSON report");
   command->add_option("--seed", line->improve.seed, "Seed of the order among equal candidates")
       ->type_name("N");
   command->add_flag("--progress", line->progress, "Print progress as lines on stderr");

@@ -5,10 +5,12 @@
 #include <array>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "Device/DeviceMesh.hh"
 #include "HalfFace/TetMesh.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
@@ -63,6 +65,7 @@ class Stage {
 
   /// Forgets what was looked at, so that a pass with a wider focus or other operators sees every cell again.
   void look_again() {
+    to_host();
     looked_.fill(0);
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
   }
@@ -83,6 +86,10 @@ class Stage {
   template <Cluster kCluster>
   std::size_t star_pass(int iteration);
 
+  /// Brings the mesh back from the device, where passes may have left it; at the end of a stage, at the
+  /// latest.
+  void to_host();
+
  private:
   enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kKinds };
   /// As in a list of operators: variants of one are reported as one.
@@ -91,6 +98,7 @@ class Stage {
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {
+    to_host();
     const auto bit = static_cast<std::uint8_t>(1U << kind);
     if (focus.everything()) {
       return Worklist(mesh_, options_.policy, [&](CellHandle c) {
@@ -124,6 +132,17 @@ class Stage {
 
   void report(Kind kind, int iteration, const RoundCounts& counts, double seconds);
 
+  // Passes on the device: StageOnDevice.hh.
+  /// True, with the mesh on the device, when passes of this kind run there.
+  bool on_device(Kind kind);
+  DeviceLook device_look(Kind kind, Focus focus);
+  /// rounds() and smooth_pass() on the device; nothing when it failed and the processor has to go on.
+  std::optional<std::size_t> device_rounds(Kind kind, int iteration, Focus focus);
+  std::optional<std::size_t> device_smooth(int iteration, Focus focus);
+  void device_count();
+  /// Does on the processor what was done on the device since the mesh was uploaded.
+  void lose_device(const std::string& why);
+
   TetMesh& mesh_;
   Workspace& work_;
   const ImproveOptions& options_;
@@ -135,6 +154,17 @@ class Stage {
   std::vector<Index> poor_;  // below poor_below_, but for what work_ has as touched
   double poor_below_ = -std::numeric_limits<double>::infinity();
   std::array<std::uint32_t, kKinds> looked_{};
+
+  struct DonePass {
+    Kind kind;
+    Focus focus;
+    std::size_t rounds;
+  };
+  bool resident_ = false;                             // the device has the mesh, the host an older one
+  std::vector<DonePass> done_there_;                  // since it was uploaded
+  std::array<std::uint32_t, kKinds> looked_there_{};  // looked_ and the clock at that time
+  std::uint32_t clock_there_ = 0;
+  std::optional<std::size_t> replay_;  // rounds of a pass that is being done again
 };
 
 }  // namespace hfr
