@@ -58,7 +58,8 @@ run() {
     code=0
     "$tool" "$mesh" -o "$output" -q --json "$work/try.json" "$@" || code=$?
     [ $code -le 4 ] || exit $code
-    seconds=$(python3 -c 'import json,sys; r=json.load(open(sys.argv[1])); print(r["seconds"]["improve"] - r["device"]["seconds_open"])' "$work/try.json")
+    seconds=$(python3 -c 'import json,sys; r=json.load(open(sys.argv[1])); print(r["seconds"]["improve"] - r["device"]["seconds_open"])' \
+      "$work/try.json")
     if [ -z "$best" ] || python3 -c 'import sys; sys.exit(float(sys.argv[1]) >= float(sys.argv[2]))' "$seconds" "$best"; then
       best=$seconds
       mv "$work/try.json" "$work/$label.json"

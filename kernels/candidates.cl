@@ -223,6 +223,14 @@ KERNEL void slot_numbers(__global const uint* counters, uint capacity, __global 
   }
 }
 
+// Word by word: a copy of the whole is more than tools that watch what is initialised can follow.
+static void store_cell(__global cell_t* to, const cell_t* from) {
+  for (uint j = 0; j < 4; ++j) {
+    to->v[j] = from->v[j];
+    to->mate[j] = from->mate[j];
+  }
+}
+
 // Slot of cell number k that a winner makes: its dead cells' first, then the free list from its back, then
 // new ones.
 static uint slot_of(uint k, uint n_dead, __global const uint* scope, uint extra_at,

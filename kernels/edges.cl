@@ -4,21 +4,15 @@
 // word.
 #include "candidates.cl"
 
-// Next cell counter-clockwise about a->b; (a, b, p, q) is positive. An invalid cell at the boundary.
-typedef struct {
-  uint cell, p, q;
-} place_t;
-
-static place_t next_in_ring(__global const cell_t* cells, place_t at) {
-  place_t next;
-  const uint m = cells[at.cell].mate[at.p];
-  next.cell = INVALID;
-  next.p = next.q = 0;
-  if (m == INVALID) return next;
-  next.cell = m / 4;
-  next.q = m % 4;
-  next.p = own_corner(&cells[m / 4], cells[at.cell].v[at.q]);
-  return next;
+// Steps to the next cell counter-clockwise about a->b, where corners p and q make (a, b, p, q) positive; to
+// an invalid one at the boundary.
+static void step_in_ring(__global const cell_t* cells, uint* cell, uint* p, uint* q) {
+  const uint m = cells[*cell].mate[*p];
+  const uint w = cells[*cell].v[*q];
+  *cell = m == INVALID ? INVALID : m / 4;
+  if (m == INVALID) return;
+  *q = m % 4;
+  *p = own_corner(&cells[m / 4], w);
 }
 
 // Worst of the two cells of ring triangle (x, y, z), which is counter-clockwise about a->b: positive with b,
@@ -95,23 +89,22 @@ KERNEL void search_edges(__global const cell_t* cells, __global const double* po
     const uint c = list[item / 6];
     const uint edge = item % 6;
     uint ring[HFR_SMALL_RING], scope[HFR_SMALL_RING];
-    place_t at;
-    at.cell = c;
-    at.p = kEdgeOpposite[edge][0];
-    at.q = kEdgeOpposite[edge][1];
+    uint at = c;
+    uint corner_p = kEdgeOpposite[edge][0];
+    uint corner_q = kEdgeOpposite[edge][1];
     uint n = 0;
     double old_worst = HFR_INFINITY;
     do {
-      if (at.cell < c && listed[at.cell]) break;  // that cell names the edge
+      if (at < c && listed[at]) break;  // that cell names the edge
       if (n < HFR_SMALL_RING) {
-        scope[n] = at.cell;
-        ring[n] = cells[at.cell].v[at.p];
-        old_worst = hfr_lesser(old_worst, quality[at.cell]);
+        scope[n] = at;
+        ring[n] = cells[at].v[corner_p];
+        old_worst = hfr_lesser(old_worst, quality[at]);
       }
       ++n;
-      at = next_in_ring(cells, at);
-    } while (at.cell != INVALID && at.cell != c);
-    if (at.cell != c || n == 0) continue;
+      step_in_ring(cells, &at, &corner_p, &corner_q);
+    } while (at != INVALID && at != c);
+    if (at != c || n == 0) continue;
     ++n_seeds;
     if (n < 3) continue;
     const uint seed = 6 * c + edge;
@@ -147,20 +140,19 @@ KERNEL void search_large_rings(__global const cell_t* cells, __global const doub
     const uint c = seed / 6;
     const uint edge = seed % 6;
     uint ring[HFR_LARGE_RING], scope[HFR_LARGE_RING];
-    place_t at;
-    at.cell = c;
-    at.p = kEdgeOpposite[edge][0];
-    at.q = kEdgeOpposite[edge][1];
+    uint at = c;
+    uint corner_p = kEdgeOpposite[edge][0];
+    uint corner_q = kEdgeOpposite[edge][1];
     uint n = 0;
     double old_worst = HFR_INFINITY;
     do {
       if (n == HFR_LARGE_RING) break;
-      scope[n] = at.cell;
-      ring[n++] = cells[at.cell].v[at.p];
-      old_worst = hfr_lesser(old_worst, quality[at.cell]);
-      at = next_in_ring(cells, at);
-    } while (at.cell != c);
-    if (at.cell != c) continue;  // larger still
+      scope[n] = at;
+      ring[n++] = cells[at].v[corner_p];
+      old_worst = hfr_lesser(old_worst, quality[at]);
+      step_in_ring(cells, &at, &corner_p, &corner_q);
+    } while (at != c);
+    if (at != c) continue;  // larger still
     double best[HFR_LARGE_RING * HFR_LARGE_RING];
     uchar apex[HFR_LARGE_RING * HFR_LARGE_RING];
     hfr_real3 p[HFR_LARGE_RING];
@@ -281,8 +273,8 @@ KERNEL void commit_edges(__global const uint* counters, uint capacity, __global 
       }
       if (has_data && 2 * t >= n) origin[up] = origin[scope[0]];
       if (has_data && 2 * t + 1 >= n) origin[down] = origin[scope[0]];
-      cells[up] = upper;
-      cells[down] = lower;
+      store_cell(&cells[up], &upper);
+      store_cell(&cells[down], &lower);
       atomic_add(&star_size[ring[i]], 2u);
       atomic_add(&star_size[ring[k]], 2u);
       atomic_add(&star_size[ring[j]], 2u);

@@ -78,7 +78,7 @@ KERNEL void commit_faces(__global const uint* counters, uint capacity, __global 
       born.mate[1] = behind_bottom[k];  // opposite the upper apex
       born.mate[2] = 4 * slot[(k + 1) % 3] + 3;
       born.mate[3] = 4 * slot[(k + 2) % 3] + 2;
-      cells[slot[k]] = born;
+      store_cell(&cells[slot[k]], &born);
       moved[old_top[k]] = 4 * slot[k];
       moved[old_bottom[k]] = 4 * slot[k] + 1;
       hooks[f[k]] = INVALID;  // its number of cells is the same: two go, two come

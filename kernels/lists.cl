@@ -2,6 +2,14 @@
 // Work lists, prefix sums, and the figures of a whole mesh.
 #include "common.cl"
 
+KERNEL void fill_words(__global uint* array, uint first, uint n, uint value) {
+  FOR_EACH(i, n) { array[first + i] = value; }
+}
+
+KERNEL void fill_bytes(__global uchar* array, uint first, uint n, uint value) {
+  FOR_EACH(i, n) { array[first + i] = (uchar)value; }
+}
+
 // Flags the cells that an operator has to look at, and counts them by work-group. With everything_bit, those
 // whose pending bit is set; else those below `below` with a vertex that has changed since.
 KERNEL void list_cells(__global const cell_t* cells, __global const double* quality,

@@ -3,7 +3,7 @@
 // share no cell.
 #include "candidates.h"
 #include "common.cl"
-#include "newton.h"
+#include "newton_step.h"
 
 // Halvings of the candidate search's radius, and Newton's iterations at most.
 #define HALVINGS 10
@@ -20,7 +20,7 @@ static double star_worst(const hfr_star_cell* star, uint n, hfr_real3 x, double 
 static double largest_measure(const hfr_star_cell* star, uint n, hfr_real3 x, double ceiling_value) {
   double top = 0.0;
   for (uint k = 0; k < n && top < ceiling_value; ++k) {
-    const double m = hfr_newton_measure(star[k], x);
+    const double m = hfr_star_m(star[k], x);
     if (m > top) top = m;
   }
   return top;
@@ -30,8 +30,8 @@ static hfr_real3 newton_place(const hfr_star_cell* star, uint n) {
   hfr_real3 place = hfr_make3(0.0, 0.0, 0.0);
   double now = largest_measure(star, n, place, HFR_INFINITY);
   for (int i = 0; i < ITERATIONS; ++i) {
-    hfr_newton_sums sums = hfr_newton_zero();
-    for (uint k = 0; k < n; ++k) sums = hfr_newton_add(sums, star[k], place, now);
+    hfr_newton_share sums = hfr_newton_zero();
+    for (uint k = 0; k < n; ++k) sums = hfr_newton_sum(sums, hfr_star_newton(star[k], place, now));
     const hfr_newton_step newton = hfr_newton_solve(sums);
     if (!newton.ok) break;
     double length = 1.0;

@@ -239,6 +239,11 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->type_name("NAME");
   command->add_flag("--hybrid", line->improve.hybrid,
                     "On a device, smooth only, and reconnect on the processor");
+  command
+      ->add_option("--work-group", line->improve.device_tuning.work_group,
+                   "Work-items of a group on a device, a power of two; 0 chooses")
+      ->type_name("N")
+      ->check(CLI::IsMember({0, 1, 2, 4, 8, 16, 32, 64, 128, 256}));
   command->add_flag("--profile", line->improve.device_tuning.profile,
                     "Measure every kernel; in the JSON report");
   command->add_option("--seed", line->improve.seed, "Seed of the order among equal candidates")

@@ -20,7 +20,6 @@ enum ClFunction {
   kClCreateProgramWithBinary,
   kClCreateProgramWithSource,
   kClEnqueueCopyBuffer,
-  kClEnqueueFillBuffer,
   kClEnqueueNDRangeKernel,
   kClEnqueueReadBuffer,
   kClEnqueueWriteBuffer,
@@ -74,7 +73,6 @@ struct ClForward<R(Args...)> {
 #define clCreateProgramWithBinary HFR_CL(clCreateProgramWithBinary, kClCreateProgramWithBinary)
 #define clCreateProgramWithSource HFR_CL(clCreateProgramWithSource, kClCreateProgramWithSource)
 #define clEnqueueCopyBuffer HFR_CL(clEnqueueCopyBuffer, kClEnqueueCopyBuffer)
-#define clEnqueueFillBuffer HFR_CL(clEnqueueFillBuffer, kClEnqueueFillBuffer)
 #define clEnqueueNDRangeKernel HFR_CL(clEnqueueNDRangeKernel, kClEnqueueNDRangeKernel)
 #define clEnqueueReadBuffer HFR_CL(clEnqueueReadBuffer, kClEnqueueReadBuffer)
 #define clEnqueueWriteBuffer HFR_CL(clEnqueueWriteBuffer, kClEnqueueWriteBuffer)

@@ -14,9 +14,10 @@ namespace {
 
 constexpr std::uint64_t kMagic = 0x31424c4352464800ULL;  // file format 1
 
-std::uint64_t fnv1a(const std::string& text) {
+template <class Bytes>
+std::uint64_t fnv1a(const Bytes& bytes) {
   std::uint64_t h = 0xcbf29ce484222325ULL;
-  for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  for (const auto c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
   return h;
 }
 
@@ -61,14 +62,15 @@ fs::path cache_folder() {
 
 std::optional<std::vector<unsigned char>> load_binary(const std::string& key) {
   std::ifstream in(file_of(key), std::ios::binary);
-  std::uint64_t head[3] = {0, 0, 0};  // magic, size of the key, size of the binary
+  std::uint64_t head[4] = {0, 0, 0, 0};  // magic, size of the key, size and hash of the binary
   if (!in.read(reinterpret_cast<char*>(head), sizeof head) || head[0] != kMagic || head[1] != key.size())
     return std::nullopt;
   std::string stored(key.size(), '\0');
   if (!in.read(stored.data(), static_cast<std::streamsize>(stored.size())) || stored != key)
     return std::nullopt;
   std::vector<unsigned char> binary{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (binary.size() != head[2]) return std::nullopt;
+  // Drivers may end the program over a binary that is damaged.
+  if (binary.size() != head[2] || fnv1a(binary) != head[3]) return std::nullopt;
   return binary;
 }
 
@@ -79,7 +81,7 @@ void save_binary(const std::string& key, const std::vector<unsigned char>& binar
   std::error_code error;
   {
     std::ofstream out(temporary, std::ios::binary);
-    const std::uint64_t head[3] = {kMagic, key.size(), binary.size()};
+    const std::uint64_t head[4] = {kMagic, key.size(), binary.size(), fnv1a(binary)};
     out.write(reinterpret_cast<const char*>(head), sizeof head);
     out.write(key.data(), static_cast<std::streamsize>(key.size()));
     out.write(reinterpret_cast<const char*>(binary.data()), static_cast<std::streamsize>(binary.size()));

@@ -63,12 +63,12 @@ class Queue {
     checked("reading from the device",
             [&] { queue_.enqueueReadBuffer(array.buffer, CL_TRUE, 0, n * sizeof(T), items); });
   }
-  /// Items [first, first + n) become `value`.
-  template <class T>
-  void fill(DeviceArray<T>& array, T value, std::size_t first, std::size_t n) {
-    if (n == 0) return;
-    checked("filling a buffer",
-            [&] { queue_.enqueueFillBuffer(array.buffer, value, first * sizeof(T), n * sizeof(T)); });
+  /// Items [first, first + n) become `value`. By a kernel: tools that watch what is initialised see it.
+  void fill(DeviceArray<cl_uint>& array, cl_uint value, std::size_t first, std::size_t n) {
+    launch("fill_words", array, static_cast<cl_uint>(first), static_cast<cl_uint>(n), value);
+  }
+  void fill(DeviceArray<cl_uchar>& array, cl_uchar value, std::size_t first, std::size_t n) {
+    launch("fill_bytes", array, static_cast<cl_uint>(first), static_cast<cl_uint>(n), cl_uint{value});
   }
 
   /// Runs a kernel over all work-items with the arguments: DeviceArray, cl_uint, cl_ulong or double.

@@ -218,10 +218,9 @@ TEST_P(OnDevice, MeshBeyondTheMemoryIsRefusedWithFigures) {
   EXPECT_NO_THROW(device_->require_room(1000, 5000));
 }
 
-INSTANTIATE_TEST_SUITE_P(Tunings, OnDevice,
-                         testing::Values(DeviceTuning{}, DeviceTuning{1, 3, false},
-                                         DeviceTuning{32, 5, true}),
-                         [](const auto& info) { return "Group" + std::to_string(info.param.work_group); });
+INSTANTIATE_TEST_SUITE_P(
+    Tunings, OnDevice, testing::Values(DeviceTuning{}, DeviceTuning{1, 3, false}, DeviceTuning{32, 5, true}),
+    [](const auto& tuning) { return "Group" + std::to_string(tuning.param.work_group); });
 
 }  // namespace
 }  // namespace hfr::test

@@ -37,7 +37,7 @@ TEST_F(ProgramCache, KeyOfTheSameHashIsToldApart) {
   save_binary("key", {1, 2, 3});
   ASSERT_EQ(files().size(), 1U);
   std::fstream file(files()[0], std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(24);
+  file.seekp(32);
   file.write("kez", 3);
   file.close();
   EXPECT_FALSE(load_binary("key"));

@@ -109,6 +109,11 @@ TEST_F(Devices, BuildErrorShowsTheLog) {
   if (!has_device()) GTEST_SKIP() << "there is no OpenCL device";
   expect_refused(failing("HFR_CACHE_DIR=$PWD/cache HFR_FAIL_BUILD=1"),
                  "clBuildProgram failed with CL_BUILD_PROGRAM_FAILURE");
+  EXPECT_THAT(tool_
+                  .shell(failing("HFR_CACHE_DIR=$PWD/cache HFR_FAIL_BUILD=1") +
+                         "$TOOL in.mesh -o out.mesh -q --device opencl")
+                  .err,
+              HasSubstr("no_such_word"));
 }
 
 TEST_F(Devices, MeshBeyondTheMemoryIsRefused) {
