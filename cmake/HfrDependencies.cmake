@@ -1,10 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Everything comes from the system; nothing is downloaded at configure time. scripts/install-deps.sh installs
 # the Debian packages of all of it.
-if(HFR_OPENCL)
-  message(FATAL_ERROR "hfremesh ${PROJECT_VERSION} has no OpenCL passes: configure with -DHFR_OPENCL=OFF")
-endif()
-
 find_package(ZLIB REQUIRED)
 find_package(tinyxml2 REQUIRED)
 find_package(fmt REQUIRED)
@@ -39,4 +35,13 @@ if(HFR_TESTS)
 endif()
 if(HFR_BENCH)
   find_package(benchmark REQUIRED)
+endif()
+if(HFR_OPENCL)
+  if(NOT HFR_OPENCL_FOUND)
+    message(FATAL_ERROR "HFR_OPENCL needs CL/cl.h and CL/opencl.hpp (Debian: opencl-headers "
+      "opencl-clhpp-headers), or configure with -DHFR_OPENCL=OFF")
+  endif()
+  if(HFR_INDEX64)
+    message(FATAL_ERROR "device code has 32-bit indices: configure with -DHFR_OPENCL=OFF or -DHFR_INDEX64=OFF")
+  endif()
 endif()

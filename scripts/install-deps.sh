@@ -7,11 +7,12 @@
 #   --tool   to build the library and the tool only
 #   --bench  the default, and the benchmarks
 #   --same-bits  the default, and the other compiler and thread library of scripts/same-bits.sh
-#   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr
+#   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr,
+#            oclgrind
 set -euo pipefail
 
 packages=(g++ cmake make pkg-config zlib1g-dev libfmt-dev libtinyxml2-dev nlohmann-json3-dev libcli11-dev
-  libeigen3-dev libopenmesh-dev)
+  libeigen3-dev libopenmesh-dev opencl-headers opencl-clhpp-headers ocl-icd-libopencl1 pocl-opencl-icd)
 tests=(libgtest-dev libgmock-dev)
 extra=()
 for option in "$@"; do
@@ -19,8 +20,8 @@ for option in "$@"; do
     --tool) tests=() ;;
     --bench) extra+=(libbenchmark-dev) ;;
     --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
-    --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr) ;;
-    *) sed -n '3,11s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr oclgrind) ;;
+    *) sed -n '3,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

@@ -23,6 +23,7 @@ Run add_check(CLI::App& app, CommonOptions& common);
 Run add_stats(CLI::App& app, CommonOptions& common);
 Run add_convert(CLI::App& app, CommonOptions& common);
 Run add_generate(CLI::App& app, CommonOptions& common);
+Run add_devices(CLI::App& app, CommonOptions& common);
 
 }  // namespace hfr::app
 

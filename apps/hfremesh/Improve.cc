@@ -27,6 +27,7 @@ struct CommandLine {
   std::string surface;
   std::vector<std::string> fix, periodic;
   double hausdorff = -1;  ///< negative = not given
+  std::string device;     ///< as device_choice_from_name() has it
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
   std::string ids;           ///< file for the cells that are stuck, empty for none
@@ -91,6 +92,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
   if (!line.rounds.empty()) options.rounds = rounds_from_name(line.rounds);
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
+  if (!line.device.empty()) options.device = device_choice_from_name(line.device);
   if (line.time_limit > 0) options.time_limit = line.time_limit;
   if (line.surface == "flat") options.surface.mode = SurfaceMode::kFlat;
   if (line.surface == "free") options.surface.mode = SurfaceMode::kFree;
@@ -114,6 +116,8 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
   json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
   json["surface"] = line.surface.empty() ? "frozen" : line.surface;
+  json["device"] = line.device.empty() ? "cpu" : line.device;
+  json["hybrid"] = options.hybrid;
   json["seed"] = options.seed;
   json["dry_run"] = line.dry_run;
   return json;
@@ -121,6 +125,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
 
 ExitCode exit_code_of(const Result& result) {
   if (result.stop == Stop::kCancelled) return ExitCode::kCancelled;
+  if (result.stop == Stop::kDeviceLost) return ExitCode::kDevice;
   if (result.goal_reached) return ExitCode::kDone;
   if (result.stop == Stop::kTimeLimit) return ExitCode::kLimit;
   return result.invalid_cells.empty() ? ExitCode::kGoalMissed : ExitCode::kInvalidCells;
@@ -130,6 +135,9 @@ ExitCode exit_code_of(const Result& result) {
 std::string shortfall(const Result& result, const ImproveOptions& options) {
   std::string text;
   if (result.stop == Stop::kCancelled) text = "cancelled; the mesh is the best so far";
+  if (result.stop == Stop::kDeviceLost)
+    text = fmt::format("the device failed, and the mesh is that of the last finished round: {}",
+                       result.device_note);
   if (result.stop == Stop::kTimeLimit && !result.goal_reached)
     text = "the time limit was met; the mesh is the best so far";
   if (!result.invalid_cells.empty())
@@ -167,6 +175,18 @@ Json surface_json(const SurfaceReport& surface) {
   json["feature_edges"] = surface.feature_edges;
   json["triangles_before"] = surface.triangles_before;
   json["triangles_after"] = surface.triangles_after;
+  return json;
+}
+
+Json device_json(const Result& result) {
+  Json json;
+  json["name"] = result.device.empty() ? Json() : Json(result.device);
+  json["note"] = result.device_note.empty() ? Json() : Json(result.device_note);
+  json["seconds_open"] = result.seconds_device;
+  json["kernels"] = Json::array();
+  for (const KernelTime& time : result.kernel_times)
+    json["kernels"].push_back(
+        {{"kernel", time.kernel}, {"launches", time.launches}, {"seconds", time.seconds}});
   return json;
 }
 
@@ -257,6 +277,8 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
                        {"statistics", seconds.statistics},
                        {"write", seconds.write}};
   report["result"] = outcome(loaded.mesh, result);
+  report["device"] = device_json(result);
+  if (!result.device_note.empty()) notes.push_back("no device, or not to the end: " + result.device_note);
   if (options.statistics) {
     report["before"] = to_json(result.before);
     report["after"] = to_json(result.after);
@@ -351,6 +373,21 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
                    "Patches A:B that match each other; they are kept as they are")
       ->type_name("A:B")
       ->delimiter(',');
+  command
+      ->add_option(
+          "--device", line->device,
+          "Where the large passes run: cpu, auto, opencl or opencl:PLATFORM.DEVICE; the output is the "
+          "same everywhere")
+      ->type_name("NAME");
+  command->add_flag("--hybrid", line->improve.hybrid,
+                    "On a device, smooth only, and reconnect on the processor");
+  command
+      ->add_option("--work-group", line->improve.device_tuning.work_group,
+                   "Work-items of a group on a device, a power of two; 0 chooses")
+      ->type_name("N")
+      ->check(CLI::IsMember({0, 1, 2, 4, 8, 16, 32, 64, 128, 256}));
+  command->add_flag("--profile", line->improve.device_tuning.profile,
+                    "Measure every kernel; in the JSON report");
   command->add_option("--seed", line->improve.seed, "Seed of the order among equal candidates")
       ->type_name("N");
   command->add_flag("--progress", line->progress, "Print progress as lines on stderr");

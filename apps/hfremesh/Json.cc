@@ -112,6 +112,7 @@ Json to_json(const PassReport& pass) {
   json["seeds"] = pass.seeds;
   json["candidates"] = pass.candidates;
   json["winners"] = pass.winners;
+  json["on_device"] = pass.on_device;
   json["inverted"] = pass.n_inverted;
   json["worst"] = pass.worst;
   json["seconds"] = {{"total", pass.seconds},
@@ -168,6 +169,8 @@ const char* stop_name(Stop stop) {
       return "time limit";
     case Stop::kCancelled:
       return "cancelled";
+    case Stop::kDeviceLost:
+      return "device lost";
   }
   return "unknown";
 }

@@ -47,7 +47,7 @@ struct Command {
   Run run;
 };
 
-constexpr const char* kSubcommands[] = {"improve", "check", "stats", "convert", "generate"};
+constexpr const char* kSubcommands[] = {"improve", "check", "stats", "convert", "generate", "devices"};
 
 /// The arguments, last first as CLI11 wants them. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o
 /// OUT".
@@ -101,8 +101,8 @@ ExitCode parse_and_run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("hfremesh ") + HFR_VERSION);
   app.require_subcommand(1);
   CommonOptions common;
-  const Run runs[] = {add_improve(app, common), add_check(app, common), add_stats(app, common),
-                      add_convert(app, common), add_generate(app, common)};
+  const Run runs[] = {add_improve(app, common), add_check(app, common),    add_stats(app, common),
+                      add_convert(app, common), add_generate(app, common), add_devices(app, common)};
   std::vector<Command> commands;
   for (std::size_t i = 0; i < std::size(runs); ++i)
     commands.push_back({app.get_subcommand(kSubcommands[i]), runs[i]});

@@ -164,9 +164,17 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
   Survey found = survey(mesh, options.policy);
   const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && meets_goal(found);
+  if (!nothing_to_do) {
+    const double before = control.seconds();
+    control.open_device(mesh);
+    if (control.device()) result.device = control.device()->info().name;
+    result.seconds_device = control.seconds() - before;
+  }
   std::vector<CellHandle> cell_order;
   const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order, result.surface);
   result.passes = std::move(control.passes());
+  result.device_note = control.device_note();
+  if (control.device()) result.kernel_times = control.device()->profile();
   result.changed = std::any_of(result.passes.begin(), result.passes.end(),
                                [](const PassReport& pass) { return pass.winners > 0; });
   if (result.changed)

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "Device/DeviceMesh.hh"
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
 #include "Quality/Metrics.hh"
@@ -80,6 +81,13 @@ struct ImproveOptions {
   SurfaceOptions surface;  ///< frozen by default; other modes need a build with OpenMesh
   std::uint64_t seed = 1;  ///< of the priorities among candidates of equal worth
   par::Policy policy = par::Policy::all();
+  /// Where the large passes run; the results are the same bits everywhere. Where an OpenCL device is named
+  /// and missing, too small, or broken, improve() throws DeviceError; kAuto goes on without it.
+  DeviceChoice device;
+  /// On a device, smooth only, and reconnect on the processor: the division of work of D'Amato & Venere
+  /// (2013).
+  bool hybrid = false;
+  DeviceTuning device_tuning;
   bool statistics = true;  ///< fill Result::before and after, and what is said of stuck cells
   /// Called between passes, from the calling thread.
   std::function<void(const Progress&)> progress;
@@ -87,7 +95,9 @@ struct ImproveOptions {
   std::function<bool()> cancel;
 };
 
-enum class Stop { kGoal, kNoProgress, kIterations, kTimeLimit, kCancelled };
+/// kDeviceLost: the device that was asked for failed in the middle; the mesh is that of the last finished
+/// round.
+enum class Stop { kGoal, kNoProgress, kIterations, kTimeLimit, kCancelled, kDeviceLost };
 
 /// One operator over the mesh once.
 struct PassReport {
@@ -99,6 +109,7 @@ struct PassReport {
   std::size_t candidates = 0;  ///< that would improve their cluster
   std::size_t winners = 0;     ///< committed
   std::size_t sub_rounds = 0;  ///< of the selections; as many as rounds where one thread marks
+  bool on_device = false;
   std::size_t n_inverted = 0;  ///< after the pass
   double worst = 0;            ///< smallest decision value of the pass's metric after it
   double seconds = 0;
@@ -133,7 +144,11 @@ struct Result {
   /// angle was raised as far as it goes, the first angle that was tried for and missed; and what keeps each.
   std::vector<StuckCell> stuck;
   double stuck_below = 0;
-  double seconds = 0;  ///< of the work itself, statistics apart
+  double seconds = 0;                    ///< of the work itself, statistics apart
+  double seconds_device = 0;             ///< to open the device and get its kernels, part of `seconds`
+  std::string device;                    ///< name of the device that was opened; empty: none
+  std::string device_note;               ///< why a device that was wanted was not used, or not to the end
+  std::vector<KernelTime> kernel_times;  ///< when device_tuning.profile
 };
 
 /// Improves `mesh` in place. The worst cell of every changed cluster gets better; boundary, region

@@ -23,6 +23,7 @@ void run_jpdc2013(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
     if (has(options.ops, Ops::kSmooth)) changes += stage.smooth_pass(i, Focus{});
     if (changes == 0) break;
   }
+  stage.to_host();
 }
 
 }  // namespace hfr

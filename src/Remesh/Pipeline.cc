@@ -164,6 +164,7 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
       if (stage.iterate(i, focus, false) == 0) break;
       control.set_fraction(0.1 + 0.4 * i / limit);
     }
+    stage.to_host();
   });
 }
 

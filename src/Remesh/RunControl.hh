@@ -3,9 +3,12 @@
 #define HFR_REMESH_RUN_CONTROL_HH
 
 #include <chrono>
+#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "Device/DeviceMesh.hh"
 #include "Remesh/Improve.hh"
 
 namespace hfr {
@@ -31,6 +34,36 @@ class RunControl {
   SurfaceMesh* surface() const { return surface_; }
   void set_surface(SurfaceMesh* surface) { surface_ = surface; }
 
+  /// Opens the device of the options. Where one was named, or the mesh does not fit, throws DeviceError;
+  /// where the choice is free, does without and notes why.
+  void open_device(const TetMesh& mesh) {
+    if (options_.device.kind == DeviceChoice::Kind::kCpu) return;
+    try {
+      device_ = std::make_unique<DeviceMesh>(options_.device, options_.device_tuning);
+      device_->require_room(mesh.n_vertices(), mesh.n_cells());
+    } catch (const DeviceError& error) {
+      device_.reset();
+      if (options_.device.kind == DeviceChoice::Kind::kOpenCl) throw;
+      device_note_ = error.what();
+    }
+  }
+  /// The device, while there is one that works.
+  DeviceMesh* device() { return device_.get(); }
+  /// Cells from which passes run there: a small mesh is done before a copy of it would be.
+  std::size_t device_from() const {
+    return options_.device.kind == DeviceChoice::Kind::kOpenCl ? 0 : kDeviceCells;
+  }
+  /// Whether the processor takes over from a device that fails: not where that device was asked for by name.
+  bool may_go_on() const { return options_.device.kind != DeviceChoice::Kind::kOpenCl; }
+  /// The device is not used any more; without may_go_on(), the run stops.
+  void lose_device(const std::string& why) {
+    device_.reset();
+    device_note_ = why;
+    if (!may_go_on() && !reason_) reason_ = Stop::kDeviceLost;
+  }
+  /// Why a device that was wanted is not, or no longer, used.
+  const std::string& device_note() const { return device_note_; }
+
   void add(PassReport pass) { passes_.push_back(std::move(pass)); }
   std::vector<PassReport>& passes() { return passes_; }
   /// Estimate of how much of the run is done, 0 … 1; never goes back.
@@ -39,12 +72,15 @@ class RunControl {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t kDeviceCells = 50000;
   const ImproveOptions& options_;
   Clock::time_point start_ = Clock::now();
   std::optional<Stop> reason_;
   double fraction_ = 0;
   SurfaceMesh* surface_ = nullptr;
   std::vector<PassReport> passes_;
+  std::unique_ptr<DeviceMesh> device_;
+  std::string device_note_;
 };
 
 }  // namespace hfr

@@ -22,6 +22,7 @@ constexpr std::size_t kLittle = 200;       // stop when a round commits less tha
 
 template <class Metric>
 std::span<const Index> Stage<Metric>::poor(double value) {
+  to_host();
   const auto& quality = work_.quality;
   if (work_.all_touched || value != poor_below_) {
     poor_ = par::compact<Index>(options_.policy, quality.size(),
@@ -42,6 +43,7 @@ std::span<const Index> Stage<Metric>::poor(double value) {
 
 template <class Metric>
 void Stage<Metric>::count(Focus focus) {
+  to_host();
   struct Sum {
     std::size_t invalid = 0;
     double worst = std::numeric_limits<double>::infinity();
@@ -76,7 +78,8 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
   RoundCounts total;
   std::size_t first = 0;
   using Op = decltype(make_op());
-  for (int r = 0; r < kMaxRounds && !control_.stopped(); ++r) {
+  const int limit = replay_ ? static_cast<int>(*replay_) : kMaxRounds;
+  for (int r = 0; r < limit && (replay_ || !control_.stopped()); ++r) {
     const Worklist list = worklist(kind, focus);
     if (list.cells().empty()) break;
     Round<Op> round(mesh_, work_,
@@ -85,7 +88,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     total += counts;
     if (n_invalid_ > 0) count(focus);
     if (r == 0) first = counts.winners;
-    if (counts.winners * kLittle <= first) break;
+    if (!replay_ && counts.winners * kLittle <= first) break;
   }
   count(focus);
   report(kNames[kind], iteration, total, control_.seconds() - start);
@@ -94,6 +97,8 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
 
 template <class Metric>
 std::size_t Stage<Metric>::edge_pass(int iteration, Focus focus) {
+  if (on_device(kEdge))
+    if (const auto changes = device_rounds(kEdge, iteration, focus)) return *changes;
   return rounds(
       kEdge, iteration, focus,
       [&] {
@@ -108,6 +113,8 @@ std::size_t Stage<Metric>::edge_pass(int iteration, Focus focus) {
 
 template <class Metric>
 std::size_t Stage<Metric>::face_pass(int iteration, Focus focus) {
+  if (on_device(kFace))
+    if (const auto changes = device_rounds(kFace, iteration, focus)) return *changes;
   return rounds(
       kFace, iteration, focus,
       [&] {
@@ -197,6 +204,7 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
           visit(typename Op::Seed(CellHandle(cells[i])));
         });
       });
+  return n_inside + (control_.surface() ? surface_splits(iteration, focus) : 0);
 }
 
 template <class Metric>
@@ -226,7 +234,6 @@ std::size_t Stage<Metric>::cluster_pass(int iteration, Focus focus) {
           visit(typename Op::Seed(CellHandle(list.cells()[i])));
         });
       });
-  return n_inside + (control_.surface() ? surface_splits(iteration, focus) : 0);
 }
 
 template <class Metric>
@@ -264,7 +271,11 @@ std::size_t Stage<Metric>::star_pass(int iteration) {
 
 template <class Metric>
 std::size_t Stage<Metric>::smooth_pass(int iteration, Focus focus) {
-  if (control_.stopped()) return 0;
+  if (!replay_ && control_.stopped()) return 0;
+  if (on_device(kSmooth)) {
+    if (const auto changes = device_smooth(iteration, focus)) return *changes;
+    if (control_.stopped()) return 0;
+  }
   const double start = control_.seconds();
   const Worklist list = worklist(kSmooth, focus);
   const auto vertices = vertex_seeds(mesh_, list, work_.frozen, options_.policy);
@@ -325,6 +336,7 @@ std::size_t Stage<Metric>::iterate(int iteration, Focus focus, bool with_node) {
 
 template <class Metric>
 void Stage<Metric>::report(const char* op, int iteration, const RoundCounts& counts, double seconds) {
+  if (replay_) return;
   PassReport pass;
   pass.stage = name_;
   pass.op = op;
@@ -340,11 +352,20 @@ void Stage<Metric>::report(const char* op, int iteration, const RoundCounts& cou
   pass.seconds_evaluate = counts.seconds_evaluate;
   pass.seconds_select = counts.seconds_select;
   pass.seconds_commit = counts.seconds_commit;
+  pass.on_device = resident_;
   control_.add(std::move(pass));
-  if (options_.progress)
-    options_.progress(
-        {name_, iteration, control_.fraction(), n_invalid_, smallest_dihedral(mesh_, options_.policy)});
+  if (!options_.progress) return;
+  const double smallest =
+      resident_ ? report_value(hfr::Metric::kMinDihedral, control_.device()->smallest_dihedral())
+                : smallest_dihedral(mesh_, options_.policy);
+  options_.progress({name_, iteration, control_.fraction(), n_invalid_, smallest});
 }
+
+}  // namespace hfr
+
+#include "Remesh/StageOnDevice.hh"
+
+namespace hfr {
 
 template std::size_t Stage<VolumeLength>::star_pass<Cluster::kEdge>(int);
 template std::size_t Stage<VolumeLength>::star_pass<Cluster::kFace>(int);

@@ -5,10 +5,12 @@
 #include <array>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "Device/DeviceMesh.hh"
 #include "HalfFace/TetMesh.hh"
 #include "Operators/AnyOf.hh"
 #include "Operators/ClusterSearch.hh"
@@ -65,6 +67,7 @@ class Stage {
 
   /// Forgets what was looked at, so that a pass with a wider focus or other operators sees every cell again.
   void look_again() {
+    to_host();
     looked_.fill(0);
     looked_at_surface_.fill(0);
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
@@ -95,6 +98,10 @@ class Stage {
   /// Moves the surface as a whole until the volume is what it was, where no cell suffers.
   void restore_volume();
 
+  /// Brings the mesh back from the device, where passes may have left it; at the end of a stage, at the
+  /// latest.
+  void to_host();
+
  private:
   enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kMixed, kCluster, kKinds };
   /// As in a list of operators: variants of one are reported as one.
@@ -103,6 +110,7 @@ class Stage {
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {
+    to_host();
     const auto bit = static_cast<std::uint8_t>(1U << kind);
     if (focus.everything()) {
       return Worklist(mesh_, options_.policy, [&](CellHandle c) {
@@ -153,6 +161,17 @@ class Stage {
   template <class Allow>
   std::vector<EdgeHandle> surface_edges(const Worklist& list, Allow&& allow) const;
 
+  // Passes on the device: StageOnDevice.hh.
+  /// True, with the mesh on the device, when passes of this kind run there.
+  bool on_device(Kind kind);
+  DeviceLook device_look(Kind kind, Focus focus);
+  /// rounds() and smooth_pass() on the device; nothing when it failed and the processor has to go on.
+  std::optional<std::size_t> device_rounds(Kind kind, int iteration, Focus focus);
+  std::optional<std::size_t> device_smooth(int iteration, Focus focus);
+  void device_count();
+  /// Does on the processor what was done on the device since the mesh was uploaded.
+  void lose_device(const std::string& why);
+
   TetMesh& mesh_;
   Workspace& work_;
   const ImproveOptions& options_;
@@ -165,6 +184,17 @@ class Stage {
   double poor_below_ = -std::numeric_limits<double>::infinity();
   std::array<std::uint32_t, kKinds> looked_{};
   std::array<std::uint32_t, 4> looked_at_surface_{};  // swap, collapse, smooth, split
+
+  struct DonePass {
+    Kind kind;
+    Focus focus;
+    std::size_t rounds;
+  };
+  bool resident_ = false;                             // the device has the mesh, the host an older one
+  std::vector<DonePass> done_there_;                  // since it was uploaded
+  std::array<std::uint32_t, kKinds> looked_there_{};  // looked_ and the clock at that time
+  std::uint32_t clock_there_ = 0;
+  std::optional<std::size_t> replay_;  // rounds of a pass that is being done again
 };
 
 }  // namespace hfr

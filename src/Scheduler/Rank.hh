@@ -10,23 +10,23 @@
 #include "HalfFace/TupleMap.hh"
 #include "Operators/Cavity.hh"
 #include "Parallel/Sort.hh"
+#include "kernels/priority.h"
 
 namespace hfr {
 
 /// Worse clusters first: 0 for what is inverted or flat, then one level a power of two of the decision value.
 constexpr std::uint64_t quality_bucket(double old_worst) {
-  if (!(old_worst > 0)) return 0;
-  const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(old_worst) >> 52) - 1023;
-  return static_cast<std::uint64_t>(exponent < -13 ? 1 : exponent > 0 ? 15 : 15 + exponent);
+  return hfr_quality_bucket(std::bit_cast<std::uint64_t>(old_worst));
 }
 
 /// Priority of a candidate: smaller wins. Equal buckets are in the order of a hash of the vertices that name
 /// the seed, salted by the round, so that neighbours in storage are no neighbours in rank.
 constexpr std::uint64_t priority(double old_worst, const Tet& identity, std::uint64_t salt) {
-  std::uint64_t h = mix64(salt + 0x9e3779b97f4a7c15ULL);
   // Seeds of fewer vertices are padded: the padding counts the same for indices of either width.
-  for (VertexHandle v : identity) h = mix64(h ^ (v.is_valid() ? v.idx() : 0xffffffffULL));
-  return quality_bucket(old_worst) << 60 | h >> 4;
+  const auto index = [&](std::size_t i) {
+    return identity[i].is_valid() ? std::uint64_t{identity[i].idx()} : 0xffffffffU;
+  };
+  return hfr_priority(std::bit_cast<std::uint64_t>(old_worst), index(0), index(1), index(2), index(3), salt);
 }
 
 /// The same where candidates of several kinds compete for one cluster: within a bucket, those that raise the

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The smoothers of Operators/SmoothNewton.cc and SmoothCandidates.cc on the vertices of one colour, which
+// share no cell.
+#include "candidates.h"
+#include "common.cl"
+#include "newton_step.h"
+
+// Halvings of the candidate search's radius, and Newton's iterations at most.
+#define HALVINGS 10
+#define ITERATIONS 6
+
+// Smallest decision value of the star with the vertex moved by x, or anything <= floor once it is no better.
+static double star_worst(const hfr_star_cell* star, uint n, hfr_real3 x, double floor_value) {
+  double worst = HFR_INFINITY;
+  for (uint k = 0; k < n && worst > floor_value; ++k)
+    worst = hfr_lesser(worst, hfr_star_decision(star[k], x));
+  return worst;
+}
+
+static double largest_measure(const hfr_star_cell* star, uint n, hfr_real3 x, double ceiling_value) {
+  double top = 0.0;
+  for (uint k = 0; k < n && top < ceiling_value; ++k) {
+    const double m = hfr_star_m(star[k], x);
+    if (m > top) top = m;
+  }
+  return top;
+}
+
+static hfr_real3 newton_place(const hfr_star_cell* star, uint n) {
+  hfr_real3 place = hfr_make3(0.0, 0.0, 0.0);
+  double now = largest_measure(star, n, place, HFR_INFINITY);
+  for (int i = 0; i < ITERATIONS; ++i) {
+    hfr_newton_share sums = hfr_newton_zero();
+    for (uint k = 0; k < n; ++k) sums = hfr_newton_sum(sums, hfr_star_newton(star[k], place, now));
+    const hfr_newton_step newton = hfr_newton_solve(sums);
+    if (!newton.ok) break;
+    double length = 1.0;
+    double next = now;
+    hfr_real3 candidate = place;
+    for (int halving = 0; halving <= HFR_NEWTON_MAX_HALVINGS; ++halving, length *= 0.5) {
+      candidate = hfr_make3(place.x + length * newton.step.x, place.y + length * newton.step.y,
+                            place.z + length * newton.step.z);
+      next = largest_measure(star, n, candidate, now);
+      if (next < now) break;
+    }
+    if (!(next < now)) break;
+    const int enough = next > HFR_NEWTON_ENOUGH * now;
+    place = candidate;
+    now = next;
+    if (enough) break;
+  }
+  return place;
+}
+
+static hfr_real3 candidate_place(const hfr_star_cell* star, uint n, hfr_section section, double worst_now) {
+  hfr_real3 place = hfr_make3(0.0, 0.0, 0.0);
+  double radius = hfr_section_radius(section, (double)n);
+  for (int level = 0; level < HALVINGS;) {
+    double best = worst_now;
+    hfr_real3 best_place = place;
+    for (int i = 0; i < HFR_CANDIDATE_DIRECTIONS; ++i) {
+      const hfr_real3 direction = hfr_candidate_direction(i);
+      const hfr_real3 candidate = hfr_make3(place.x + radius * direction.x, place.y + radius * direction.y,
+                                            place.z + radius * direction.z);
+      if (!hfr_section_contains(section, candidate)) continue;
+      const double q = star_worst(star, n, candidate, best);
+      if (q > best) {
+        best = q;
+        best_place = candidate;
+      }
+    }
+    if (best > worst_now) {
+      worst_now = best;
+      place = best_place;
+    } else {
+      radius *= 0.5;
+      ++level;
+    }
+  }
+  return place;
+}
+
+// Decision value of cell c with vertex v at x, its vertices in stored order.
+static double quality_with(__global const cell_t* cells, __global const double* points, uint c, uint v,
+                           hfr_real3 x) {
+  hfr_real3 p[4];
+  for (int k = 0; k < 4; ++k) p[k] = cells[c].v[k] == v ? x : point_of(points, cells[c].v[k]);
+  return decision_of(p[0], p[1], p[2], p[3]);
+}
+
+// Moves one vertex where its star gets better; 1 when it moved. use_newton: Newton's method on stars whose
+// cells are all positive, the candidate search on the others; else the candidate search on all.
+static uint smooth_vertex(__global const cell_t* cells, __global double* points, __global double* quality,
+                          __global uchar* pending, __global uint* changed, __global const uint* link, uint n,
+                          uint v, uint use_newton, uint clock, hfr_star_cell* star) {
+  const hfr_real3 origin = point_of(points, v);
+  double old_worst = HFR_INFINITY;
+  hfr_section section = hfr_section_zero();
+  for (uint k = 0; k < n; ++k) old_worst = hfr_lesser(old_worst, quality[link[k] / 4]);
+  const uint by_newton = use_newton && old_worst > 0.0;
+  for (uint k = 0; k < n; ++k) {
+    hfr_real3 f[3];
+    for (uint j = 0; j < 3; ++j) f[j] = point_of(points, cells[link[k] / 4].v[kFaceCorners[link[k] % 4][j]]);
+    if (!by_newton) {
+      for (uint j = 0; j < 3; ++j)
+        section = hfr_section_add(section, hfr_sub3(f[j], origin), hfr_sub3(f[(j + 1) % 3], f[j]));
+    }
+    star[k] = hfr_make_star_cell(hfr_sub3(f[0], origin), hfr_sub3(f[1], origin), hfr_sub3(f[2], origin));
+  }
+  const hfr_real3 place = by_newton ? newton_place(star, n) : candidate_place(star, n, section, old_worst);
+  if (place.x == 0.0 && place.y == 0.0 && place.z == 0.0) return 0;
+  const hfr_real3 target = hfr_make3(origin.x + place.x, origin.y + place.y, origin.z + place.z);
+  // What decides is the formula that the cells are judged by, on the rounded position.
+  double new_worst = HFR_INFINITY;
+  int more_invalid = 0;
+  for (uint k = 0; k < n && new_worst > old_worst; ++k) {
+    const double q = quality_with(cells, points, link[k] / 4, v, target);
+    new_worst = hfr_lesser(new_worst, q);
+    more_invalid += (int)!(q > 0.0) - (int)!(quality[link[k] / 4] > 0.0);
+  }
+  if (!(new_worst > old_worst) || more_invalid > 0) return 0;
+  points[3 * (size_t)v] = target.x;
+  points[3 * (size_t)v + 1] = target.y;
+  points[3 * (size_t)v + 2] = target.z;
+  for (uint k = 0; k < n; ++k) {
+    const uint c = link[k] / 4;
+    quality[c] = quality_with(cells, points, c, v, target);
+    pending[c] = 0xff;
+    for (int j = 0; j < 4; ++j) changed[cells[c].v[j]] = clock;
+  }
+  return 1;
+}
+
+#define SMOOTH_KERNEL(name, min_star, max_star)                                                              \
+  KERNEL void name(__global const cell_t* cells, __global const uint* vertices, __global const uint* begin,  \
+                   __global const uint* star_size, __global const uint* links, __global const uint* grouped, \
+                   __global const uint* colour_begin, uint colour, uint use_newton, uint clock,              \
+                   __global double* points, __global double* quality, __global uchar* pending,               \
+                   __global uint* changed, __global uint* counters) {                                        \
+    hfr_star_cell star[max_star];                                                                            \
+    uint n_moved = 0;                                                                                        \
+    const uint first = colour_begin[colour];                                                                 \
+    const uint n_group = colour_begin[colour + 1] - first;                                                   \
+    FOR_EACH(at, n_group) {                                                                                  \
+      const uint i = grouped[first + at];                                                                    \
+      const uint v = vertices[i];                                                                            \
+      const uint n = star_size[v];                                                                           \
+      if (n < (min_star) || n > (max_star)) continue;                                                        \
+      n_moved += smooth_vertex(cells, points, quality, pending, changed, links + begin[i], n, v, use_newton, \
+                               clock, star);                                                                 \
+    }                                                                                                        \
+    if (n_moved) atomic_add(&counters[HFR_MOVED], n_moved);                                                  \
+  }
+
+// What a work-item may need decides how many of them a device can hold at once, hence two kernels; a CPU has
+// one work-item a core.
+#if HFR_LOCAL == 1
+SMOOTH_KERNEL(smooth_all_stars, 1, HFR_MAX_STAR)
+#else
+SMOOTH_KERNEL(smooth_small_stars, 1, HFR_SMALL_STAR)
+SMOOTH_KERNEL(smooth_large_stars, HFR_SMALL_STAR + 1, HFR_MAX_STAR)
+#endif

@@ -1,0 +1,475 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The host's side of kernels/*.cl: what is launched in which order, and how much room there is.
+#include "Device/DeviceMesh.hh"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <numeric>
+
+#include "Device/Queue.hh"
+#include "kernels/counters.h"
+
+namespace hfr {
+namespace {
+
+using detail::DeviceArray;
+using Clock = std::chrono::steady_clock;
+
+constexpr cl_uint kNone = 0xffffffffU;
+/// Cells a candidate at first, and words of the arena a candidate; both grow when a round needs more.
+constexpr std::size_t kCellsPerCandidate = 4;
+constexpr std::size_t kWordsPerCandidate = 12;
+constexpr std::size_t kLeastRoom = 1024;
+constexpr std::size_t kSpare = 16;  // cells per spare slot
+/// Bytes of device memory a cell slot, a vertex and a candidate.
+constexpr std::uint64_t kCellBytes = 32 + 8 + 1 + 4 + 16 + 1 + 4 + 4;
+constexpr std::uint64_t kVertexBytes = 24 + 4 + 1 + 4 + 4 + 1 + 4 * 8 + 1;
+constexpr std::uint64_t kCandidateBytes = 8 + 4 + 4 + 4 + 4 + 1 + 1 + 4 + 4 + 4 * kWordsPerCandidate;
+/// Share of the memory that a mesh may take.
+constexpr double kLargestShare = 0.9;
+constexpr unsigned kFewRepetitions = 4;  // of the selection that are launched at once, at least
+constexpr unsigned kManyLevels = 64;     // of the colouring that are launched at once at first
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// True when cells have anything that TetMesh::copy_cell_data() copies.
+bool has_cell_data(const TetMesh& mesh) {
+  if (mesh.has_regions() || !mesh.properties().cells.empty()) return true;
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c)
+    if (mesh.is_fixed(CellHandle(c)) || mesh.is_selected(CellHandle(c)) || mesh.is_tagged(CellHandle(c)))
+      return true;
+  return false;
+}
+
+std::size_t room_for_cells(std::size_t n) { return n + n / kSpare + kLeastRoom; }
+
+}  // namespace
+
+struct DeviceMesh::Impl {
+  using Counters = std::array<cl_uint, HFR_N_COUNTERS>;
+
+  Impl(const DeviceChoice& choice, DeviceTuning tuning) : queue(choice, tuning) {}
+
+  void reserve_mesh(std::size_t n_cells, std::size_t n_vertices);
+  void reserve_candidates(std::size_t n_candidates, std::size_t n_words);
+  void grow_cells(std::size_t n_cells);
+  Counters read_counters() {
+    Counters block{};
+    queue.read(counters, block.data(), block.size());
+    return block;
+  }
+  void list(const DeviceLook& look);
+  void search(Kind kind, cl_ulong salt);
+  void rank(Kind kind);
+  void repeat_selection(unsigned first, unsigned end);
+  void number_slots();
+  void commit(Kind kind, std::uint32_t clock);
+  void list_vertices();
+  void gather_stars();
+  Counters colour();
+
+  detail::Queue queue;
+  std::size_t n_cells = 0, n_vertices = 0, n_free = 0;
+  bool has_data = false, has_regions = false;
+
+  DeviceArray<cl_uint> counters, sums;
+  // Mesh and workspace.
+  DeviceArray<cl_uint> cells;  // eight a cell, as hfr::Cell
+  DeviceArray<double> points;
+  DeviceArray<double> quality, worst;
+  DeviceArray<cl_uchar> pending, frozen;
+  DeviceArray<cl_uint> changed, star_size, hooks, free_cells, origin;
+  DeviceArray<cl_int> regions;
+  // Of a round.
+  DeviceArray<cl_uint> claim, moved, cell_list;
+  DeviceArray<cl_uchar> listed;
+  DeviceArray<cl_ulong> keys;
+  DeviceArray<cl_uint> seeds, offsets, sizes, arena, order, extra_at, freed_at, bins;
+  DeviceArray<cl_uchar> won, lost;
+  unsigned repetitions = kFewRepetitions;
+  // Of a smoothing pass; the links are kept in `moved`, which has four words a cell.
+  DeviceArray<cl_uchar> marked, colours;
+  DeviceArray<cl_uint> vertices, number, begin, cursor, level, next_level, grouped, colour_begin,
+      colour_cursor;
+  unsigned levels = kManyLevels;
+
+  cl_uint cell_count() const { return static_cast<cl_uint>(n_cells); }
+  cl_uint free_count() const { return static_cast<cl_uint>(n_free); }
+  cl_uint capacity() const { return static_cast<cl_uint>(keys.room); }
+};
+
+DeviceMesh::DeviceMesh(const DeviceChoice& choice, DeviceTuning tuning)
+    : impl_(std::make_unique<Impl>(choice, tuning)) {}
+DeviceMesh::~DeviceMesh() = default;
+const DeviceInfo& DeviceMesh::info() const { return impl_->queue.info(); }
+bool DeviceMesh::from_cache() const { return impl_->queue.from_cache(); }
+std::vector<KernelTime> DeviceMesh::profile() { return impl_->queue.profile(); }
+
+std::uint64_t DeviceMesh::bytes_needed(std::size_t n_vertices, std::size_t n_cells) {
+  const std::uint64_t room = room_for_cells(n_cells);
+  return room * kCellBytes + n_vertices * kVertexBytes +
+         (room / kCellsPerCandidate + kLeastRoom) * kCandidateBytes;
+}
+
+void DeviceMesh::Impl::reserve_mesh(std::size_t n, std::size_t n_points) {
+  const std::size_t room = room_for_cells(n);
+  queue.reserve(counters, HFR_N_COUNTERS);
+  queue.reserve(sums, 3 * std::size_t{queue.groups()});
+  queue.reserve(worst, queue.work_items());
+  queue.reserve(cells, 8 * room);
+  queue.reserve(quality, room);
+  queue.reserve(pending, room);
+  queue.reserve(free_cells, room);
+  queue.reserve(claim, room);
+  queue.reserve(moved, 4 * room);
+  queue.reserve(cell_list, room);
+  queue.reserve(listed, room);
+  queue.reserve(origin, has_data ? room : 1);
+  queue.reserve(regions, has_regions ? n : 1);
+  queue.reserve(points, 3 * n_points);
+  for (DeviceArray<cl_uint>* per_vertex :
+       {&changed, &star_size, &hooks, &vertices, &number, &begin, &cursor, &level, &next_level, &grouped})
+    queue.reserve(*per_vertex, n_points);
+  for (DeviceArray<cl_uchar>* per_vertex : {&frozen, &marked, &colours}) queue.reserve(*per_vertex, n_points);
+  queue.reserve(colour_begin, HFR_MAX_COLOURS + 1);
+  queue.reserve(colour_cursor, HFR_MAX_COLOURS + 1);
+  const std::size_t n_candidates = room / kCellsPerCandidate + kLeastRoom;
+  reserve_candidates(n_candidates, n_candidates * kWordsPerCandidate);
+}
+
+void DeviceMesh::Impl::reserve_candidates(std::size_t n_candidates, std::size_t n_words) {
+  queue.reserve(keys, n_candidates);
+  for (DeviceArray<cl_uint>* array : {&seeds, &offsets, &sizes, &order, &extra_at, &freed_at})
+    queue.reserve(*array, n_candidates);
+  queue.reserve(won, n_candidates);
+  queue.reserve(lost, n_candidates);
+  queue.reserve(arena, n_words);
+  queue.reserve(bins, std::bit_ceil(n_candidates));
+}
+
+void DeviceMesh::Impl::grow_cells(std::size_t n) {
+  const std::size_t before = quality.room;
+  if (n <= before) return;
+  const std::size_t room = room_for_cells(n);
+  queue.grow(cells, 8 * room);
+  queue.grow(quality, room);
+  queue.grow(pending, room);
+  queue.grow(free_cells, room);
+  queue.grow(claim, room);
+  queue.fill(claim, kNone, before, room - before);
+  queue.grow(moved, 4 * room);
+  queue.grow(cell_list, room);
+  queue.grow(listed, room);
+  if (has_data) queue.grow(origin, room);
+}
+
+void DeviceMesh::require_room(std::size_t n_vertices, std::size_t n_cells) const {
+  const std::uint64_t bytes = bytes_needed(n_vertices, n_cells);
+  const auto room = static_cast<std::uint64_t>(kLargestShare * static_cast<double>(info().memory));
+  if (bytes > room)
+    throw DeviceError("the mesh is too large for " + info().name + ": it needs " +
+                      std::to_string(bytes >> 20) + " MiB of the device's memory, and " +
+                      std::to_string(room >> 20) + " MiB are there for it");
+}
+
+void DeviceMesh::upload(const TetMesh& mesh, const Workspace& work) {
+  static_assert(sizeof(Cell) == 8 * sizeof(cl_uint), "device code has 32-bit indices");
+  Impl& m = *impl_;
+  require_room(mesh.n_vertices(), mesh.n_cells());
+  m.n_cells = mesh.n_cells();
+  m.n_vertices = mesh.n_vertices();
+  m.n_free = mesh.free_cells().size();
+  m.has_regions = mesh.has_regions();
+  m.has_data = has_cell_data(mesh);
+  m.reserve_mesh(m.n_cells, m.n_vertices);
+  if (m.n_cells > 0)
+    m.queue.write(m.cells, reinterpret_cast<const cl_uint*>(&mesh.cell(CellHandle(0))), 8 * m.n_cells);
+  m.queue.write(m.points, mesh.point_data(), 3 * m.n_vertices);
+  m.queue.write(m.quality, work.quality.data(), m.n_cells);
+  m.queue.write(m.pending, work.pending.data(), m.n_cells);
+  m.queue.write(m.frozen, work.frozen.data(), m.n_vertices);
+  m.queue.write(m.star_size, work.star_size.data(), m.n_vertices);
+  m.queue.write(m.changed, work.changed.data(), m.n_vertices);
+  std::vector<cl_uint> hooks(m.n_vertices);
+  for (std::size_t v = 0; v < m.n_vertices; ++v)
+    hooks[v] = static_cast<cl_uint>(mesh.hook(VertexHandle(v)).idx());
+  m.queue.write(m.hooks, hooks.data(), m.n_vertices);
+  std::vector<cl_uint> free_cells;
+  for (CellHandle c : mesh.free_cells()) free_cells.push_back(static_cast<cl_uint>(c.idx()));
+  m.queue.write(m.free_cells, free_cells.data(), m.n_free);
+  if (m.has_data) {
+    std::vector<cl_uint> origin(m.origin.room);
+    std::iota(origin.begin(), origin.end(), 0U);
+    m.queue.write(m.origin, origin.data(), origin.size());
+  }
+  if (m.has_regions) {
+    std::vector<cl_int> regions(m.n_cells);
+    for (std::size_t c = 0; c < m.n_cells; ++c) regions[c] = mesh.region(CellHandle(c));
+    m.queue.write(m.regions, regions.data(), m.n_cells);
+  }
+  m.queue.fill(m.claim, kNone, 0, m.claim.room);
+}
+
+void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
+  Impl& m = *impl_;
+  // All of it before the first write to the mesh: should the device fail now, the mesh is still whole.
+  std::vector<cl_uint> cells(8 * m.n_cells);
+  std::vector<double> points(3 * m.n_vertices);
+  std::vector<cl_uint> hooks(m.n_vertices), free_cells(m.n_free), origin(m.has_data ? m.n_cells : 0);
+  std::vector<double> quality(m.n_cells);
+  std::vector<std::uint8_t> pending(m.n_cells);
+  std::vector<std::uint32_t> star_size(m.n_vertices), changed(m.n_vertices);
+  m.queue.read(m.cells, cells.data(), cells.size());
+  m.queue.read(m.points, points.data(), points.size());
+  m.queue.read(m.hooks, hooks.data(), hooks.size());
+  m.queue.read(m.free_cells, free_cells.data(), free_cells.size());
+  m.queue.read(m.origin, origin.data(), origin.size());
+  m.queue.read(m.quality, quality.data(), quality.size());
+  m.queue.read(m.pending, pending.data(), pending.size());
+  m.queue.read(m.star_size, star_size.data(), star_size.size());
+  m.queue.read(m.changed, changed.data(), changed.size());
+
+  std::vector<std::pair<std::size_t, std::size_t>> inherits;  // a slot, and whose data it takes
+  for (std::size_t c = 0; c < origin.size(); ++c)
+    if (origin[c] != c) inherits.emplace_back(c, origin[c]);
+  // By way of spare slots: a slot may give its data away and take another's.
+  mesh.resize_cells(m.n_cells + inherits.size());
+  for (std::size_t i = 0; i < inherits.size(); ++i)
+    mesh.copy_cell_data(CellHandle(inherits[i].second), CellHandle(m.n_cells + i));
+  for (std::size_t i = 0; i < inherits.size(); ++i)
+    mesh.copy_cell_data(CellHandle(m.n_cells + i), CellHandle(inherits[i].first));
+  mesh.resize_cells(m.n_cells);
+  for (std::size_t c = 0; c < m.n_cells; ++c) {
+    Cell& cell = mesh.mutable_cell(CellHandle(c));
+    for (std::size_t k = 0; k < 4; ++k) {
+      cell.v[k] = VertexHandle(cells[8 * c + k]);
+      cell.mate[k] = HalfFaceHandle(cells[8 * c + 4 + k]);
+    }
+  }
+  std::copy(points.begin(), points.end(), mesh.point_data());
+  for (std::size_t v = 0; v < m.n_vertices; ++v) mesh.set_hook(VertexHandle(v), CellHandle(hooks[v]));
+  mesh.free_cells().clear();
+  for (cl_uint c : free_cells) mesh.free_cells().push_back(CellHandle(c));
+  work.quality = std::move(quality);
+  work.pending = std::move(pending);
+  work.star_size = std::move(star_size);
+  work.changed = std::move(changed);
+  work.claim.assign(m.n_cells, kUnclaimed);
+  work.all_touched = true;
+}
+
+void DeviceMesh::Impl::list(const DeviceLook& look) {
+  queue.fill(counters, cl_uint{0}, 0, counters.room);
+  queue.launch("list_cells", cells, quality, pending, changed, cell_count(), look.below, cl_uint{look.since},
+               cl_uint{look.pending_bit}, listed, sums);
+  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_LISTED});
+  queue.launch("write_flagged", listed, cell_count(), sums, cell_list);
+}
+
+void DeviceMesh::Impl::search(Kind kind, cl_ulong salt) {
+  const auto arena_room = static_cast<cl_uint>(arena.room);
+  const cl_uint regional = has_regions ? 1 : 0;
+  if (kind == Kind::kFace) {
+    queue.launch("search_faces", cells, points, quality, listed, cell_list, origin, regions, regional, salt,
+                 counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
+    return;
+  }
+  queue.launch("search_edges", cells, points, quality, listed, cell_list, origin, regions, regional, salt,
+               moved, counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
+  queue.launch("search_large_rings", cells, points, quality, origin, regions, regional, salt, moved, counters,
+               capacity(), arena_room, keys, seeds, offsets, sizes, arena);
+}
+
+void DeviceMesh::Impl::rank(Kind kind) {
+  // The first 4 bits of a key are its quality bucket, where most are alike; the next are as good as random.
+  const int n_bits = std::clamp(static_cast<int>(std::bit_width(keys.room)) - 1, 8, 22);
+  const auto n_bins = cl_uint{1} << n_bits;
+  const auto shift = static_cast<cl_uint>(64 - n_bits);
+  queue.fill(bins, cl_uint{0}, 0, n_bins);
+  queue.launch("rank_count", keys, counters, capacity(), shift, bins);
+  queue.launch("sum_parts", bins, n_bins, sums);
+  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_WINNERS});
+  queue.launch("scan_parts", bins, n_bins, sums);
+  queue.launch("rank_scatter", keys, counters, capacity(), shift, bins, order);
+  queue.launch("rank_sort", cells, keys, seeds, cl_uint{kind == Kind::kFace ? 1U : 0U}, n_bins, bins, order);
+}
+
+void DeviceMesh::Impl::repeat_selection(unsigned first, unsigned end) {
+  for (cl_uint s = first; s < end; ++s) {
+    queue.launch("select_claim", counters, s, capacity(), order, offsets, sizes, arena, won, lost, claim);
+    queue.launch("select_decide", counters, s, capacity(), order, offsets, sizes, arena, won, lost, claim);
+    queue.launch("select_lose", counters, s, capacity(), order, offsets, sizes, arena, won, lost, claim);
+    queue.launch("select_release", counters, s, capacity(), order, offsets, sizes, arena, lost, claim);
+  }
+}
+
+void DeviceMesh::Impl::number_slots() {
+  queue.launch("slot_sums", counters, capacity(), order, sizes, won, sums);
+  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{3}, counters, cl_uint{HFR_WINNERS});
+  queue.launch("slot_numbers", counters, capacity(), order, sizes, won, sums, extra_at, freed_at);
+}
+
+void DeviceMesh::Impl::commit(Kind kind, std::uint32_t clock) {
+  queue.launch(kind == Kind::kEdge ? "commit_edges" : "commit_faces", counters, capacity(), order, offsets,
+               sizes, arena, won, extra_at, free_cells, free_count(), cell_count(), cells, moved, hooks,
+               star_size, origin, cl_uint{has_data ? 1U : 0U});
+  queue.launch("commit_mates", counters, capacity(), order, offsets, sizes, arena, won, extra_at, free_cells,
+               free_count(), cell_count(), claim, moved, points, cl_uint{clock}, cells, quality, pending,
+               changed, hooks);
+  queue.launch("commit_free", counters, capacity(), order, offsets, sizes, arena, won, freed_at, free_count(),
+               claim, quality, free_cells);
+}
+
+RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t seed, std::uint32_t clock) {
+  Impl& m = *impl_;
+  RoundCounts counts;
+  const auto start = Clock::now();
+  m.list(look);
+  unsigned launched = m.repetitions;
+  Impl::Counters block{};
+  for (;;) {
+    m.search(kind, seed + clock);
+    m.rank(kind);
+    m.queue.launch("select_begin", m.counters, m.capacity(), m.won, m.lost);
+    m.repeat_selection(0, launched);
+    m.number_slots();
+    block = m.read_counters();
+    const std::size_t n_candidates = block[HFR_CANDIDATES];
+    const std::size_t n_words = block[HFR_ARENA];
+    if (n_candidates <= m.keys.room && n_words <= m.arena.room) break;
+    // Too little room: what was found is dropped, and found again.
+    m.reserve_candidates(std::max(m.keys.room, n_candidates + n_candidates / 4),
+                         std::max(m.arena.room, n_words + n_words / 4));
+    m.queue.fill(m.claim, kNone, 0, m.claim.room);
+    Impl::Counters again{};
+    again[HFR_LISTED] = block[HFR_LISTED];
+    m.queue.write(m.counters, again.data(), again.size());
+  }
+  if (block[HFR_LISTED] == 0) return counts;
+  while (block[HFR_UNDECIDED + launched] > 0) {
+    const unsigned more = std::min(launched + kFewRepetitions, unsigned{HFR_SUB_ROUNDS - 1});
+    if (more == launched) throw DeviceError("the selection among candidates did not come to an end");
+    m.repeat_selection(launched, more);
+    launched = more;
+    m.number_slots();
+    block = m.read_counters();
+  }
+  counts.rounds = 1;
+  counts.seeds = block[HFR_SEEDS];
+  counts.candidates = block[HFR_CANDIDATES];
+  counts.winners = block[HFR_WINNERS];
+  while (block[HFR_UNDECIDED + counts.sub_rounds] > 0) ++counts.sub_rounds;
+  m.repetitions = std::max(kFewRepetitions, static_cast<unsigned>(counts.sub_rounds));
+  counts.seconds_evaluate = since(start);
+  if (look.pending_bit)
+    m.queue.launch("clear_pending", m.cell_list, m.counters, cl_uint{look.pending_bit}, m.pending);
+  if (counts.winners == 0) return counts;
+  const std::size_t extra = block[HFR_EXTRA];
+  const std::size_t reused = std::min(extra, m.n_free);
+  m.grow_cells(m.n_cells + extra - reused);
+  m.commit(kind, clock + 1);
+  m.n_cells += extra - reused;
+  m.n_free += block[HFR_FREED] - reused;
+  return counts;
+}
+
+void DeviceMesh::Impl::list_vertices() {
+  const auto n = static_cast<cl_uint>(n_vertices);
+  queue.fill(marked, cl_uchar{0}, 0, n_vertices);
+  queue.launch("mark_vertices", cells, cell_list, counters, frozen, marked);
+  queue.launch("count_flags", marked, n, sums);
+  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_VERTICES});
+  queue.launch("write_flagged", marked, n, sums, vertices);
+}
+
+void DeviceMesh::Impl::gather_stars() {
+  queue.fill(number, kNone, 0, n_vertices);
+  queue.fill(colours, cl_uchar{HFR_MAX_COLOURS}, 0, n_vertices);
+  queue.launch("number_vertices", vertices, star_size, counters, number, begin, cursor);
+  queue.launch("sum_begins", begin, counters, sums);
+  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_LINKS});
+  queue.launch("scan_begins", begin, counters, sums);
+  queue.launch("gather_links", cells, cell_count(), number, begin, cursor, moved);
+  queue.launch("prepare_colours", cells, vertices, number, begin, star_size, counters, moved, cursor, level);
+}
+
+/// Counters once every vertex has its colour.
+DeviceMesh::Impl::Counters DeviceMesh::Impl::colour() {
+  cl_uint step = 0;
+  for (;;) {
+    for (const cl_uint end = step + levels; step < end; ++step)
+      queue.launch("colour_level", cells, vertices, number, begin, star_size, moved, step,
+                   step % 2 == 0 ? level : next_level, step % 2 == 0 ? next_level : level, counters, cursor,
+                   colours);
+    const Counters block = read_counters();
+    if (block[HFR_COLOURED] == block[HFR_VERTICES]) {
+      queue.launch("begin_colours", counters, colour_begin, colour_cursor);
+      queue.launch("group_colours", vertices, colours, counters, colour_cursor, grouped);
+      return block;
+    }
+  }
+}
+
+std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook& look, bool newton, std::uint32_t clock) {
+  Impl& m = *impl_;
+  RoundCounts counts;
+  auto start = Clock::now();
+  m.list(look);
+  m.list_vertices();
+  m.gather_stars();
+  const Impl::Counters block = m.colour();
+  if (block[HFR_BIG_STARS] > 0 || block[HFR_COLOUR_SIZE + HFR_MAX_COLOURS] > 0) return std::nullopt;
+  if (look.pending_bit)
+    m.queue.launch("clear_pending", m.cell_list, m.counters, cl_uint{look.pending_bit}, m.pending);
+  if (block[HFR_VERTICES] == 0) return counts;
+  counts.seconds_select = since(start);
+  start = Clock::now();
+  for (cl_uint c = 0; c < HFR_MAX_COLOURS && block[HFR_COLOUR_SIZE + c] > 0; ++c) {
+    const auto move = [&](const char* kernel) {
+      m.queue.launch(kernel, m.cells, m.vertices, m.begin, m.star_size, m.moved, m.grouped, m.colour_begin, c,
+                     cl_uint{newton ? 1U : 0U}, cl_uint{clock + 1}, m.points, m.quality, m.pending, m.changed,
+                     m.counters);
+    };
+    if (m.queue.is_cpu_style()) {
+      move("smooth_all_stars");
+    } else {
+      move("smooth_small_stars");
+      move("smooth_large_stars");
+    }
+  }
+  counts.rounds = 1;
+  counts.seeds = block[HFR_VERTICES];
+  counts.winners = m.read_counters()[HFR_MOVED];
+  counts.candidates = counts.winners;
+  counts.seconds_evaluate = since(start);
+  return counts;
+}
+
+DeviceMesh::Tally DeviceMesh::tally() {
+  Impl& m = *impl_;
+  m.queue.fill(m.counters, cl_uint{0}, 0, m.counters.room);
+  m.queue.launch("tally_qualities", m.quality, m.cell_count(), m.worst, m.counters);
+  std::vector<double> worst(m.queue.work_items());
+  m.queue.read(m.worst, worst.data(), worst.size());
+  return {m.read_counters()[HFR_INVALID_CELLS], *std::min_element(worst.begin(), worst.end())};
+}
+
+double DeviceMesh::smallest_dihedral() {
+  Impl& m = *impl_;
+  m.queue.launch("tally_dihedrals", m.cells, m.points, m.cell_count(), m.worst);
+  std::vector<double> worst(m.queue.work_items());
+  m.queue.read(m.worst, worst.data(), worst.size());
+  return *std::min_element(worst.begin(), worst.end());
+}
+
+std::vector<double> DeviceMesh::qualities() {
+  Impl& m = *impl_;
+  std::vector<double> values(m.n_cells);
+  m.queue.launch("cell_qualities", m.cells, m.points, m.cell_count(), m.quality);
+  m.queue.read(m.quality, values.data(), values.size());
+  return values;
+}
+
+}  // namespace hfr

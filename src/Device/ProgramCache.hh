@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DEVICE_PROGRAM_CACHE_HH
+#define HFR_DEVICE_PROGRAM_CACHE_HH
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Compiled programs on disk, internal to this folder.
+namespace hfr::detail {
+
+/// Makes the folder where it is missing; true when a file can be made in it.
+bool is_writable_folder(const std::filesystem::path& folder);
+
+/// Where compiled kernels are kept: $HFR_CACHE_DIR, $XDG_CACHE_HOME/hfremesh, ~/.cache/hfremesh or a folder
+/// of the user's below the temporary one: the first that can be written; empty when none can.
+std::filesystem::path cache_folder();
+
+/// What was stored under the key, or nothing. `key` may be any text: it is stored too, and compared in full,
+/// so that two keys of one hash are told apart.
+std::optional<std::vector<unsigned char>> load_binary(const std::string& key);
+/// Stores it for the next run. A failure to do so is no error: the next run compiles again.
+void save_binary(const std::string& key, const std::vector<unsigned char>& binary);
+
+}  // namespace hfr::detail
+
+#endif

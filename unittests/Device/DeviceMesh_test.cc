@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rounds and passes on the device against those on the processor, bit for bit.
+#include "Device/DeviceMesh.hh"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+
+#include "Device/Scratch.hh"
+#include "HalfFace/Check.hh"
+#include "HalfFace/Errors.hh"
+#include "IO/Hash.hh"
+#include "Operators/Clusters.hh"
+#include "Operators/EdgeRemoval.hh"
+#include "Operators/FaceSwap.hh"
+#include "Operators/SmoothCandidates.hh"
+#include "Operators/SmoothNewton.hh"
+#include "Scheduler/Round.hh"
+#include "Scheduler/Seeds.hh"
+#include "Scheduler/SmoothPass.hh"
+
+namespace hfr::test {
+namespace {
+
+constexpr par::Policy kSerial{};
+
+/// A mesh with its workspace.
+struct Stand {
+  TetMesh mesh;
+  Workspace work;
+
+  explicit Stand(TetMesh m) : mesh(std::move(m)) {
+    work.attach(mesh, kSerial);
+    work.set_qualities(mesh, VolumeLength{}, kSerial);
+  }
+};
+
+TetMesh jittered_box(Index n, double jitter, std::uint64_t seed) {
+  return built(generate::jittered_box({n, n, n}, jitter, seed));
+}
+
+/// How device code is launched: as on a CPU, and as on a GPU.
+class OnDevice : public testing::TestWithParam<DeviceTuning> {
+ protected:
+  void SetUp() override {
+    try {
+      device_ = std::make_unique<DeviceMesh>(DeviceChoice{DeviceChoice::Kind::kOpenCl}, GetParam());
+    } catch (const DeviceError& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  RoundCounts round_on_host(Stand& stand, DeviceMesh::Kind kind, double below) {
+    const Worklist list(stand.mesh, kSerial,
+                        [&](CellHandle c) { return stand.work.quality[c.idx()] < below; });
+    if (list.cells().empty()) return {};
+    const RoundOptions options{kSerial, /*check_links=*/false, /*seed=*/5};
+    if (kind == DeviceMesh::Kind::kEdge) {
+      Round<EdgeRemoval<VolumeLength>> round(stand.mesh, stand.work, options);
+      return round.run({{}, stand.work.quality}, edge_seeds(stand.mesh, list, kSerial));
+    }
+    Round<FaceSwap<VolumeLength>> round(stand.mesh, stand.work, options);
+    return round.run({{}, stand.work.quality}, face_seeds(stand.mesh, list, kSerial));
+  }
+
+  static void expect_same(const Stand& host, const Stand& device) {
+    ASSERT_EQ(host.mesh.n_cells(), device.mesh.n_cells());
+    for (std::size_t c = 0; c < host.mesh.n_cells(); ++c) {
+      ASSERT_EQ(host.mesh.cell(CellHandle(c)).v, device.mesh.cell(CellHandle(c)).v) << c;
+      ASSERT_EQ(host.mesh.cell(CellHandle(c)).mate, device.mesh.cell(CellHandle(c)).mate) << c;
+    }
+    for (std::size_t v = 0; v < host.mesh.n_vertices(); ++v) {
+      ASSERT_EQ(host.mesh.hook(VertexHandle(v)), device.mesh.hook(VertexHandle(v))) << v;
+      ASSERT_EQ(host.mesh.point(VertexHandle(v)), device.mesh.point(VertexHandle(v))) << v;
+    }
+    EXPECT_EQ(host.mesh.free_cells(), device.mesh.free_cells());
+    EXPECT_EQ(host.work.quality, device.work.quality);
+    EXPECT_EQ(host.work.star_size, device.work.star_size);
+    EXPECT_EQ(host.work.changed, device.work.changed);
+    EXPECT_EQ(host.work.pending, device.work.pending);
+    EXPECT_EQ(host.work.claim, device.work.claim);
+  }
+
+  std::unique_ptr<DeviceMesh> device_;
+};
+
+TEST_P(OnDevice, QualitiesAndTallyHaveTheBitsOfTheHost) {
+  Stand stand(jittered_box(6, 0.5, 3));
+  device_->upload(stand.mesh, stand.work);
+  const DeviceMesh::Tally tally = device_->tally();
+  EXPECT_EQ(device_->qualities(), stand.work.quality);
+  std::size_t n_invalid = 0;
+  double smallest = 8.0 / 9.0;
+  for (CellHandle c : stand.mesh.cells()) {
+    n_invalid += !(stand.work.quality[c.idx()] > 0);
+    const auto& v = stand.mesh.cell(c).v;
+    smallest = std::min(smallest, MinDihedral{}(stand.mesh.point(v[0]), stand.mesh.point(v[1]),
+                                                stand.mesh.point(v[2]), stand.mesh.point(v[3])));
+  }
+  EXPECT_GT(n_invalid, 10U);
+  EXPECT_EQ(tally.n_invalid, n_invalid);
+  EXPECT_EQ(tally.worst, *std::min_element(stand.work.quality.begin(), stand.work.quality.end()));
+  EXPECT_EQ(device_->smallest_dihedral(), smallest);
+}
+
+TEST_P(OnDevice, RoundsAreThoseOfTheHost) {
+  Stand host(jittered_box(9, 0.27, 4));
+  Stand there = host;
+  ASSERT_GT(*std::min_element(host.work.quality.begin(), host.work.quality.end()), 0);
+  device_->upload(there.mesh, there.work);
+  std::size_t n_winners = 0;
+  std::size_t n_fresh = host.mesh.n_cells();
+  for (int r = 0; r < 8; ++r) {
+    const auto kind = r % 4 < 2 ? DeviceMesh::Kind::kFace : DeviceMesh::Kind::kEdge;
+    const double below = r < 4 ? 0.6 : 0.9;
+    const RoundCounts expected = round_on_host(host, kind, below);
+    const RoundCounts counts = device_->round(kind, {below, 0, 0}, 5, there.work.clock);
+    there.work.clock += static_cast<std::uint32_t>(counts.rounds);
+    EXPECT_EQ(counts.rounds, expected.rounds);
+    EXPECT_EQ(counts.seeds, expected.seeds);
+    EXPECT_EQ(counts.candidates, expected.candidates);
+    EXPECT_EQ(counts.winners, expected.winners);
+    n_winners += counts.winners;
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    ASSERT_FALSE(HasFatalFailure()) << "round " << r;
+    EXPECT_EQ(check(there.mesh), Ok);
+  }
+  n_fresh = host.mesh.n_cells() - n_fresh;
+  EXPECT_GT(n_winners, 300U);
+  EXPECT_GT(n_fresh, 10U) << "no slot beyond the first ones was used";
+  EXPECT_FALSE(host.mesh.free_cells().empty()) << "no slot was freed";
+}
+
+TEST_P(OnDevice, CellsBornInFreshSlotsInheritRegionAndFields) {
+  generate::Arrays arrays = generate::jittered_box({8, 8, 8}, 0.25, 6);
+  arrays.regions = generate::two_region_box({8, 8, 8}).regions;
+  Stand host(built(arrays));
+  auto field = host.mesh.request_cell_property<int>("field");
+  for (CellHandle c : host.mesh.cells()) field[c] = static_cast<int>(7 * c.idx());
+  Stand there = host;
+  const std::size_t n_cells = host.mesh.n_cells();
+  device_->upload(there.mesh, there.work);
+  for (int r = 0; r < 6; ++r) {
+    const auto kind = r % 2 == 0 ? DeviceMesh::Kind::kFace : DeviceMesh::Kind::kEdge;
+    round_on_host(host, kind, 0.9);
+    there.work.clock +=
+        static_cast<std::uint32_t>(device_->round(kind, {0.9, 0, 0}, 5, there.work.clock).rounds);
+  }
+  device_->download(there.mesh, there.work);
+  expect_same(host, there);
+  ASSERT_FALSE(HasFatalFailure());
+  ASSERT_GT(host.mesh.n_cells(), n_cells);
+  const auto expected = host.mesh.request_cell_property<int>("field");
+  const auto found = there.mesh.request_cell_property<int>("field");
+  for (CellHandle c : host.mesh.cells()) {
+    ASSERT_EQ(found[c], expected[c]) << c.idx();
+    ASSERT_EQ(there.mesh.region(c), host.mesh.region(c)) << c.idx();
+  }
+}
+
+TEST_P(OnDevice, SmoothingIsThatOfTheHost) {
+  for (const bool newton : {true, false}) {
+    Stand host(jittered_box(7, 0.5, 8));  // some cells are inverted
+    Stand there = host;
+    device_->upload(there.mesh, there.work);
+    for (int pass = 0; pass < 2; ++pass) {
+      const Worklist list(host.mesh, kSerial, [&](CellHandle c) { return host.work.quality[c.idx()] < 0.5; });
+      const auto vertices = vertex_seeds(host.mesh, list, host.work.frozen, kSerial);
+      const RoundCounts expected =
+          newton ? smooth_pass(host.mesh, host.work, NewtonSearch{}, VolumeLength{}, vertices, kSerial)
+                 : smooth_pass(host.mesh, host.work, CandidateSearch{}, VolumeLength{}, vertices, kSerial);
+      const auto counts = device_->smooth({0.5, 0, 0}, newton, there.work.clock);
+      ASSERT_TRUE(counts);
+      ++there.work.clock;
+      EXPECT_EQ(counts->seeds, expected.seeds);
+      EXPECT_EQ(counts->winners, expected.winners);
+      EXPECT_GT(counts->winners, 50U);
+    }
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    ASSERT_FALSE(HasFatalFailure()) << newton;
+  }
+}
+
+TEST_P(OnDevice, PendingBitsChooseTheCellsAndAreCleared) {
+  Stand host(jittered_box(5, 0.3, 9));
+  for (std::size_t c = 0; c < host.mesh.n_cells(); ++c) host.work.pending[c] = c % 3 == 0 ? 0x10 : 0x0f;
+  Stand there = host;
+  device_->upload(there.mesh, there.work);
+  const Worklist list(host.mesh, kSerial, [&](CellHandle c) {
+    auto& pending = host.work.pending[c.idx()];
+    const bool listed = (pending & 0x10) != 0;
+    pending = static_cast<std::uint8_t>(pending & ~0x10);
+    return listed;
+  });
+  const auto vertices = vertex_seeds(host.mesh, list, host.work.frozen, kSerial);
+  smooth_pass(host.mesh, host.work, CandidateSearch{}, VolumeLength{}, vertices, kSerial);
+  ASSERT_TRUE(device_->smooth({0, 0, 0x10}, false, there.work.clock));
+  device_->download(there.mesh, there.work);
+  expect_same(host, there);
+}
+
+TEST_P(OnDevice, NothingHappensWhereThereIsNothingToLookAt) {
+  Stand stand(jittered_box(3, 0.2, 1));
+  device_->upload(stand.mesh, stand.work);
+  EXPECT_EQ(device_->round(DeviceMesh::Kind::kEdge, {-1, 0, 0}, 1, 1).rounds, 0U);
+  EXPECT_EQ(device_->smooth({-1, 0, 0}, true, 1).value().seeds, 0U);
+}
+
+TEST_P(OnDevice, MeshBeyondTheMemoryIsRefusedWithFigures) {
+  try {
+    device_->require_room(std::size_t{1} << 40, std::size_t{1} << 40);
+    FAIL();
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("MiB"), std::string::npos);
+  }
+  EXPECT_NO_THROW(device_->require_room(1000, 5000));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Tunings, OnDevice, testing::Values(DeviceTuning{}, DeviceTuning{1, 3, false}, DeviceTuning{32, 5, true}),
+    [](const auto& tuning) { return "Group" + std::to_string(tuning.param.work_group); });
+
+}  // namespace
+}  // namespace hfr::test

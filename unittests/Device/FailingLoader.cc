@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An OpenCL loader that fails where the environment says so; everything else is the real one's, which it is
+// linked with. Tests name it in HFR_OPENCL_LIBRARY.
+//   HFR_FAIL_ENQUEUE=N   the N-th launch of a kernel and all later calls on queues: the device is lost
+//   HFR_FAIL_BUFFER=N    the N-th buffer and all later ones: out of memory
+//   HFR_FAIL_BUILD=1     no program compiles
+//   HFR_FAIL_FP64=1      no device has 64-bit floating point
+//   HFR_FAIL_MEMORY=N    every device has N bytes of memory
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+#include <dlfcn.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+long setting(const char* name) {
+  const char* text = std::getenv(name);
+  return text ? std::atol(text) : 0;
+}
+
+template <class F>
+F real(F, const char* name) {
+  return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
+}
+
+std::atomic<long> n_launches{0}, n_buffers{0};
+
+bool is_lost() {
+  const long limit = setting("HFR_FAIL_ENQUEUE");
+  return limit > 0 && n_launches >= limit;
+}
+
+}  // namespace
+
+#define REAL(name) real(&name, #name)
+
+extern "C" {
+
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local, cl_uint n_wait,
+                              const cl_event* wait, cl_event* event) {
+  ++n_launches;
+  if (is_lost()) return CL_OUT_OF_RESOURCES;
+  return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, n_wait, wait, event);
+}
+
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                           size_t size, void* to, cl_uint n_wait, const cl_event* wait, cl_event* event) {
+  if (is_lost()) return CL_OUT_OF_RESOURCES;
+  return REAL(clEnqueueReadBuffer)(queue, buffer, blocking, offset, size, to, n_wait, wait, event);
+}
+
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+  const long limit = setting("HFR_FAIL_BUFFER");
+  if (limit > 0 && ++n_buffers >= limit) {
+    if (error) *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    return nullptr;
+  }
+  return REAL(clCreateBuffer)(context, flags, size, host, error);
+}
+
+cl_int clBuildProgram(cl_program program, cl_uint n_devices, const cl_device_id* devices, const char* options,
+                      void (*notify)(cl_program, void*), void* user) {
+  if (setting("HFR_FAIL_BUILD") > 0) options = "-Dget_global_id=no_such_word";
+  return REAL(clBuildProgram)(program, n_devices, devices, options, notify, user);
+}
+
+cl_int clGetDeviceInfo(cl_device_id device, cl_device_info name, size_t room, void* value, size_t* size) {
+  const cl_int error = REAL(clGetDeviceInfo)(device, name, room, value, size);
+  if (!value || error != CL_SUCCESS) return error;
+  if (name == CL_DEVICE_DOUBLE_FP_CONFIG && setting("HFR_FAIL_FP64") > 0) std::memset(value, 0, room);
+  if (name == CL_DEVICE_GLOBAL_MEM_SIZE && setting("HFR_FAIL_MEMORY") > 0) {
+    const cl_ulong bytes = static_cast<cl_ulong>(setting("HFR_FAIL_MEMORY"));
+    std::memcpy(value, &bytes, sizeof bytes);
+  }
+  return error;
+}
+
+}  // extern "C"
