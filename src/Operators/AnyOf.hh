@@ -2,6 +2,7 @@
 #ifndef HFR_OPERATORS_ANY_OF_HH
 #define HFR_OPERATORS_ANY_OF_HH
 
+#include <algorithm>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -24,6 +25,7 @@ struct AnyOf {
   };
   using Metric = decltype(std::tuple_element_t<0, std::tuple<Ops...>>::metric);
   static constexpr bool kRankByGain = true;
+  static constexpr double kSeedNanoseconds = std::max({seed_nanoseconds<Ops>()...});
 
   std::tuple<Ops...> operators;
   Metric metric = std::get<0>(operators).metric;

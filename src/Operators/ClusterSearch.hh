@@ -18,6 +18,7 @@ namespace hfr {
 /// those few that nothing cheaper mends. No vertex comes or goes, no constrained face vanishes.
 template <class Metric>
 struct ClusterSearch {
+  static constexpr double kSeedNanoseconds = 1'000'000;
   static constexpr std::size_t kMaxPoints = 32;
   static constexpr std::size_t kMaxBorn = 96;  ///< cells; a filling with more is not found
 

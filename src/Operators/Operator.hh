@@ -46,6 +46,16 @@ concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
   op.metric;
 };
 
+/// About how long a seed takes to evaluate, so that few dear ones are shared among threads as well as many
+/// cheap ones. Operators whose seeds take much longer than the default say so in kSeedNanoseconds.
+template <class Op>
+constexpr double seed_nanoseconds() {
+  if constexpr (requires { Op::kSeedNanoseconds; })
+    return Op::kSeedNanoseconds;
+  else
+    return 1'000;
+}
+
 /// Per-vertex byte: 1 where the vertex must stay: boundary, interface between regions, on a labelled face
 /// inside or a labelled edge, or fixed.
 std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy policy = {});

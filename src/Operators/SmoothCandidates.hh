@@ -10,6 +10,7 @@ namespace hfr {
 /// star's worst cell is taken; when none does, r is halved. Works from inverted stars too, and with any
 /// metric.
 struct CandidateSearch {
+  static constexpr double kVertexNanoseconds = 8'000;
   int halvings = 10;  ///< of r, from half the mean edge length of the star
 
   template <class Metric>

@@ -11,6 +11,7 @@ namespace hfr {
 /// non-smooth ascent takes it. For MinSine2 and MinDihedral; other metrics, and stars with inverted or flat
 /// cells, go through the candidate search.
 struct MaxMinSearch {
+  static constexpr double kVertexNanoseconds = 30'000;
   int iterations = 24;  ///< at most; most stars need ten
   CandidateSearch fallback{};
 

@@ -18,6 +18,7 @@ namespace hfr {
 /// else mends. No face that is constrained vanishes, and no vertex.
 template <class Metric>
 struct VertexInsertion {
+  static constexpr double kSeedNanoseconds = 200'000;
   /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
   struct Seed {
     CellHandle cell;

@@ -24,7 +24,8 @@ struct Width {
 };
 constexpr std::array<Width, 3> kWidths = {{{1, 6}, {3, 12}, {7, 24}}};
 constexpr int kNewtonSteps = 3;
-constexpr int kPatience = 4;  // sweeps without fewer inverted cells
+constexpr double kUnfoldNanoseconds = 5'000;  // a vertex
+constexpr int kPatience = 4;                  // sweeps without fewer inverted cells
 
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const TetMesh& mesh) {
@@ -52,8 +53,8 @@ class Unfolding {
     gather(width.layers, invalid);
     counts.seeds = vertices_.size();
     if (vertices_.empty()) return;
-    const StarTable stars(mesh_, vertices_, work_.star_size);
-    const auto groups = colour_vertices(mesh_, vertices_, stars);
+    const StarTable stars(mesh_, vertices_, work_.star_size, policy_);
+    const auto groups = colour_vertices(mesh_, vertices_, stars, policy_);
     gather_cells(stars);
     std::vector<Vec3> before(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) before[i] = mesh_.point(vertices_[i]);
@@ -126,7 +127,7 @@ class Unfolding {
 
   void sweep(const StarTable& stars, const std::vector<std::vector<std::uint32_t>>& groups) {
     for (const auto& group : groups) {
-      par::for_each(policy_, group.size(), [&](std::size_t k) {
+      par::for_each(policy_.for_items_of(kUnfoldNanoseconds), group.size(), [&](std::size_t k) {
         const std::uint32_t i = group[k];
         if (stars.link(i).empty()) return;
         const StarForm form(mesh_, vertices_[i], stars.link(i));

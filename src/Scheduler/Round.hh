@@ -85,6 +85,7 @@ class Round {
 
  private:
   static constexpr int kPiecesAThread = 16;
+  static constexpr double kCommitNanoseconds = 3'000;
   using Plan = typename Op::Plan;
   struct Winner {
     std::uint32_t candidate = 0;
@@ -98,7 +99,7 @@ class Round {
   template <class VisitSeeds>
   std::size_t evaluate(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
     // Seeds differ much in cost, so threads take pieces as they come; pieces are joined in their order.
-    const int n_threads = par::thread_count(options_.policy, n_sources);
+    const int n_threads = par::thread_count(options_.policy.for_items_of(seed_nanoseconds<Op>()), n_sources);
     const int n_pieces = n_threads == 1 ? 1 : kPiecesAThread * n_threads;
     std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_pieces));
     std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_pieces), 0);
@@ -216,7 +217,7 @@ class Round {
   void commit(const Op& op) {
     assign_slots(op);
     const std::size_t n = winners_.size();
-    const int n_parts = par::thread_count(options_.policy, n);
+    const int n_parts = par::thread_count(options_.policy.for_items_of(kCommitNanoseconds), n);
     std::vector<Notes> notes(static_cast<std::size_t>(n_parts));
     const auto for_winners = [&](auto&& body) {
       par::parts(n_parts, [&](int part) {

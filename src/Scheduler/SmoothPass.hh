@@ -9,9 +9,20 @@
 
 #include "Operators/Smooth.hh"
 #include "Scheduler/StarTable.hh"
+#include "Scheduler/VertexColours.hh"
 #include "Scheduler/Workspace.hh"
 
 namespace hfr {
+
+/// About how long a search takes at one vertex, so that few dear ones are shared among threads as well as
+/// many cheap ones. Searches that take much longer than the default say so in kVertexNanoseconds.
+template <class Search>
+constexpr double vertex_nanoseconds() {
+  if constexpr (requires { Search::kVertexNanoseconds; })
+    return Search::kVertexNanoseconds;
+  else
+    return 2'000;
+}
 
 /// True when more cells of the star would be inverted or flat with v at x than are now.
 template <class Metric>
@@ -39,14 +50,17 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
   counts.seeds = vertices.size();
   ++work.clock;
   auto start = Clock::now();
-  const StarTable stars(mesh, vertices, work.star_size);
-  const auto groups = colour_vertices(mesh, vertices, stars);
+  const StarTable stars(mesh, vertices, work.star_size, policy);
+  const auto groups = colour_vertices(mesh, vertices, stars, policy);
   counts.seconds_select = since(start);
   start = Clock::now();
-  constexpr std::size_t kBlock = 64;
+  const par::Policy by_cost = policy.for_items_of(vertex_nanoseconds<Search>());
   std::vector<std::uint8_t> moved(vertices.size(), 0);
   for (const auto& group : groups) {
-    par::for_each_dynamic(policy, group.size(), kBlock, [&](std::size_t k) {  // stars differ much in cost
+    // Stars differ much in cost, so threads take blocks as they come.
+    const std::size_t block =
+        std::clamp<std::size_t>(group.size() / 16 / static_cast<std::size_t>(policy.threads), 1, 64);
+    par::for_each_dynamic(by_cost, group.size(), block, [&](std::size_t k) {
       const std::uint32_t i = group[k];
       const auto link = stars.link(i);
       if (link.empty()) return;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Parallel/Parallel.hh"
 
 namespace hfr {
 
@@ -17,7 +18,7 @@ class StarTable {
   /// `vertices` ascending; `star_size` as star_sizes() has it. A star is left empty when it has more than
   /// Star::kCapacity cells.
   StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices,
-            std::span<const std::uint32_t> star_size);
+            std::span<const std::uint32_t> star_size, par::Policy policy = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   /// Half-faces opposite vertex number i, one a cell of its star, ascending.
@@ -26,18 +27,12 @@ class StarTable {
   }
 
  private:
-  void walk_stars(const TetMesh& mesh, std::span<const VertexHandle> vertices);
-  void sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> vertices);
+  void walk_stars(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
+  void sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
 
   std::vector<std::size_t> begin_;
   std::vector<HalfFaceHandle> links_;
 };
-
-/// Numbers 0 … size-1 grouped by colour: two vertices of one cell never share a colour, so all of a group may
-/// move at the same time. First-fit in the order of `vertices`.
-std::vector<std::vector<std::uint32_t>> colour_vertices(const TetMesh& mesh,
-                                                        std::span<const VertexHandle> vertices,
-                                                        const StarTable& stars);
 
 }  // namespace hfr
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scheduler/StarTable.hh"
+#include "Scheduler/VertexColours.hh"
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,21 @@ TEST(StarTable, BothBuildersGiveTheCellsRoundTheVertexInOrder) {
     ASSERT_LT(few.size(), mesh.n_vertices() / 16);
     const StarTable table(mesh, few, star_sizes(mesh));
     for (std::size_t i = 0; i < few.size(); ++i) expect_link(mesh, few[i], table.link(i));
+  }
+}
+
+TEST(StarTable, AnyNumberOfThreadsMakesTheSame) {
+  const TetMesh mesh = jittered(6, 0.3, 4);
+  const auto all = all_vertices(mesh);
+  const auto few = std::span(all).first(mesh.n_vertices() / 20);
+  const auto sizes = star_sizes(mesh);
+  for (const std::span<const VertexHandle> vertices : {std::span<const VertexHandle>(all), few}) {
+    const StarTable serial(mesh, vertices, sizes);
+    for (const int threads : {2, 3, 7, 16}) {
+      const StarTable table(mesh, vertices, sizes, {threads, /*serial_below=*/1});
+      for (std::size_t i = 0; i < vertices.size(); ++i)
+        EXPECT_TRUE(std::ranges::equal(table.link(i), serial.link(i))) << "vertex " << i << ", " << threads;
+    }
   }
 }
 
@@ -104,6 +120,22 @@ TEST(Colouring, NoTwoVerticesOfACellShareAColour) {
       for (VertexHandle v : mesh.cell(c).v)
         EXPECT_TRUE(colour[v.idx()] < 0 || seen.insert(colour[v.idx()]).second);
     }
+  }
+}
+
+TEST(Colouring, AnyNumberOfThreadsGivesTheFirstFit) {
+  const TetMesh mesh = jittered(9, 0.3, 6);
+  const auto all = all_vertices(mesh);
+  for (const double share : {1.0, 0.7, 0.2}) {
+    std::vector<VertexHandle> vertices;
+    for (VertexHandle v : all)
+      if (generate::random_unit(8, v.idx()) < share) vertices.push_back(v);
+    const StarTable stars(mesh, vertices, star_sizes(mesh));
+    const auto first_fit = colour_vertices(mesh, vertices, stars);
+    for (const int threads : {2, 3, 7, 16})
+      for (int repetition = 0; repetition < 20; ++repetition)
+        ASSERT_EQ(colour_vertices(mesh, vertices, stars, {threads, /*serial_below=*/1}), first_fit)
+            << threads;
   }
 }
 
