@@ -6,9 +6,10 @@ usage: bench/peers.py TOOL MESH [MESH ...] [--time-limit S] [--output FILE]
 
 Wants the Python modules gmsh and mmgpy (pip install gmsh mmgpy); a peer that is missing is left out by name.
 Every program runs on one thread with its surface frozen, as far as it can: Mmg with -nosurf, Gmsh on a discrete
-volume whose boundary it has been told of. Seconds are of the whole program, reading and writing included, in wall
-clock; Gmsh's are of its optimiser and its reading and writing, without starting Python. "boundary" compares the
-boundary triangles of the output with those of the input, coordinate by coordinate, to the last bit.
+volume whose boundary it has been told of; all read and write binary files, which keep every bit of a coordinate.
+Seconds are user CPU seconds of the whole program, reading and writing included (what else the machine does matters
+little then); Gmsh's are without starting Python. "boundary" compares the boundary triangles of the output with those
+of the input, coordinate by coordinate, to the last bit.
 "turned" counts cells that the program has renumbered into order: `stats` turns them back by their neighbours, and
 the overlap that they hide shows.
 """
@@ -16,17 +17,18 @@ import argparse
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
 import sys
+import sysconfig
 import tempfile
-import time
 
 GMSH = """
 import sys, time
 import gmsh
-begin = time.time()
+begin = time.process_time()
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 gmsh.option.setNumber("General.NumThreads", 1)
@@ -37,7 +39,7 @@ for method in sys.argv[3].split(","):
 gmsh.option.setNumber("Mesh.SaveAll", 1)
 gmsh.option.setNumber("Mesh.Binary", 1)
 gmsh.write(sys.argv[2])
-print(time.time() - begin)
+print(time.process_time() - begin)
 """
 
 
@@ -46,8 +48,8 @@ class Failed(Exception):
 
 
 def call(command, limit, allowed=(0,)):
-    """Runs it and returns (seconds, what it printed)."""
-    begin = time.time()
+    """Runs it and returns (user CPU seconds, what it printed)."""
+    begin = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     # A group of its own: what a peer is started through may be a script, and the program behind it has to end too.
     done = subprocess.Popen([str(c) for c in command], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
                             start_new_session=True)
@@ -59,7 +61,7 @@ def call(command, limit, allowed=(0,)):
         raise Failed(f"> {limit:g} s") from None
     if done.returncode not in allowed:
         raise Failed("crashes" if done.returncode < 0 else f"exit {done.returncode}")
-    return time.time() - begin, output
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - begin, output
 
 
 def stats(tool, mesh):
@@ -91,8 +93,8 @@ def candidates(options):
 
     def mmg(*extra):
         def run(source, result):
-            return call([options.mmg, "-v", 0, *extra, source["mesh"], result.with_suffix(".mesh")],
-                        options.time_limit, (0, 1))[0], result.with_suffix(".mesh")
+            return call([options.mmg, "-v", 0, *extra, source["meshb"], result.with_suffix(".meshb")],
+                        options.time_limit, (0, 1))[0], result.with_suffix(".meshb")
         return run
 
     def gmsh(method):
@@ -119,12 +121,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tool", help="the hfremesh program")
     parser.add_argument("meshes", nargs="+")
-    parser.add_argument("--mmg", help="the mmg3d program (default: beside this Python, or on the PATH)")
-    parser.add_argument("--time-limit", type=float, default=200, help="seconds for one run of one program")
+    parser.add_argument("--mmg", help="the mmg3d program (default: the module's, or on the PATH)")
+    parser.add_argument("--time-limit", type=float, default=200, help="seconds by the clock for one run of one program")
     parser.add_argument("--output", help="Markdown file to write (default: standard output)")
     options = parser.parse_args()
-    beside = pathlib.Path(sys.executable).parent / "mmg3d"
-    options.mmg = options.mmg or (str(beside) if beside.exists() else shutil.which("mmg3d"))
+    if not options.mmg:  # the program itself: what the module puts on the PATH starts Python first
+        of_module = pathlib.Path(sysconfig.get_path("purelib")) / "mmgpy" / "bin" / "mmg3d_O3"
+        options.mmg = str(of_module) if of_module.exists() else shutil.which("mmg3d_O3") or shutil.which("mmg3d")
     lines = ["| mesh | program | s | cells | inverted | turned | worst | max | p0.1 | p1 | p5 | volume | overlap | boundary |",
              "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
 
@@ -139,8 +142,8 @@ def main():
     for path in map(pathlib.Path, options.meshes):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="hfremesh-peers-"))
         try:
-            source = {"any": path, "mesh": folder / "in.mesh", "msh": folder / "in.msh"}
-            call([options.tool, "convert", path, "-o", source["mesh"], "-q"], None)
+            source = {"any": path, "meshb": folder / "in.meshb", "msh": folder / "in.msh"}
+            call([options.tool, "convert", path, "-o", source["meshb"], "-q"], None)
             call([options.tool, "convert", path, "-o", source["msh"], "--binary", "-q"], None)
             before, _ = stats(options.tool, path)
             surface = boundary(options.tool, path, folder)
