@@ -69,6 +69,18 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   }
 }
 
+/// Works towards a goal; what misses it is raised as far as it goes, rung by rung, and tried once more if
+/// that has helped.
+bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal) {
+  if (polish(mesh, work, options, control, goal)) return true;
+  const double missed_at = smallest_dihedral(mesh, options.policy);
+  for (double rung : kLadder)
+    if (rung < goal && !control.stopped() && smallest_dihedral(mesh, options.policy) < rung)
+      polish(mesh, work, options, control, rung);
+  if (control.stopped() || !(smallest_dihedral(mesh, options.policy) > missed_at)) return false;
+  return polish(mesh, work, options, control, goal);
+}
+
 /// Climbs again and again, and beyond rungs that are missed, while the worst rises.
 void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
                           RunControl& control) {
@@ -99,7 +111,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, R
   const double floor = report_value(Metric::kMinDihedral, std::clamp(at_first.worst, 0.0, 8.0 / 9.0));
   if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
   control.set_fraction(0.1);
-  if (options.min_dihedral) return polish(mesh, work, options, control, *options.min_dihedral);
+  if (options.min_dihedral) return reach(mesh, work, options, control, *options.min_dihedral);
   // The worst angles first: the bulk stage, which knows only volume-length, can box them in. Few cells, so
   // kind by kind, as towards a goal.
   ImproveOptions early = options;

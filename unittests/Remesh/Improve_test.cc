@@ -110,6 +110,21 @@ TEST(Improve, GoalWithinReachIsReachedAndNoMoreIsDone) {
   EXPECT_GT(same, before.n_vertices() / 2);
 }
 
+TEST(Improve, AskingForMoreThanCanBeHadGivesNoLessThanAskingForWhatCan) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    generate::Arrays arrays = generate::cylinder(3, 8);
+    generate::jitter_inner(arrays, 0.4, seed);
+    const auto worst_for = [&](double goal) {
+      TetMesh mesh = build(arrays.points, arrays.cells);
+      ImproveOptions options;
+      options.min_dihedral = goal;
+      return improve(mesh, options).after.min_dihedral.min;
+    };
+    EXPECT_GE(worst_for(30), 30);
+    EXPECT_GE(worst_for(45), 30) << "seed " << seed;
+  }
+}
+
 TEST(Improve, GoalOutOfReachIsReportedAsMissed) {
   TetMesh mesh = small_cavity(6);
   ImproveOptions options = serial();
