@@ -9,7 +9,9 @@
 #include <numeric>
 
 #include "Device/Queue.hh"
+#include "HalfFace/Generate.hh"
 #include "kernels/counters.h"
+#include "kernels/volume_length.h"
 
 namespace hfr {
 namespace {
@@ -58,6 +60,7 @@ struct DeviceMesh::Impl {
 
   Impl(const DeviceChoice& choice, DeviceTuning tuning) : spare(tuning.spare), queue(choice, tuning) {}
 
+  void require_rounding();
   void reserve_mesh(std::size_t n_cells, std::size_t n_vertices);
   void reserve_candidates(std::size_t n_candidates, std::size_t n_words);
   void grow_cells(std::size_t n_cells);
@@ -108,7 +111,9 @@ struct DeviceMesh::Impl {
 };
 
 DeviceMesh::DeviceMesh(const DeviceChoice& choice, DeviceTuning tuning)
-    : impl_(std::make_unique<Impl>(choice, tuning)) {}
+    : impl_(std::make_unique<Impl>(choice, tuning)) {
+  impl_->require_rounding();
+}
 DeviceMesh::~DeviceMesh() = default;
 const DeviceInfo& DeviceMesh::info() const { return impl_->queue.info(); }
 bool DeviceMesh::from_cache() const { return impl_->queue.from_cache(); }
@@ -117,6 +122,34 @@ std::vector<KernelTime> DeviceMesh::profile() { return impl_->queue.profile(); }
 std::uint64_t DeviceMesh::bytes_needed(std::size_t n_vertices, std::size_t n_cells) {
   const std::uint64_t room = room_for_cells(n_cells, 0);
   return room * kCellBytes + n_vertices * kVertexBytes + room_for_candidates(room, 0) * kCandidateBytes;
+}
+
+/// A driver that contracts a*b + c, whatever the source says, is found out here and not in an output.
+void DeviceMesh::Impl::require_rounding() {
+  constexpr std::size_t kProbes = 64;
+  std::vector<cl_uint> tets(8 * kProbes, kNone);
+  std::vector<double> coordinates(12 * kProbes), found(kProbes);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) coordinates[i] = generate::random_unit(1, i);
+  for (std::size_t i = 0; i < 4 * kProbes; ++i) tets[8 * (i / 4) + i % 4] = static_cast<cl_uint>(i);
+  DeviceArray<cl_uint> probe_cells;
+  DeviceArray<double> probe_points, probe_quality;
+  queue.reserve(probe_cells, tets.size());
+  queue.reserve(probe_points, coordinates.size());
+  queue.reserve(probe_quality, kProbes);
+  queue.write(probe_cells, tets.data(), tets.size());
+  queue.write(probe_points, coordinates.data(), coordinates.size());
+  queue.launch("cell_qualities", probe_cells, probe_points, cl_uint{kProbes}, probe_quality);
+  queue.read(probe_quality, found.data(), kProbes);
+  for (std::size_t i = 0; i < kProbes; ++i) {
+    std::array<hfr_real3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k)
+      p[k] = hfr_make3(coordinates[12 * i + 3 * k], coordinates[12 * i + 3 * k + 1],
+                       coordinates[12 * i + 3 * k + 2]);
+    if (std::bit_cast<std::uint64_t>(found[i]) !=
+        std::bit_cast<std::uint64_t>(hfr_volume_length_decision(p[0], p[1], p[2], p[3])))
+      throw DeviceError(queue.info().name +
+                        " does not round as the kernels say: its results would not be the processor's");
+  }
 }
 
 void DeviceMesh::Impl::reserve_mesh(std::size_t n, std::size_t n_points) {

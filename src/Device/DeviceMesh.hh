@@ -43,7 +43,8 @@ struct DeviceLook {
 /// fails. Every member throws DeviceError that names the call and the error.
 class DeviceMesh {
  public:
-  /// Compiles the kernels, or takes them from the cache.
+  /// Compiles the kernels, or takes them from the cache, and refuses a device that rounds otherwise than the
+  /// processor.
   explicit DeviceMesh(const DeviceChoice& choice, DeviceTuning tuning = {});
   ~DeviceMesh();
   DeviceMesh(const DeviceMesh&) = delete;

@@ -156,6 +156,12 @@ TEST_F(Devices, BuildErrorShowsTheLog) {
               HasSubstr("no_such_word"));
 }
 
+TEST_F(Devices, DeviceThatRoundsOtherwiseIsRefused) {
+  if (!has_device()) GTEST_SKIP() << "there is no OpenCL device";
+  expect_refused(failing("HFR_CACHE_DIR=$PWD/cache HFR_FAIL_ROUNDING=1"),
+                 "does not round as the kernels say");
+}
+
 TEST_F(Devices, MeshBeyondTheMemoryIsRefused) {
   if (!has_device()) GTEST_SKIP() << "there is no OpenCL device";
   expect_refused(failing("HFR_FAIL_MEMORY=100000"), "too large");
@@ -174,7 +180,7 @@ TEST_F(Devices, DeviceLostAnywhereKeepsTheMeshOfTheLastFinishedRound) {
   if (!has_device()) GTEST_SKIP() << "there is no OpenCL device";
   ASSERT_EQ(tool_.run("in.mesh -o whole.mesh -q").code, 0);
   std::set<std::string> outputs;
-  for (const int launch : {1, 20, 60, 150, 400}) {
+  for (const int launch : {2, 20, 60, 150, 400}) {
     const Outcome outcome = tool_.shell(failing("HFR_FAIL_ENQUEUE=" + std::to_string(launch)) +
                                         "$TOOL in.mesh -o out.mesh -q --device opencl");
     EXPECT_EQ(outcome.code, 6) << launch;
