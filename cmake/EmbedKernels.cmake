@@ -9,7 +9,8 @@ foreach(file IN LISTS files)
   file(READ ${FOLDER}/${file} hex HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes "${hex}")
   string(APPEND lists "constexpr unsigned char kBytes${number}[] = {${bytes}0};\n")
-  string(APPEND table "    {\"${file}\", reinterpret_cast<const char*>(kBytes${number}), sizeof kBytes${number} - 1},\n")
+  string(APPEND table
+    "    {\"${file}\", reinterpret_cast<const char*>(kBytes${number}), sizeof kBytes${number} - 1},\n")
   math(EXPR number "${number} + 1")
 endforeach()
 file(WRITE ${OUTPUT} "#include \"Device/KernelFiles.hh\"\n\nnamespace hfr::detail {\nnamespace {\n${lists}\n"

@@ -6,6 +6,7 @@
 
 /* Candidate positions of D'Amato & Venere (2013), section 3.3. */
 
+#define HFR_CANDIDATE_HALVINGS 10 /* of the radius */
 #define HFR_CANDIDATE_DIRECTIONS 14
 #define HFR_DIAGONAL 0.57735026918962576 /* 1/sqrt(3): all directions have length 1 */
 
@@ -49,5 +50,40 @@ HFR_FN int hfr_section_contains(hfr_section s, hfr_real3 x) {
   return (x.x >= s.low.x) & (x.x <= s.high.x) & (x.y >= s.low.y) & (x.y <= s.high.y) & (x.z >= s.low.z) &
          (x.z <= s.high.z);
 }
+
+/* Candidate i round a place; no candidate unless the section contains it. Outside the box of the star no cell
+ * can be right, but the quality of an inverted cell may rise on the way to infinity. */
+HFR_FN hfr_real3 hfr_candidate(hfr_real3 place, double radius, int i) {
+  const hfr_real3 d = hfr_candidate_direction(i);
+  return hfr_make3(place.x + radius * d.x, place.y + radius * d.y, place.z + radius * d.z);
+}
+
+/* The search: `place`, an hfr_real3, becomes the displacement that raises the star's worst as far as
+ * candidates take it. A macro, because C++ looks at all candidates at once and OpenCL C at one after the
+ * other.
+ *
+ * worst_now: smallest decision value of the star as it is.
+ *
+ * LOOK(place, radius, best, next): statement that lets `best` be the largest of itself and of the worst
+ * values of the candidates round `place`, and `next` the first candidate with that value where it has risen.
+ */
+#define HFR_CANDIDATE_SEARCH(halvings, start_radius, worst_now, LOOK, place) \
+  do {                                                                       \
+    double worst = (worst_now), radius = (start_radius);                     \
+    int level = 0;                                                           \
+    (place) = hfr_make3(0.0, 0.0, 0.0);                                      \
+    while (level < (halvings)) {                                             \
+      double best = worst;                                                   \
+      hfr_real3 next = (place);                                              \
+      LOOK((place), radius, best, next);                                     \
+      if (best > worst) {                                                    \
+        worst = best;                                                        \
+        (place) = next;                                                      \
+      } else {                                                               \
+        radius *= 0.5;                                                       \
+        ++level;                                                             \
+      }                                                                      \
+    }                                                                        \
+  } while (0)
 
 #endif

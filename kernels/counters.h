@@ -25,7 +25,6 @@ enum hfr_counter {
 };
 
 #define HFR_SMALL_RING 8  /* cells of a ring that is looked at at once */
-#define HFR_LARGE_RING 32 /* and at most */
 #define HFR_MAX_STAR 256  /* cells of a vertex */
 #define HFR_SMALL_STAR 32 /* those that fit in the registers and near memory of a device */
 #define HFR_MAX_COLOURS 63

@@ -2,7 +2,7 @@
 // Edge removal: the seeds, the search and commit A of Operators/EdgeRemoval.cc. A candidate's piece of the
 // arena: its n cells in ring order, the n ring vertices, a, b, and the triangulation in preorder, four to a
 // word.
-#include "candidates.cl"
+#include "round.cl"
 
 // Steps to the next cell counter-clockwise about a->b, where corners p and q make (a, b, p, q) positive; to
 // an invalid one at the boundary.
@@ -25,7 +25,7 @@ static double triangle_worst(hfr_real3 x, hfr_real3 y, hfr_real3 z, hfr_real3 a,
 
 // The triangulation of side (0, n-1) in preorder, from the table of apexes.
 static void write_preorder(int n, int stride, const uchar* apex, uchar* out) {
-  uchar from[HFR_LARGE_RING], to[HFR_LARGE_RING];
+  uchar from[HFR_MAX_RING], to[HFR_MAX_RING];
   int depth = 1;
   int n_out = 0;
   from[0] = 0;
@@ -139,34 +139,34 @@ KERNEL void search_large_rings(__global const cell_t* cells, __global const doub
     const uint seed = large[item];
     const uint c = seed / 6;
     const uint edge = seed % 6;
-    uint ring[HFR_LARGE_RING], scope[HFR_LARGE_RING];
+    uint ring[HFR_MAX_RING], scope[HFR_MAX_RING];
     uint at = c;
     uint corner_p = kEdgeOpposite[edge][0];
     uint corner_q = kEdgeOpposite[edge][1];
     uint n = 0;
     double old_worst = HFR_INFINITY;
     do {
-      if (n == HFR_LARGE_RING) break;
+      if (n == HFR_MAX_RING) break;
       scope[n] = at;
       ring[n++] = cells[at].v[corner_p];
       old_worst = hfr_lesser(old_worst, quality[at]);
       step_in_ring(cells, &at, &corner_p, &corner_q);
     } while (at != c);
     if (at != c) continue;  // larger still
-    double best[HFR_LARGE_RING * HFR_LARGE_RING];
-    uchar apex[HFR_LARGE_RING * HFR_LARGE_RING];
-    hfr_real3 p[HFR_LARGE_RING];
+    double best[HFR_MAX_RING * HFR_MAX_RING];
+    uchar apex[HFR_MAX_RING * HFR_MAX_RING];
+    hfr_real3 p[HFR_MAX_RING];
     for (uint k = 0; k < n; ++k) p[k] = point_of(points, ring[k]);
     const uint a = cells[c].v[kEdgeCorners[edge][0]];
     const uint b = cells[c].v[kEdgeCorners[edge][1]];
     const hfr_real3 point_a = point_of(points, a);
     const hfr_real3 point_b = point_of(points, b);
     double new_worst;
-    HFR_KLINCSEK((int)n, HFR_LARGE_RING, best, apex, old_worst, TRIANGLE_WORST, new_worst);
+    HFR_KLINCSEK((int)n, HFR_MAX_RING, best, apex, old_worst, TRIANGLE_WORST, new_worst);
     if (!(new_worst > old_worst)) continue;
     if (has_regions && !in_one_region(scope, n, origin, regions)) continue;
-    uchar triangles[HFR_LARGE_RING];
-    write_preorder((int)n, HFR_LARGE_RING, apex, triangles);
+    uchar triangles[HFR_MAX_RING];
+    write_preorder((int)n, HFR_MAX_RING, apex, triangles);
     append_edge(seed, n, ring, scope, a, b, triangles, old_worst, salt, SEARCH_VALUES);
   }
 }
@@ -188,8 +188,8 @@ KERNEL void commit_edges(__global const uint* counters, uint capacity, __global 
     const uint a = ring[n];
     const uint b = ring[n + 1];
     __global const uint* triangles = ring + n + 2;
-    uint above[HFR_LARGE_RING], below[HFR_LARGE_RING];  // what lies behind the faces with b, and with a
-    uint old_above[HFR_LARGE_RING], old_below[HFR_LARGE_RING];
+    uint above[HFR_MAX_RING], below[HFR_MAX_RING];  // what lies behind the faces with b, and with a
+    uint old_above[HFR_MAX_RING], old_below[HFR_MAX_RING];
     for (uint k = 0; k < n; ++k) {
       const uint c = scope[k];
       const uint corner_a = own_corner(&cells[c], a);
@@ -209,8 +209,8 @@ KERNEL void commit_edges(__global const uint* counters, uint capacity, __global 
       for (uint j = 0; j < 4; ++j) cells[scope[k]].v[j] = cells[scope[k]].mate[j] = INVALID;
     }
     // Sides that wait for their triangle, with the half-faces that lie on them from the other side.
-    uchar from[HFR_LARGE_RING], to[HFR_LARGE_RING];
-    uint outer_above[HFR_LARGE_RING], outer_below[HFR_LARGE_RING];
+    uchar from[HFR_MAX_RING], to[HFR_MAX_RING];
+    uint outer_above[HFR_MAX_RING], outer_below[HFR_MAX_RING];
     int depth = 1;
     from[0] = 0;
     to[0] = (uchar)(n - 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The 2-3 swap: seeds, search and commit A of Operators/FaceSwap.cc. A candidate's piece of the arena: its
 // two cells, the apex below, the apex above, the three vertices of the face as the seed's cell sees them.
-#include "candidates.cl"
+#include "round.cl"
 
 KERNEL void search_faces(__global const cell_t* cells, __global const double* points,
                          __global const double* quality, __global const uchar* listed,

@@ -4,13 +4,20 @@
 
 #include "order.h"
 
+#define HFR_MAX_RING 32 /* cells of a ring, or vertices of a polygon, that is looked at */
+
 /* Klincsek's dynamic programme over the sides (i, j) of a polygon of n vertices: the triangulation whose
  * worst triangle is best. A macro, because C++ has the metric as a template argument and OpenCL C as a
- * function. best, apex: arrays of stride*stride doubles and bytes, scratch; apex[i*stride + j] is the third
- * vertex of the triangle on side (i, j) wherever that side is reached floor_value: what has to be beaten;
- * sides that do not are given up VALUE(i, k, j, top): worst of what triangle (i, k, j) stands for, or
- * anything <= top once it is no better result: a double variable; the worst of the best triangulation, or
- * floor_value where none beats it */
+ * function.
+ *
+ * best, apex: arrays of stride*stride doubles and bytes, scratch; apex[i*stride + j] is the third vertex of
+ * the triangle on side (i, j) wherever that side is reached.
+ *
+ * floor_value: what has to be beaten; sides that do not are given up.
+ *
+ * VALUE(i, k, j, top): worst of what triangle (i, k, j) stands for, or anything <= top once it is no better.
+ *
+ * result: a double variable; the worst of the best triangulation, or floor_value where none beats it. */
 #define HFR_KLINCSEK(n, stride, best, apex, floor_value, VALUE, result)                                 \
   do {                                                                                                  \
     int side_i, side_j, third, width;                                                                   \

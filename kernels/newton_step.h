@@ -4,7 +4,8 @@
 
 #include "star_newton.h"
 
-/* Steps of Newton's method on a star; star_newton.h has what it needs of each cell. */
+/* Newton's method on a star; star_newton.h has what it needs of each cell. */
+#define HFR_NEWTON_ITERATIONS 6   /* at most; most stars need three */
 #define HFR_NEWTON_ENOUGH 0.995   /* a step that lowers the largest m by less ends the search */
 #define HFR_NEWTON_MAX_HALVINGS 5 /* of a step that does not lower it */
 
@@ -52,5 +53,37 @@ HFR_FN hfr_newton_step hfr_newton_solve(hfr_newton_share h) {
   result.step.x = y0 / d0 - l1 * result.step.y - l2 * result.step.z;
   return result;
 }
+
+/* The search: `place`, an hfr_real3, becomes the displacement that lowers the largest m as far as the method
+ * takes it. A macro, because C++ looks at several cells an instruction and OpenCL C at one after the other.
+ *
+ * LARGEST(x, ceiling): the largest m with the vertex moved by x, or anything >= ceiling.
+ *
+ * SHARES(x, m_max): sum of the cells' shares with the vertex moved by x, in the order of the cells. */
+#define HFR_NEWTON_SEARCH(iterations, LARGEST, SHARES, place)                                         \
+  do {                                                                                                \
+    int iteration, halving;                                                                           \
+    double now;                                                                                       \
+    (place) = hfr_make3(0.0, 0.0, 0.0);                                                               \
+    now = LARGEST((place), HFR_INFINITY);                                                             \
+    for (iteration = 0; iteration < (iterations); ++iteration) {                                      \
+      const hfr_newton_step newton = hfr_newton_solve(SHARES((place), now));                          \
+      hfr_real3 candidate = (place);                                                                  \
+      double length = 1.0, next = now;                                                                \
+      int enough;                                                                                     \
+      if (!newton.ok) break;                                                                          \
+      for (halving = 0; halving <= HFR_NEWTON_MAX_HALVINGS; ++halving, length *= 0.5) {               \
+        candidate = hfr_make3((place).x + length * newton.step.x, (place).y + length * newton.step.y, \
+                              (place).z + length * newton.step.z);                                    \
+        next = LARGEST(candidate, now);                                                               \
+        if (next < now) break;                                                                        \
+      }                                                                                               \
+      if (!(next < now)) break;                                                                       \
+      enough = next > HFR_NEWTON_ENOUGH * now;                                                        \
+      (place) = candidate;                                                                            \
+      now = next;                                                                                     \
+      if (enough) break;                                                                              \
+    }                                                                                                 \
+  } while (0)
 
 #endif

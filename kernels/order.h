@@ -4,14 +4,6 @@
 
 #include "base.h"
 
-#ifndef HFR_INFINITY
-#ifdef __OPENCL_C_VERSION__
-#define HFR_INFINITY ((double)INFINITY)
-#else
-#define HFR_INFINITY ((double)__builtin_inf())
-#endif
-#endif
-
 /* The first unless the second is less, or greater: as std::min and std::max choose. */
 HFR_FN double hfr_lesser(double a, double b) { return b < a ? b : a; }
 HFR_FN double hfr_greater(double a, double b) { return a < b ? b : a; }

@@ -5,10 +5,6 @@
 #include "common.cl"
 #include "newton_step.h"
 
-// Halvings of the candidate search's radius, and Newton's iterations at most.
-#define HALVINGS 10
-#define ITERATIONS 6
-
 // Smallest decision value of the star with the vertex moved by x, or anything <= floor once it is no better.
 static double star_worst(const hfr_star_cell* star, uint n, hfr_real3 x, double floor_value) {
   double worst = HFR_INFINITY;
@@ -26,57 +22,43 @@ static double largest_measure(const hfr_star_cell* star, uint n, hfr_real3 x, do
   return top;
 }
 
+static hfr_newton_share shares(const hfr_star_cell* star, uint n, hfr_real3 x, double m_max) {
+  hfr_newton_share sum = hfr_newton_zero();
+  for (uint k = 0; k < n; ++k) sum = hfr_newton_sum(sum, hfr_star_newton(star[k], x, m_max));
+  return sum;
+}
+
 static hfr_real3 newton_place(const hfr_star_cell* star, uint n) {
-  hfr_real3 place = hfr_make3(0.0, 0.0, 0.0);
-  double now = largest_measure(star, n, place, HFR_INFINITY);
-  for (int i = 0; i < ITERATIONS; ++i) {
-    hfr_newton_share sums = hfr_newton_zero();
-    for (uint k = 0; k < n; ++k) sums = hfr_newton_sum(sums, hfr_star_newton(star[k], place, now));
-    const hfr_newton_step newton = hfr_newton_solve(sums);
-    if (!newton.ok) break;
-    double length = 1.0;
-    double next = now;
-    hfr_real3 candidate = place;
-    for (int halving = 0; halving <= HFR_NEWTON_MAX_HALVINGS; ++halving, length *= 0.5) {
-      candidate = hfr_make3(place.x + length * newton.step.x, place.y + length * newton.step.y,
-                            place.z + length * newton.step.z);
-      next = largest_measure(star, n, candidate, now);
-      if (next < now) break;
-    }
-    if (!(next < now)) break;
-    const int enough = next > HFR_NEWTON_ENOUGH * now;
-    place = candidate;
-    now = next;
-    if (enough) break;
-  }
+  hfr_real3 place;
+#define LARGEST(x, ceiling_value) largest_measure(star, n, (x), (ceiling_value))
+#define SHARES(x, m_max) shares(star, n, (x), (m_max))
+  HFR_NEWTON_SEARCH(HFR_NEWTON_ITERATIONS, LARGEST, SHARES, place);
+#undef LARGEST
+#undef SHARES
   return place;
 }
 
-static hfr_real3 candidate_place(const hfr_star_cell* star, uint n, hfr_section section, double worst_now) {
-  hfr_real3 place = hfr_make3(0.0, 0.0, 0.0);
-  double radius = hfr_section_radius(section, (double)n);
-  for (int level = 0; level < HALVINGS;) {
-    double best = worst_now;
-    hfr_real3 best_place = place;
-    for (int i = 0; i < HFR_CANDIDATE_DIRECTIONS; ++i) {
-      const hfr_real3 direction = hfr_candidate_direction(i);
-      const hfr_real3 candidate = hfr_make3(place.x + radius * direction.x, place.y + radius * direction.y,
-                                            place.z + radius * direction.z);
-      if (!hfr_section_contains(section, candidate)) continue;
-      const double q = star_worst(star, n, candidate, best);
-      if (q > best) {
-        best = q;
-        best_place = candidate;
-      }
-    }
-    if (best > worst_now) {
-      worst_now = best;
-      place = best_place;
-    } else {
-      radius *= 0.5;
-      ++level;
+// The largest of `best` and of the candidates' worst values; *next becomes the first candidate that has it.
+static double look_round(const hfr_star_cell* star, uint n, hfr_section section, hfr_real3 place,
+                         double radius, double best, hfr_real3* next) {
+  for (int i = 0; i < HFR_CANDIDATE_DIRECTIONS; ++i) {
+    const hfr_real3 candidate = hfr_candidate(place, radius, i);
+    if (!hfr_section_contains(section, candidate)) continue;
+    const double q = star_worst(star, n, candidate, best);
+    if (q > best) {
+      best = q;
+      *next = candidate;
     }
   }
+  return best;
+}
+
+static hfr_real3 candidate_place(const hfr_star_cell* star, uint n, hfr_section section, double worst_now) {
+  hfr_real3 place;
+#define LOOK(place, radius, best, next) best = look_round(star, n, section, place, radius, best, &(next))
+  HFR_CANDIDATE_SEARCH(HFR_CANDIDATE_HALVINGS, hfr_section_radius(section, (double)n), worst_now, LOOK,
+                       place);
+#undef LOOK
   return place;
 }
 

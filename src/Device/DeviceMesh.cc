@@ -9,7 +9,9 @@
 #include <numeric>
 
 #include "Device/Queue.hh"
+#include "HalfFace/Generate.hh"
 #include "kernels/counters.h"
+#include "kernels/volume_length.h"
 
 namespace hfr {
 namespace {
@@ -29,6 +31,7 @@ constexpr std::uint64_t kVertexBytes = 24 + 4 + 1 + 4 + 4 + 1 + 4 * 8 + 1;
 constexpr std::uint64_t kCandidateBytes = 8 + 4 + 4 + 4 + 4 + 1 + 1 + 4 + 4 + 4 * kWordsPerCandidate;
 /// Share of the memory that a mesh may take.
 constexpr double kLargestShare = 0.9;
+constexpr int kLeastRankBits = 8;        // of a key that choose its bin
 constexpr unsigned kFewRepetitions = 4;  // of the selection that are launched at once, at least
 constexpr unsigned kManyLevels = 64;     // of the colouring that are launched at once at first
 
@@ -43,15 +46,21 @@ bool has_cell_data(const TetMesh& mesh) {
   return false;
 }
 
-std::size_t room_for_cells(std::size_t n) { return n + n / kSpare + kLeastRoom; }
+std::size_t room_for_cells(std::size_t n, unsigned spare) {
+  return n + (spare > 0 ? spare : n / kSpare + kLeastRoom);
+}
+std::size_t room_for_candidates(std::size_t room, unsigned spare) {
+  return spare > 0 ? spare : room / kCellsPerCandidate + kLeastRoom;
+}
 
 }  // namespace
 
 struct DeviceMesh::Impl {
   using Counters = std::array<cl_uint, HFR_N_COUNTERS>;
 
-  Impl(const DeviceChoice& choice, DeviceTuning tuning) : queue(choice, tuning) {}
+  Impl(const DeviceChoice& choice, DeviceTuning tuning) : spare(tuning.spare), queue(choice, tuning) {}
 
+  void require_rounding();
   void reserve_mesh(std::size_t n_cells, std::size_t n_vertices);
   void reserve_candidates(std::size_t n_candidates, std::size_t n_words);
   void grow_cells(std::size_t n_cells);
@@ -70,6 +79,7 @@ struct DeviceMesh::Impl {
   void gather_stars();
   Counters colour();
 
+  unsigned spare;
   detail::Queue queue;
   std::size_t n_cells = 0, n_vertices = 0, n_free = 0;
   bool has_data = false, has_regions = false;
@@ -101,20 +111,49 @@ struct DeviceMesh::Impl {
 };
 
 DeviceMesh::DeviceMesh(const DeviceChoice& choice, DeviceTuning tuning)
-    : impl_(std::make_unique<Impl>(choice, tuning)) {}
+    : impl_(std::make_unique<Impl>(choice, tuning)) {
+  impl_->require_rounding();
+}
 DeviceMesh::~DeviceMesh() = default;
 const DeviceInfo& DeviceMesh::info() const { return impl_->queue.info(); }
 bool DeviceMesh::from_cache() const { return impl_->queue.from_cache(); }
 std::vector<KernelTime> DeviceMesh::profile() { return impl_->queue.profile(); }
 
 std::uint64_t DeviceMesh::bytes_needed(std::size_t n_vertices, std::size_t n_cells) {
-  const std::uint64_t room = room_for_cells(n_cells);
-  return room * kCellBytes + n_vertices * kVertexBytes +
-         (room / kCellsPerCandidate + kLeastRoom) * kCandidateBytes;
+  const std::uint64_t room = room_for_cells(n_cells, 0);
+  return room * kCellBytes + n_vertices * kVertexBytes + room_for_candidates(room, 0) * kCandidateBytes;
+}
+
+/// A driver that contracts a*b + c, whatever the source says, is found out here and not in an output.
+void DeviceMesh::Impl::require_rounding() {
+  constexpr std::size_t kProbes = 64;
+  std::vector<cl_uint> tets(8 * kProbes, kNone);
+  std::vector<double> coordinates(12 * kProbes), found(kProbes);
+  for (std::size_t i = 0; i < coordinates.size(); ++i) coordinates[i] = generate::random_unit(1, i);
+  for (std::size_t i = 0; i < 4 * kProbes; ++i) tets[8 * (i / 4) + i % 4] = static_cast<cl_uint>(i);
+  DeviceArray<cl_uint> probe_cells;
+  DeviceArray<double> probe_points, probe_quality;
+  queue.reserve(probe_cells, tets.size());
+  queue.reserve(probe_points, coordinates.size());
+  queue.reserve(probe_quality, kProbes);
+  queue.write(probe_cells, tets.data(), tets.size());
+  queue.write(probe_points, coordinates.data(), coordinates.size());
+  queue.launch("cell_qualities", probe_cells, probe_points, cl_uint{kProbes}, probe_quality);
+  queue.read(probe_quality, found.data(), kProbes);
+  for (std::size_t i = 0; i < kProbes; ++i) {
+    std::array<hfr_real3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k)
+      p[k] = hfr_make3(coordinates[12 * i + 3 * k], coordinates[12 * i + 3 * k + 1],
+                       coordinates[12 * i + 3 * k + 2]);
+    if (std::bit_cast<std::uint64_t>(found[i]) !=
+        std::bit_cast<std::uint64_t>(hfr_volume_length_decision(p[0], p[1], p[2], p[3])))
+      throw DeviceError(queue.info().name +
+                        " does not round as the kernels say: its results would not be the processor's");
+  }
 }
 
 void DeviceMesh::Impl::reserve_mesh(std::size_t n, std::size_t n_points) {
-  const std::size_t room = room_for_cells(n);
+  const std::size_t room = room_for_cells(n, spare);
   queue.reserve(counters, HFR_N_COUNTERS);
   queue.reserve(sums, 3 * std::size_t{queue.groups()});
   queue.reserve(worst, queue.work_items());
@@ -135,7 +174,7 @@ void DeviceMesh::Impl::reserve_mesh(std::size_t n, std::size_t n_points) {
   for (DeviceArray<cl_uchar>* per_vertex : {&frozen, &marked, &colours}) queue.reserve(*per_vertex, n_points);
   queue.reserve(colour_begin, HFR_MAX_COLOURS + 1);
   queue.reserve(colour_cursor, HFR_MAX_COLOURS + 1);
-  const std::size_t n_candidates = room / kCellsPerCandidate + kLeastRoom;
+  const std::size_t n_candidates = room_for_candidates(room, spare);
   reserve_candidates(n_candidates, n_candidates * kWordsPerCandidate);
 }
 
@@ -146,13 +185,13 @@ void DeviceMesh::Impl::reserve_candidates(std::size_t n_candidates, std::size_t 
   queue.reserve(won, n_candidates);
   queue.reserve(lost, n_candidates);
   queue.reserve(arena, n_words);
-  queue.reserve(bins, std::bit_ceil(n_candidates));
+  queue.reserve(bins, std::max(std::bit_ceil(n_candidates), std::size_t{1} << kLeastRankBits));
 }
 
 void DeviceMesh::Impl::grow_cells(std::size_t n) {
   const std::size_t before = quality.room;
   if (n <= before) return;
-  const std::size_t room = room_for_cells(n);
+  const std::size_t room = room_for_cells(n, spare);
   queue.grow(cells, 8 * room);
   queue.grow(quality, room);
   queue.grow(pending, room);
@@ -176,6 +215,7 @@ void DeviceMesh::require_room(std::size_t n_vertices, std::size_t n_cells) const
 
 void DeviceMesh::upload(const TetMesh& mesh, const Workspace& work) {
   static_assert(sizeof(Cell) == 8 * sizeof(cl_uint), "device code has 32-bit indices");
+  static_assert(HFR_MAX_STAR == Star::kCapacity, "what is smoothed on the host is what is smoothed here");
   Impl& m = *impl_;
   require_room(mesh.n_vertices(), mesh.n_cells());
   m.n_cells = mesh.n_cells();
@@ -284,7 +324,7 @@ void DeviceMesh::Impl::search(Kind kind, cl_ulong salt) {
 
 void DeviceMesh::Impl::rank(Kind kind) {
   // The first 4 bits of a key are its quality bucket, where most are alike; the next are as good as random.
-  const int n_bits = std::clamp(static_cast<int>(std::bit_width(keys.room)) - 1, 8, 22);
+  const int n_bits = std::clamp(static_cast<int>(std::bit_width(keys.room)) - 1, kLeastRankBits, 22);
   const auto n_bins = cl_uint{1} << n_bits;
   const auto shift = static_cast<cl_uint>(64 - n_bits);
   queue.fill(bins, cl_uint{0}, 0, n_bins);

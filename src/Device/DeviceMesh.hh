@@ -16,10 +16,10 @@ namespace hfr {
 
 /// How device code is launched; the results do not depend on it.
 struct DeviceTuning {
-  unsigned work_group =
-      0;                 ///< work-items of a group: 1 or a power of two up to 256; 0: by the kind of device
-  unsigned groups = 0;   ///< work-groups of a launch; 0: by the number of compute units
-  bool profile = false;  ///< measure every kernel; see DeviceMesh::profile()
+  unsigned work_group = 0;  ///< work-items of a group: 1, or a power of two up to 256; 0: by kind of device
+  unsigned groups = 0;      ///< work-groups of a launch; 0: by the number of compute units
+  bool profile = false;     ///< measure every kernel; see DeviceMesh::profile()
+  unsigned spare = 0;  ///< room at first for so many more cells, and for so many candidates; 0: by the mesh
 };
 
 /// Time that one kernel took, over all its launches.
@@ -43,7 +43,8 @@ struct DeviceLook {
 /// fails. Every member throws DeviceError that names the call and the error.
 class DeviceMesh {
  public:
-  /// Compiles the kernels, or takes them from the cache.
+  /// Compiles the kernels, or takes them from the cache, and refuses a device that rounds otherwise than the
+  /// processor.
   explicit DeviceMesh(const DeviceChoice& choice, DeviceTuning tuning = {});
   ~DeviceMesh();
   DeviceMesh(const DeviceMesh&) = delete;

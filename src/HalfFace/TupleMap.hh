@@ -10,17 +10,12 @@
 #include <vector>
 
 #include "HalfFace/Handles.hh"
+#include "kernels/priority.h"
 
 namespace hfr {
 
-/// Mixes 64 bits (the finaliser of splitmix64).
-constexpr std::uint64_t mix64(std::uint64_t x) {
-  x ^= x >> 30;
-  x *= 0xbf58476d1ce4e5b9ULL;
-  x ^= x >> 27;
-  x *= 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
+/// Mixes 64 bits; see kernels/priority.h.
+constexpr std::uint64_t mix64(std::uint64_t x) { return hfr_mix64(x); }
 
 /// Key of an edge or face: its vertices in any order.
 struct AnyOrder {

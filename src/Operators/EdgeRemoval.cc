@@ -12,15 +12,17 @@
 namespace hfr {
 namespace {
 
+static_assert(EdgeRemoval<VolumeLength>::kMaxRing == HFR_MAX_RING);
+
 /// The ring of an inner edge: vertices counter-clockwise about a→b, and the cells (i, i+1).
 struct EdgeRing {
   VertexHandle a, b;
   int size = 0;
-  RawArray<VertexHandle, 32> vertices;
-  RawArray<CellHandle, 32> cells;
+  RawArray<VertexHandle, HFR_MAX_RING> vertices;
+  RawArray<CellHandle, HFR_MAX_RING> cells;
 };
 
-/// False when the edge lies on the boundary or its ring has more than 32 cells.
+/// False when the edge lies on the boundary or its ring has more than HFR_MAX_RING cells.
 bool gather_ring(const TetMesh& mesh, EdgeHandle seed, EdgeRing& ring) {
   const CellHandle c(seed.idx() / 6);
   const int edge = static_cast<int>(seed.idx() % 6);
@@ -29,7 +31,7 @@ bool gather_ring(const TetMesh& mesh, EdgeHandle seed, EdgeRing& ring) {
   ring.b = mesh.cell(c).v[ends[1]];
   ring.size = 0;
   return mesh.walk_ring(c, edge, [&](CellHandle cell, VertexHandle p, VertexHandle) {
-    if (ring.size == 32) return false;
+    if (ring.size == HFR_MAX_RING) return false;
     ring.cells[static_cast<std::size_t>(ring.size)] = cell;
     ring.vertices[static_cast<std::size_t>(ring.size++)] = p;
     return true;
@@ -53,7 +55,7 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
   if (!gather_ring(mesh, seed, ring)) return std::nullopt;
   const auto n = static_cast<std::size_t>(ring.size);
   double old_worst = std::numeric_limits<double>::infinity();
-  RawArray<Vec3, 32> p;
+  RawArray<Vec3, HFR_MAX_RING> p;
   for (std::size_t i = 0; i < n; ++i) {
     old_worst = std::min(old_worst, quality[ring.cells[i].idx()]);
     p[i] = mesh.point(ring.vertices[i]);

@@ -20,7 +20,7 @@ class RingTriangulation {
   template <class Value>
   double solve(double floor, Value&& value) {
     double result = floor;
-    HFR_KLINCSEK(n_, 32, best_.data(), apex_.data(), floor, value, result);
+    HFR_KLINCSEK(n_, HFR_MAX_RING, best_.data(), apex_.data(), floor, value, result);
     return result;
   }
 
@@ -30,14 +30,14 @@ class RingTriangulation {
  private:
   std::uint8_t* preorder(int i, int j, std::uint8_t* out) const {
     if (j - i < 2) return out;
-    const std::uint8_t k = apex_[static_cast<std::size_t>(i * 32 + j)];
+    const std::uint8_t k = apex_[static_cast<std::size_t>(i * HFR_MAX_RING + j)];
     *out++ = k;
     return preorder(k, j, preorder(i, k, out));
   }
 
   int n_;
-  std::array<double, 32 * 32> best_;
-  std::array<std::uint8_t, 32 * 32> apex_;
+  std::array<double, HFR_MAX_RING * HFR_MAX_RING> best_;
+  std::array<std::uint8_t, HFR_MAX_RING * HFR_MAX_RING> apex_;
 };
 
 /// visit(i, k, j) for each triangle of a triangulation stored in preorder.

@@ -3,6 +3,7 @@
 #define HFR_OPERATORS_SMOOTH_CANDIDATES_HH
 
 #include "Operators/Smooth.hh"
+#include "kernels/candidates.h"
 
 namespace hfr {
 
@@ -11,7 +12,7 @@ namespace hfr {
 /// metric.
 struct CandidateSearch {
   static constexpr double kVertexNanoseconds = 8'000;
-  int halvings = 10;  ///< of r, from half the mean edge length of the star
+  int halvings = HFR_CANDIDATE_HALVINGS;  ///< of r, from half the mean edge length of the star
 
   template <class Metric>
   std::optional<Move> operator()(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link,

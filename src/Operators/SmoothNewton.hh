@@ -4,6 +4,7 @@
 
 #include "Operators/Smooth.hh"
 #include "Operators/SmoothCandidates.hh"
+#include "kernels/newton_step.h"
 
 namespace hfr {
 
@@ -12,7 +13,7 @@ namespace hfr {
 /// where the norm has no meaning, goes through the candidate search instead. With another metric the place
 /// found for volume-length is one more candidate that this metric judges.
 struct NewtonSearch {
-  int iterations = 6;  ///< at most; most stars need three
+  int iterations = HFR_NEWTON_ITERATIONS;  ///< at most
   CandidateSearch fallback{};
 
   template <class Metric>

@@ -82,7 +82,7 @@ HFR_FN double largest(const Coefficients* k, std::size_t n, const hfr_real3* x, 
 /// Shares of a block of cells, one row an entry of hfr_newton_share.
 HFR_FN void sum_shares(const Coefficients* k, std::size_t n, const hfr_real3* x, double m_max,
                        hfr_newton_share* out) {
-  hfr_newton_share sum = {};
+  hfr_newton_share sum = hfr_newton_zero();
   for (std::size_t first = 0; first < n; first += kBlock) {
     alignas(64) double row[9][kBlock];
     for (std::size_t i = 0; i < kBlock; ++i) {
@@ -99,15 +99,14 @@ HFR_FN void sum_shares(const Coefficients* k, std::size_t n, const hfr_real3* x,
     }
     const std::size_t end = n - first < kBlock ? n - first : kBlock;
     for (std::size_t i = 0; i < end; ++i) {
-      sum.gradient.x += row[0][i];
-      sum.gradient.y += row[1][i];
-      sum.gradient.z += row[2][i];
-      sum.xx += row[3][i];
-      sum.xy += row[4][i];
-      sum.xz += row[5][i];
-      sum.yy += row[6][i];
-      sum.yz += row[7][i];
-      sum.zz += row[8][i];
+      const hfr_newton_share share = {{row[0][i], row[1][i], row[2][i]},
+                                      row[3][i],
+                                      row[4][i],
+                                      row[5][i],
+                                      row[6][i],
+                                      row[7][i],
+                                      row[8][i]};
+      sum = hfr_newton_sum(sum, share);
     }
   }
   *out = sum;
@@ -142,15 +141,13 @@ void StarForm::worst(const Trials& x, const Trials& y, const Trials& z, double f
   if (asked <= size_) std::rotate(order_.begin(), order_.begin() + (asked - 1), order_.begin() + asked);
 }
 
-double StarForm::largest_m(Vec3 x, double ceiling) const {
-  const hfr_real3 at = to_kernel(x);
-  return with_widest_vectors<largest>(&cells_, padded(), &at, ceiling);
+double StarForm::largest_m(hfr_real3 x, double ceiling) const {
+  return with_widest_vectors<largest>(&cells_, padded(), &x, ceiling);
 }
 
-hfr_newton_share StarForm::newton(Vec3 x, double m_max) const {
-  const hfr_real3 at = to_kernel(x);
+hfr_newton_share StarForm::newton(hfr_real3 x, double m_max) const {
   hfr_newton_share sum;
-  with_widest_vectors<sum_shares>(&cells_, size_, &at, m_max, &sum);
+  with_widest_vectors<sum_shares>(&cells_, size_, &x, m_max, &sum);
   return sum;
 }
 

@@ -9,7 +9,7 @@
 #include "HalfFace/RawArray.hh"
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
-#include "kernels/star_newton.h"
+#include "kernels/newton_step.h"
 
 namespace hfr {
 
@@ -36,11 +36,11 @@ class StarForm {
 
   /// Largest m (see kernels/star_newton.h) with the vertex moved by x, or anything ≥ ceiling; infinity where
   /// a cell is not positive.
-  double largest_m(Vec3 x, double ceiling) const;
+  double largest_m(hfr_real3 x, double ceiling) const;
 
   /// Gradient and Hessian of the p-norm of m with the vertex moved by x, where all cells are positive; summed
   /// in the order of the cells.
-  hfr_newton_share newton(Vec3 x, double m_max) const;
+  hfr_newton_share newton(hfr_real3 x, double m_max) const;
 
   /// Coefficients as in hfr_star_cell. Up to the next multiple of kBlock, the last cell is repeated.
   static constexpr std::size_t kBlock = 8;

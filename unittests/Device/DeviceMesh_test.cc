@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
+#include <numbers>
 
 #include "Device/Scratch.hh"
 #include "HalfFace/Check.hh"
@@ -132,6 +134,26 @@ TEST_P(OnDevice, RoundsAreThoseOfTheHost) {
   EXPECT_FALSE(host.mesh.free_cells().empty()) << "no slot was freed";
 }
 
+TEST_P(OnDevice, EdgeInALargeRingIsRemovedAsOnTheHost) {
+  // Close to one side of its ring of twelve, so that removing it pays.
+  constexpr Index kRing = 12;
+  constexpr double kTurn = 2 * std::numbers::pi / kRing;
+  generate::Arrays arrays;
+  for (Index i = 0; i < kRing; ++i) arrays.points.push_back({std::cos(kTurn * i), std::sin(kTurn * i), 0});
+  const double x = 0.955 * std::cos(kTurn / 2);
+  const double y = 0.955 * std::sin(kTurn / 2);
+  arrays.points.push_back({x, y, -1});
+  arrays.points.push_back({x, y, 1});
+  for (Index i = 0; i < kRing; ++i) arrays.cells.push_back({kRing, kRing + 1, i, (i + 1) % kRing});
+  Stand host(built(arrays));
+  Stand there = host;
+  device_->upload(there.mesh, there.work);
+  ASSERT_EQ(round_on_host(host, DeviceMesh::Kind::kEdge, 1).winners, 1U);
+  EXPECT_EQ(device_->round(DeviceMesh::Kind::kEdge, {1, 0, 0}, 5, there.work.clock).winners, 1U);
+  device_->download(there.mesh, there.work);
+  expect_same(host, there);
+}
+
 TEST_P(OnDevice, CellsBornInFreshSlotsInheritRegionAndFields) {
   generate::Arrays arrays = generate::jittered_box({8, 8, 8}, 0.25, 6);
   arrays.regions = generate::two_region_box({8, 8, 8}).regions;
@@ -218,9 +240,13 @@ TEST_P(OnDevice, MeshBeyondTheMemoryIsRefusedWithFigures) {
   EXPECT_NO_THROW(device_->require_room(1000, 5000));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Tunings, OnDevice, testing::Values(DeviceTuning{}, DeviceTuning{1, 3, false}, DeviceTuning{32, 5, true}),
-    [](const auto& tuning) { return "Group" + std::to_string(tuning.param.work_group); });
+INSTANTIATE_TEST_SUITE_P(Tunings, OnDevice,
+                         testing::Values(DeviceTuning{}, DeviceTuning{1, 3, false}, DeviceTuning{32, 5, true},
+                                         DeviceTuning{16, 3, false, /*spare=*/1}),
+                         [](const auto& tuning) {
+                           return "Group" + std::to_string(tuning.param.work_group) +
+                                  (tuning.param.spare > 0 ? "Growing" : "");
+                         });
 
 }  // namespace
 }  // namespace hfr::test

@@ -29,21 +29,20 @@ TEST(KernelFiles, SourceIncludesNothingAndHasEachFileOnce) {
 }
 
 TEST(KernelFiles, LinesKeepTheNumberThatTheyHaveInTheirFile) {
+  constexpr std::string_view kMark = "#define SMOOTH_KERNEL(";
   const std::string source = kernel_source();
+  ASSERT_NE(source.find(kMark), std::string::npos);
   for (const KernelFile& file : kernel_files()) {
     if (std::string_view(file.name) != "smooth.cl") continue;
     // The last piece of a file begins after its last include.
-    const std::size_t at = source.rfind("#line ", source.find("#define ITERATIONS"));
+    const std::size_t at = source.rfind("#line ", source.find(kMark));
     const std::size_t end = source.find('\n', at);
     const int line = std::stoi(source.substr(at + 6));
     const std::string_view text(file.text, file.size);
     const auto in_file =
-        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("#define ITERATIONS")),
-                   '\n') +
-        1;
-    const auto after =
-        std::count(source.begin() + static_cast<std::ptrdiff_t>(end),
-                   source.begin() + static_cast<std::ptrdiff_t>(source.find("#define ITERATIONS")), '\n');
+        std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(kMark)), '\n') + 1;
+    const auto after = std::count(source.begin() + static_cast<std::ptrdiff_t>(end),
+                                  source.begin() + static_cast<std::ptrdiff_t>(source.find(kMark)), '\n');
     EXPECT_EQ(line + after - 1, in_file);
     return;
   }

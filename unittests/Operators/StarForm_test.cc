@@ -88,8 +88,8 @@ TEST(StarForm, LargestMAndNewtonSharesAreThoseOfTheCellsInOrder) {
     double m_max = 0;
     for (std::size_t i = 0; i < star.size(); ++i)
       m_max = std::max(m_max, hfr_star_m(star.cell(i), to_kernel(x)));
-    EXPECT_EQ(star.largest_m(x, std::numeric_limits<double>::infinity()), m_max);
-    EXPECT_GE(star.largest_m(x, 0.5 * m_max), 0.5 * m_max);
+    EXPECT_EQ(star.largest_m(to_kernel(x), std::numeric_limits<double>::infinity()), m_max);
+    EXPECT_GE(star.largest_m(to_kernel(x), 0.5 * m_max), 0.5 * m_max);
     if (!(m_max < std::numeric_limits<double>::infinity())) {
       ++not_positive;
       continue;
@@ -102,7 +102,7 @@ TEST(StarForm, LargestMAndNewtonSharesAreThoseOfTheCellsInOrder) {
       sum.xy += share.xy;
       sum.zz += share.zz;
     }
-    const hfr_newton_share found = star.newton(x, m_max);
+    const hfr_newton_share found = star.newton(to_kernel(x), m_max);
     EXPECT_EQ(found.gradient.x, sum.gradient.x);
     EXPECT_EQ(found.xy, sum.xy);
     EXPECT_EQ(found.zz, sum.zz);

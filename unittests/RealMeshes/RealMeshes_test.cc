@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "HalfFace/Check.hh"
+#include "HalfFace/Errors.hh"
 #include "IO/Assemble.hh"
 #include "IO/Hash.hh"
 #include "IO/MeshFile.hh"
@@ -100,6 +101,25 @@ TEST_P(RealMeshes, ImproveKeepsShapeAndRaisesTheWorst) {
   for (const auto& [region, volume] : before)
     EXPECT_NEAR(after.at(region), volume, 1e-12 * std::abs(result.before.enclosed_volume))
         << "region " << region;
+}
+
+TEST_P(RealMeshes, ThreadsAndDeviceGiveTheSameBits) {
+  const auto hash = [&](ImproveOptions options) {
+    TetMesh mesh = io::assemble(io::read_mesh(path_));
+    improve(mesh, options);
+    return io::mesh_hash(mesh);
+  };
+  ImproveOptions options;
+  options.policy.threads = 1;
+  const auto one = hash(options);
+  options.policy.threads = 3;
+  EXPECT_EQ(hash(options), one) << "with three threads";
+  options.device.kind = DeviceChoice::Kind::kOpenCl;
+  try {
+    EXPECT_EQ(hash(options), one) << "on the device";
+  } catch (const DeviceError& error) {
+    GTEST_SKIP() << error.what();
+  }
 }
 
 TEST_P(RealMeshes, EveryFormatGivesTheSameMeshBack) {
