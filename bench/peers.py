@@ -65,8 +65,10 @@ def call(command, limit, allowed=(0,)):
 
 
 def stats(tool, mesh):
-    _, text = call([tool, "stats", mesh, "--json", "-", "-q"], None)
-    report = json.loads(text)["meshes"][0]
+    done = subprocess.run([str(tool), "stats", str(mesh), "--json", "-", "-q"], capture_output=True, text=True)
+    if done.returncode != 0:  # as where a program makes overlapping cells of inverted ones
+        raise Failed("no mesh: " + done.stderr.strip().split(": ", 2)[-1].split(":")[0])
+    report = json.loads(done.stdout)["meshes"][0]
     return report["statistics"], report["reoriented"]
 
 
