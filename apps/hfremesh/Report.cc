@@ -96,6 +96,15 @@ void print_limits(const Result& result) {
              grouped(result.stuck.size()), text);
 }
 
+void print_surface(const SurfaceReport& s) {
+  fmt::print(
+      "surface: {} triangles, {} before; Hausdorff distance {:.3g} ({:.2g} % of the diagonal), at most "
+      "{:.3g} "
+      "allowed; volume {:+.2e}\n",
+      grouped(s.triangles_after), grouped(s.triangles_before), s.hausdorff,
+      s.diagonal > 0 ? 100 * s.hausdorff / s.diagonal : 0.0, s.bound, s.volume_change);
+}
+
 void print_written(const std::string& path, const io::MeshData& data) {
   fmt::print("{}: {} vertices, {} cells, {} triangles\n", path, grouped(data.points.size()),
              grouped(data.cells.size()), grouped(data.triangles.size()));

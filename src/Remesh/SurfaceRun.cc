@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/SurfaceRun.hh"
 
-#include <algorithm>
-#include <cmath>
-
 #include "HalfFace/Errors.hh"
+#include "Remesh/Surfaces.hh"
 #ifdef HFR_HAS_SURFACE
 #include "Surface/SurfaceMesh.hh"
 #endif
@@ -14,46 +12,14 @@ namespace hfr {
 #ifdef HFR_HAS_SURFACE
 namespace {
 
-/// Of the mean edge: how far apart the points are by which surfaces are compared.
-constexpr double kSpacing = 0.25;
-
 /// What the boundary encloses; interfaces take no part.
 double enclosed_volume(const TetMesh& mesh) {
-  if (mesh.n_vertices() == 0) return 0;
-  const Vec3 origin = mesh.points()[0];
-  double sum = 0;
-  double lost = 0;  // Kahan's: the volume is to be right to the last digits
+  std::vector<Triangle> boundary;
   for (HalfFaceHandle h : mesh.boundary_halffaces()) {
     const auto f = mesh.halfface_vertices(h);  // seen from inside
-    const Vec3 a = mesh.point(f[0]) - origin;
-    const double term = dot(a, cross(mesh.point(f[2]) - origin, mesh.point(f[1]) - origin)) / 6.0 - lost;
-    const double next = sum + term;
-    lost = (next - sum) - term;
-    sum = next;
+    boundary.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
   }
-  return sum;
-}
-
-double mean_edge(const std::vector<Triangle>& surface) {
-  double sum = 0;
-  for (const Triangle& t : surface)
-    for (std::size_t k = 0; k < 3; ++k) sum += norm(t[(k + 1) % 3] - t[k]);
-  return surface.empty() ? 0 : sum / (3.0 * static_cast<double>(surface.size()));
-}
-
-double diagonal(const std::vector<Triangle>& surface) {
-  if (surface.empty()) return 0;
-  Vec3 low = surface[0][0];
-  Vec3 high = low;
-  for (const Triangle& t : surface) {
-    for (Vec3 p : t) {
-      for (int d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], p[d]);
-        high[d] = std::max(high[d], p[d]);
-      }
-    }
-  }
-  return norm(high - low);
+  return enclosed_volume(boundary);
 }
 
 }  // namespace
@@ -87,13 +53,7 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   report.feature_edges = impl_->surface->n_feature_edges();
   if (!impl_->measure) return report;
   const std::vector<Triangle> after = surface_triangles(mesh, impl_->policy);
-  report.triangles_before = impl_->before.size();
-  report.triangles_after = after.size();
-  const double spacing = kSpacing * mean_edge(impl_->before);
-  if (spacing > 0)
-    report.hausdorff = surface_distance(impl_->before, after, spacing, impl_->policy).hausdorff();
-  report.diagonal = diagonal(impl_->before);
-  if (impl_->volume != 0) report.volume_change = (enclosed_volume(mesh) - impl_->volume) / impl_->volume;
+  measure_surfaces(impl_->before, after, impl_->volume, enclosed_volume(mesh), impl_->policy, report);
   return report;
 }
 

@@ -230,5 +230,38 @@ TEST(Commands, GenerateGivesTheSameFileEveryTime) {
   EXPECT_EQ(tool.run("generate box --n 2 2 2 --low -1 -1 -1 --high 1 2 3 -o d.mesh").code, 0);
 }
 
+TEST(Commands, SurfaceFilesAreImprovedAsSurfaces) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 4 4 4 --jitter 0.3 -o box.mesh").code, 0);
+  ASSERT_EQ(tool.run("convert box.mesh -o box.stl").code, 0);
+  const Outcome outcome = tool.run("box.stl -o better.ply --json report.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json report = json::parse(tool.content("report.json"));
+  EXPECT_GT(report["after"]["min_angle"]["min"], report["before"]["min_angle"]["min"]);
+  EXPECT_EQ(report["after"]["open_edges"], 0);
+  EXPECT_NEAR(report["after"]["volume"].get<double>(), 1, 1e-6);  // STL rounds coordinates to 32 bits
+  EXPECT_EQ(report["surface"]["mode"], "free");
+  EXPECT_THAT(outcome.out, HasSubstr("angle min"));
+  EXPECT_THAT(tool.files(), ElementsAre("better.ply", "box.mesh", "box.stl", "report.json"));
+  const Outcome again = tool.run("better.ply -o same.off --min-angle 1 --json -");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_FALSE(json::parse(again.out)["result"]["changed"]);
+}
+
+TEST(Commands, SurfaceFilesHaveTheirOwnGoalAndModes) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 3 3 3 --jitter 0.3 -o box.mesh").code, 0);
+  ASSERT_EQ(tool.run("convert box.mesh -o box.off").code, 0);
+  const std::string before = tool.content("box.off");
+  EXPECT_EQ(tool.run("box.off -o box.off --surface frozen").code, 1);
+  EXPECT_EQ(tool.run("box.off -o box.off --min-dihedral 20").code, 1);
+  EXPECT_EQ(tool.run("box.mesh -o out.mesh --min-angle 20").code, 1);
+  EXPECT_EQ(tool.content("box.off"), before) << "nothing may be written after a usage error";
+  const Outcome missed = tool.run("box.off -o out.off --min-angle 59");
+  EXPECT_EQ(missed.code, 3);
+  EXPECT_THAT(missed.err, HasSubstr("59 degrees"));
+  EXPECT_THAT(tool.files(), ElementsAre("box.mesh", "box.off", "out.off"));
+}
+
 }  // namespace
 }  // namespace hfr::app::test
