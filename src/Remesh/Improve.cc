@@ -154,9 +154,9 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   if (!options.min_dihedral && is_scattered(mesh, options.policy))
     cell_order =
         reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
+  const SurfaceRun surface(mesh, options, at_first.n_invalid > 0, control.passes());
   Workspace work;
   work.attach(mesh, options.policy);
-  const SurfaceRun surface(mesh, options);
   control.set_surface(surface.get());
   const bool met = run_stages(mesh, work, options, control, at_first);
   restore_volume(mesh, work, options, control);

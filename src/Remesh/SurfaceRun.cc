@@ -5,6 +5,7 @@
 #include "Remesh/Surfaces.hh"
 #ifdef HFR_HAS_SURFACE
 #include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceUnfold.hh"
 #endif
 
 namespace hfr {
@@ -29,10 +30,13 @@ struct SurfaceRun::Impl {
   bool measure = false;
   std::vector<Triangle> before;
   double volume = 0;
+  double bound = 0;  // largest distance allowed
   std::unique_ptr<SurfaceMesh> surface;
 };
 
-SurfaceRun::SurfaceRun(const TetMesh& mesh, const ImproveOptions& options) : impl_(new Impl) {
+SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold,
+                       std::vector<PassReport>& passes)
+    : impl_(new Impl) {
   if (options.surface.mode == SurfaceMode::kFrozen) return;
   impl_->policy = options.policy;
   impl_->measure = options.statistics;
@@ -40,7 +44,22 @@ SurfaceRun::SurfaceRun(const TetMesh& mesh, const ImproveOptions& options) : imp
     impl_->before = surface_triangles(mesh, options.policy);
     impl_->volume = enclosed_volume(mesh);
   }
-  impl_->surface = std::make_unique<SurfaceMesh>(mesh, options.surface, options.policy);
+  SurfaceOptions wanted = options.surface;
+  impl_->bound = SurfaceMesh::allowed_distance(mesh, wanted, options.policy);
+  if (unfold) {
+    const Unfolding done = unfold_surface(mesh, options.surface, options.policy);
+    PassReport pass;
+    pass.stage = "unfold";
+    pass.op = "surface unfold";
+    pass.iteration = 1;
+    pass.seeds = pass.candidates = done.n_folded;
+    pass.winners = done.n_moved;
+    if (done.n_folded > 0) passes.push_back(pass);
+    // What is left of the distance; the surface is taken as it is now.
+    if (done.n_moved > 0 && wanted.mode == SurfaceMode::kFree)
+      wanted.hausdorff = impl_->bound - done.distance;
+  }
+  impl_->surface = std::make_unique<SurfaceMesh>(mesh, wanted, options.policy);
 }
 
 SurfaceMesh* SurfaceRun::get() const { return impl_->surface.get(); }
@@ -49,7 +68,7 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   SurfaceReport report;
   if (!impl_->surface) return report;
   report.mode = impl_->surface->options().mode;
-  report.bound = impl_->surface->hausdorff();
+  report.bound = impl_->bound;
   report.feature_edges = impl_->surface->n_feature_edges();
   if (!impl_->measure) return report;
   const std::vector<Triangle> after = surface_triangles(mesh, impl_->policy);
@@ -61,7 +80,7 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
 
 struct SurfaceRun::Impl {};
 
-SurfaceRun::SurfaceRun(const TetMesh&, const ImproveOptions& options) {
+SurfaceRun::SurfaceRun(TetMesh&, const ImproveOptions& options, bool, std::vector<PassReport>&) {
   HFR_REQUIRE(options.surface.mode == SurfaceMode::kFrozen,
               "this hfremesh was built without OpenMesh and can only leave the surface as it is: "
               "use --surface frozen, or build with -DHFR_SURFACE=ON");

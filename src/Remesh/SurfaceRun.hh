@@ -13,8 +13,9 @@ namespace hfr {
 /// The surface of one run: made before its first pass unless it is frozen, and measured after its last.
 class SurfaceRun {
  public:
-  /// Throws InvalidInput where the surface is not to be frozen but the build has no OpenMesh.
-  SurfaceRun(const TetMesh& mesh, const ImproveOptions& options);
+  /// Throws InvalidInput where the surface is not to be frozen but the build has no OpenMesh. With `unfold`,
+  /// folds of a surface that may change are spread first, which moves vertices of the mesh; see `passes`.
+  SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold, std::vector<PassReport>& passes);
   ~SurfaceRun();
   SurfaceRun(const SurfaceRun&) = delete;
   SurfaceRun& operator=(const SurfaceRun&) = delete;

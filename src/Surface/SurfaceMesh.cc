@@ -346,6 +346,12 @@ SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options
 
 SurfaceMesh::~SurfaceMesh() = default;
 
+double SurfaceMesh::allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
+  if (options.mode != SurfaceMode::kFree) return 0;
+  if (options.hausdorff) return *options.hausdorff;
+  return kHausdorff * surface::mean_edge(surface::gather(mesh, options, policy));
+}
+
 const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }
 double SurfaceMesh::hausdorff() const { return impl_->hausdorff; }
 

@@ -49,6 +49,8 @@ class SurfaceMesh {
   SurfaceMesh(const SurfaceMesh&) = delete;
   SurfaceMesh& operator=(const SurfaceMesh&) = delete;
 
+  /// Largest distance that the options allow on this surface; 0 but in free mode.
+  static double allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
   const SurfaceOptions& options() const;
   /// Largest distance from the input that is allowed; 0 in flat mode.
   double hausdorff() const;

@@ -142,6 +142,34 @@ TEST(SurfaceRuns, FreeKeepsTheCornersAndEdgesOfABox) {
   EXPECT_EQ(surface.n_vertices(SurfaceKind::kFixed), 8U);
 }
 
+// The case of D'Amato & Venere (2013), figure 3.
+TEST(SurfaceRuns, CylinderWhoseSideFoldsOverIsRepairedUnlessFrozen) {
+  const TetMesh folded = built(generate::cylinder(6, 16, 1, 2, 0, /*wring=*/70));
+  ImproveOptions options = with(SurfaceMode::kFrozen);
+  options.time_limit = 60;
+  TetMesh frozen = folded;
+  const Result kept = improve(frozen, options);
+  EXPECT_FALSE(kept.goal_reached);
+  EXPECT_GT(kept.invalid_cells.size(), 5U);
+  EXPECT_GT(kept.folded_faces.size(), 0U);
+
+  TetMesh mesh = folded;
+  options.surface.mode = SurfaceMode::kFree;
+  options.surface.hausdorff = 0.03;
+  const Result result = improve(mesh, options);
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_TRUE(result.goal_reached);
+  EXPECT_TRUE(result.invalid_cells.empty());
+  EXPECT_GT(result.after.min_dihedral.min, 15);
+  EXPECT_LE(result.surface.hausdorff, 0.031);
+  EXPECT_LT(std::abs(result.surface.volume_change), 1e-3);
+  EXPECT_EQ(result.surface.bound, 0.03);
+  for (VertexHandle v : mesh.boundary_vertices()) {
+    const Vec3 p = mesh.point(v);
+    EXPECT_LT(std::hypot(p.x, p.y), 1 + 0.031);
+  }
+}
+
 TEST(SurfaceRuns, HausdorffOfZeroIsFlat) {
   TetMesh mesh = small_cavity(6);
   TetMesh flat = mesh;
