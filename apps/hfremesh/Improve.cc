@@ -14,6 +14,7 @@
 #include "IO/Assemble.hh"
 #include "ImproveSurface.hh"
 #include "Json.hh"
+#include "Remesh/SurfaceRun.hh"
 #include "Report.hh"
 
 namespace hfr::app {
@@ -24,6 +25,7 @@ struct CommandLine {
   std::string input, output;
   bool dry_run = false;
   bool progress = false;
+  bool label_features = false;
   std::string ops, metric, smoother, rounds, compat;
   std::string surface;
   std::vector<std::string> fix, periodic;
@@ -252,6 +254,7 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   const Stopwatch improving;
   const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
   seconds.improve = result.seconds;
+  if (line.label_features) add_feature_labels(loaded.mesh, options.surface, options.policy);
   seconds.statistics = improving.seconds() - result.seconds;
 
   const Stopwatch writing;
@@ -358,6 +361,8 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
                    "Edges sharper than this stay, with --surface free; 40 by default")
       ->type_name("DEG")
       ->check(CLI::Range(0.0, 180.0));
+  command->add_flag("--label-features", line->label_features,
+                    "Write sharp edges and corners of the surface as labels");
   command
       ->add_option("--fix", line->fix,
                    "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "

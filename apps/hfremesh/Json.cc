@@ -150,8 +150,13 @@ Json limits_json(const Result& result) {
                      {"limit", kLimitNames[static_cast<std::size_t>(stuck.limit)]},
                      {"frozen_vertices", stuck.n_frozen_vertices}});
   }
+  Json held = {{"cells", result.held.cells}};
+  if (result.held.known)
+    held.update(
+        {{"flat", result.held.by_flat}, {"free", result.held.by_free}, {"shape", result.held.by_shape}});
   return {{"below", result.stuck_below},
           {"n_cells", result.stuck.size()},
+          {"held_by_surface", std::move(held)},
           {"counts", std::move(counts)},
           {"cells", std::move(cells)}};
 }

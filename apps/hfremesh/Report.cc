@@ -94,6 +94,12 @@ void print_limits(const Result& result) {
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kLimitNames[i]);
   fmt::print("below {:g} degrees: {} cells, kept there by: {}\n", result.stuck_below,
              grouped(result.stuck.size()), text);
+  const HeldCells& held = result.held;
+  if (held.cells == 0 || !held.known) return;
+  fmt::print(
+      "the surface holds back {} of them: --surface flat would free {}, free {} more, and {} hang on the "
+      "shape itself\n",
+      grouped(held.cells), grouped(held.by_flat), grouped(held.by_free), grouped(held.by_shape));
 }
 
 void print_surface(const SurfaceReport& s) {

@@ -144,6 +144,8 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, Result& result)
       result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled || result.stop == Stop::kIterations;
   result.stuck =
       stuck_cells(mesh, result.stuck_below, ended_early || full, result.folded_faces, options.policy);
+  if (options.surface.mode == SurfaceMode::kFrozen)
+    result.held = held_cells(mesh, result.stuck, result.stuck_below, options);
 }
 
 /// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were

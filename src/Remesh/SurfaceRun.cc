@@ -4,6 +4,8 @@
 #include "HalfFace/Errors.hh"
 #include "Remesh/Surfaces.hh"
 #ifdef HFR_HAS_SURFACE
+#include "Surface/FeatureLabels.hh"
+#include "Surface/HeldCells.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceUnfold.hh"
 #endif
@@ -91,5 +93,36 @@ SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
 #endif
 
 SurfaceRun::~SurfaceRun() = default;
+
+void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
+#ifdef HFR_HAS_SURFACE
+  label_features(mesh, options, policy);
+#else
+  static_cast<void>(mesh), static_cast<void>(options), static_cast<void>(policy);
+  throw InvalidInput(
+      "this hfremesh was built without OpenMesh and finds no features: build it with "
+      "-DHFR_SURFACE=ON");
+#endif
+}
+
+HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
+                     const ImproveOptions& options) {
+  std::vector<CellHandle> cells;
+  for (const StuckCell& cell : stuck)
+    if (cell.limit != Limit::kBudget && cell.limit != Limit::kSearch) cells.push_back(cell.cell);
+  HeldCells held;
+  held.cells = cells.size();
+#ifdef HFR_HAS_SURFACE
+  held.known = true;
+  for (FreedBy by : freed_by(mesh, cells, degrees, options.surface, options.policy)) {
+    if (by == FreedBy::kFlat) ++held.by_flat;
+    if (by == FreedBy::kFree) ++held.by_free;
+    if (by == FreedBy::kShape) ++held.by_shape;
+  }
+#else
+  static_cast<void>(mesh), static_cast<void>(degrees), static_cast<void>(options);
+#endif
+  return held;
+}
 
 }  // namespace hfr

@@ -29,6 +29,14 @@ class SurfaceRun {
   std::unique_ptr<Impl> impl_;
 };
 
+/// What the frozen surface holds back among the cells that are stuck below `degrees`.
+HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
+                     const ImproveOptions& options);
+
+/// Labels on the feature edges and corners of the surface as it is now: see Surface/FeatureLabels.hh. Throws
+/// InvalidInput in a build without OpenMesh.
+void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
+
 }  // namespace hfr
 
 #endif

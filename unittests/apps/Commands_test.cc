@@ -16,6 +16,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
+#ifdef HFR_HAS_SURFACE
+constexpr bool kHasSurface = true;
+#else
+constexpr bool kHasSurface = false;
+#endif
+
 /// Hash of a mesh file as `stats` sees it.
 std::string hash_of(Tool& tool, const std::string& file) {
   const Outcome outcome = tool.run("stats --json - " + file);
@@ -231,6 +237,7 @@ TEST(Commands, GenerateGivesTheSameFileEveryTime) {
 }
 
 TEST(Commands, SurfaceFilesAreImprovedAsSurfaces) {
+  if (!kHasSurface) GTEST_SKIP() << "this is a build without OpenMesh";
   Tool tool;
   ASSERT_EQ(tool.run("generate box --n 4 4 4 --jitter 0.3 -o box.mesh").code, 0);
   ASSERT_EQ(tool.run("convert box.mesh -o box.stl").code, 0);
@@ -248,7 +255,26 @@ TEST(Commands, SurfaceFilesAreImprovedAsSurfaces) {
   EXPECT_FALSE(json::parse(again.out)["result"]["changed"]);
 }
 
+TEST(Commands, FeaturesComeBackAsLabels) {
+  if (!kHasSurface) GTEST_SKIP() << "this is a build without OpenMesh";
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 3 3 3 -o box.mesh").code, 0);
+  ASSERT_EQ(tool.run("box.mesh -o plain.mesh --surface flat").code, 0);
+  EXPECT_THAT(tool.content("plain.mesh"), Not(HasSubstr("Edges")));
+  for (const char* name : {"out.mesh", "out.msh", "out.vtu", "out.ovm"}) {
+    const Outcome outcome =
+        tool.run(std::string("box.mesh -o ") + name + " --surface flat --label-features --json report.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GE(json::parse(tool.content("report.json"))["output"]["edges"], 12) << name;
+  }
+  EXPECT_THAT(tool.content("out.mesh"), HasSubstr("Edges\n"));
+  EXPECT_THAT(tool.content("out.msh"), AllOf(HasSubstr("\"feature\""), HasSubstr("\"corner\"")));
+  ASSERT_EQ(tool.run("convert out.msh -o back.mesh").code, 0);
+  EXPECT_EQ(hash_of(tool, "out.mesh"), hash_of(tool, "back.mesh"));
+}
+
 TEST(Commands, SurfaceFilesHaveTheirOwnGoalAndModes) {
+  if (!kHasSurface) GTEST_SKIP() << "this is a build without OpenMesh";
   Tool tool;
   ASSERT_EQ(tool.run("generate box --n 3 3 3 --jitter 0.3 -o box.mesh").code, 0);
   ASSERT_EQ(tool.run("convert box.mesh -o box.off").code, 0);
