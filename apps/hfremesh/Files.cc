@@ -54,10 +54,16 @@ io::MeshData read_data(const std::string& path) {
 }
 
 LoadedMesh load(const std::string& path, const CommonOptions& common) {
-  LoadedMesh loaded;
   const Stopwatch read;
   io::MeshData data = read_data(path);
-  loaded.seconds_read = read.seconds();
+  const double seconds_read = read.seconds();
+  LoadedMesh loaded = load(std::move(data), path, common);
+  loaded.seconds_read = seconds_read;
+  return loaded;
+}
+
+LoadedMesh load(io::MeshData data, const std::string& path, const CommonOptions& common) {
+  LoadedMesh loaded;
   loaded.notes = std::move(data.notes);
   if (data.cells.empty())
     throw Failure(ExitCode::kCannotRead, path + ": there are no tetrahedra in the file");

@@ -24,6 +24,8 @@ struct LoadedMesh {
 
 io::MeshData read_data(const std::string& path);
 LoadedMesh load(const std::string& path, const CommonOptions& common);
+/// The same from what read_data() gave for `path`.
+LoadedMesh load(io::MeshData data, const std::string& path, const CommonOptions& common);
 
 /// Fails unless the file type is known and the folder is there and takes files: said before the work, not
 /// after.

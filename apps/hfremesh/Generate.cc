@@ -29,6 +29,7 @@ struct GenerateOptions {
   double radius = 1;
   double height = 2;
   double twist = 0;
+  double wring = 0;
 };
 
 /// Counts of a shape: the given ones or those it has by itself.
@@ -55,7 +56,8 @@ generate::Arrays make_box(const GenerateOptions& options) {
 
 generate::Arrays make_cylinder(const GenerateOptions& options) {
   const auto n = counts<2>(options, {4, 12});
-  generate::Arrays mesh = generate::cylinder(n[0], n[1], options.radius, options.height, options.twist);
+  generate::Arrays mesh =
+      generate::cylinder(n[0], n[1], options.radius, options.height, options.twist, options.wring);
   if (options.jitter != 0) generate::jitter_inner(mesh, options.jitter, options.seed);
   return mesh;
 }
@@ -131,6 +133,8 @@ Run add_generate(CLI::App& app, CommonOptions& common) {
   cylinder->add_option("--radius", options->radius, "Radius");
   cylinder->add_option("--height", options->height, "Height");
   cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned");
+  cylinder->add_option("--wring", options->wring,
+                       "Degrees by which the side is turned back and forth; from 58 on it folds over");
   for (CLI::App* shape : {ball, cylinder}) {
     shape->add_option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges");
     shape->add_option("--seed", options->seed, "Seed of the jitter");

@@ -12,7 +12,9 @@
 #include "Console.hh"
 #include "Files.hh"
 #include "IO/Assemble.hh"
+#include "ImproveSurface.hh"
 #include "Json.hh"
+#include "Remesh/SurfaceRun.hh"
 #include "Report.hh"
 
 namespace hfr::app {
@@ -23,6 +25,7 @@ struct CommandLine {
   std::string input, output;
   bool dry_run = false;
   bool progress = false;
+  bool label_features = false;
   std::string ops, metric, smoother, rounds, compat;
   std::string surface;
   std::vector<std::string> fix, periodic;
@@ -30,6 +33,7 @@ struct CommandLine {
   std::string device;     ///< as device_choice_from_name() has it
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
+  double min_angle = 0;      ///< degrees, for surfaces; 0 = none
   std::string ids;           ///< file for the cells that are stuck, empty for none
   double time_limit = 0;     ///< 0 = none
   io::WriteOptions write;
@@ -165,19 +169,6 @@ Json outcome(const TetMesh& mesh, const Result& result) {
   return json;
 }
 
-Json surface_json(const SurfaceReport& surface) {
-  Json json;
-  json["mode"] = surface.mode == SurfaceMode::kFlat ? "flat" : "free";
-  json["bound"] = surface.bound;
-  json["hausdorff"] = surface.hausdorff;
-  json["diagonal"] = surface.diagonal;
-  json["volume_change"] = surface.volume_change;
-  json["feature_edges"] = surface.feature_edges;
-  json["triangles_before"] = surface.triangles_before;
-  json["triangles_after"] = surface.triangles_after;
-  return json;
-}
-
 Json device_json(const Result& result) {
   Json json;
   json["name"] = result.device.empty() ? Json() : Json(result.device);
@@ -231,14 +222,7 @@ void print_result(const Result& result, const Seconds& seconds, const CommandLin
   fmt::print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
              result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,
              seconds.statistics, seconds.write);
-  if (result.surface.mode != SurfaceMode::kFrozen) {
-    const SurfaceReport& s = result.surface;
-    fmt::print(
-        "surface: {} triangles, {} before; Hausdorff distance {:.3g} ({:.2g} % of the diagonal), at most "
-        "{:.3g} allowed; volume {:+.2e}\n",
-        grouped(s.triangles_after), grouped(s.triangles_before), s.hausdorff,
-        s.diagonal > 0 ? 100 * s.hausdorff / s.diagonal : 0.0, s.bound, s.volume_change);
-  }
+  if (result.surface.mode != SurfaceMode::kFrozen) print_surface(result.surface);
   if (line.dry_run) fmt::print("dry run: nothing was written\n");
 }
 
@@ -254,13 +238,23 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   }
   if (!line.ids.empty() && line.ids != "-") require_writable_folder(line.ids);
   const SignalGuard signals;
-  LoadedMesh loaded = load(line.input, common);
-  Seconds seconds{.read = loaded.seconds_read, .build = loaded.seconds_build};
+  const Stopwatch reading;
+  io::MeshData read = read_data(line.input);
+  const double seconds_read = reading.seconds();
+  if (read.cells.empty() && !read.triangles.empty())
+    return improve_surface({line.input, line.output, line.dry_run, line.surface, line.min_dihedral,
+                            line.min_angle, line.time_limit, options.surface, line.write, seconds_read},
+                           std::move(read), signals, common, report);
+  if (line.min_angle > 0)
+    throw Failure(ExitCode::kUsage, "--min-angle is for surfaces; use --min-dihedral for tetrahedra");
+  LoadedMesh loaded = load(std::move(read), line.input, common);
+  Seconds seconds{.read = seconds_read, .build = loaded.seconds_build};
   report["input"].update(to_json(loaded.report));
 
   const Stopwatch improving;
   const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
   seconds.improve = result.seconds;
+  if (line.label_features) add_feature_labels(loaded.mesh, options.surface, options.policy);
   seconds.statistics = improving.seconds() - result.seconds;
 
   const Stopwatch writing;
@@ -318,6 +312,11 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
           "as can be had")
       ->type_name("DEG")
       ->check(degrees_or_max, "");
+  command
+      ->add_option("--min-angle", line->min_angle,
+                   "For a surface without tetrahedra: goal for the smallest angle of its triangles")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 60.0));
   command->add_option("--iterations", line->improve.iterations, "At most N bulk iterations; 0 is no limit")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
@@ -362,6 +361,8 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
                    "Edges sharper than this stay, with --surface free; 40 by default")
       ->type_name("DEG")
       ->check(CLI::Range(0.0, 180.0));
+  command->add_flag("--label-features", line->label_features,
+                    "Write sharp edges and corners of the surface as labels");
   command
       ->add_option("--fix", line->fix,
                    "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "

@@ -102,6 +102,21 @@ Json to_json(const Statistics& s) {
   return json;
 }
 
+Json distribution_json(const Distribution& distribution) { return to_json(distribution); }
+
+Json surface_json(const SurfaceReport& surface) {
+  Json json;
+  json["mode"] = surface.mode == SurfaceMode::kFlat ? "flat" : "free";
+  json["bound"] = surface.bound;
+  json["hausdorff"] = surface.hausdorff;
+  json["diagonal"] = surface.diagonal;
+  json["volume_change"] = surface.volume_change;
+  json["feature_edges"] = surface.feature_edges;
+  json["triangles_before"] = surface.triangles_before;
+  json["triangles_after"] = surface.triangles_after;
+  return json;
+}
+
 Json to_json(const PassReport& pass) {
   Json json;
   json["stage"] = pass.stage;
@@ -135,8 +150,13 @@ Json limits_json(const Result& result) {
                      {"limit", kLimitNames[static_cast<std::size_t>(stuck.limit)]},
                      {"frozen_vertices", stuck.n_frozen_vertices}});
   }
+  Json held = {{"cells", result.held.cells}};
+  if (result.held.known)
+    held.update(
+        {{"flat", result.held.by_flat}, {"free", result.held.by_free}, {"shape", result.held.by_shape}});
   return {{"below", result.stuck_below},
           {"n_cells", result.stuck.size()},
+          {"held_by_surface", std::move(held)},
           {"counts", std::move(counts)},
           {"cells", std::move(cells)}};
 }

@@ -22,6 +22,8 @@ std::string json_text(const Json& report);
 Json contents(const io::MeshData& data);
 Json to_json(const Statistics& statistics);
 Json to_json(const PassReport& pass);
+Json distribution_json(const Distribution& distribution);
+Json surface_json(const SurfaceReport& surface);
 Json to_json(const BuildReport& report);
 /// What keeps the cells that are left below the goal: counts, and the first hundred of them.
 Json limits_json(const Result& result);

@@ -94,6 +94,21 @@ void print_limits(const Result& result) {
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kLimitNames[i]);
   fmt::print("below {:g} degrees: {} cells, kept there by: {}\n", result.stuck_below,
              grouped(result.stuck.size()), text);
+  const HeldCells& held = result.held;
+  if (held.cells == 0 || !held.known) return;
+  fmt::print(
+      "the surface holds back {} of them: --surface flat would free {}, free {} more, and {} hang on the "
+      "shape itself\n",
+      grouped(held.cells), grouped(held.by_flat), grouped(held.by_free), grouped(held.by_shape));
+}
+
+void print_surface(const SurfaceReport& s) {
+  fmt::print(
+      "surface: {} triangles, {} before; Hausdorff distance {:.3g} ({:.2g} % of the diagonal), at most "
+      "{:.3g} "
+      "allowed; volume {:+.2e}\n",
+      grouped(s.triangles_after), grouped(s.triangles_before), s.hausdorff,
+      s.diagonal > 0 ? 100 * s.hausdorff / s.diagonal : 0.0, s.bound, s.volume_change);
 }
 
 void print_written(const std::string& path, const io::MeshData& data) {

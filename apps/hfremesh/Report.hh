@@ -24,6 +24,8 @@ void print_statistics(const std::vector<Column>& columns);
 void print_passes(const std::vector<PassReport>& passes);
 /// One line: how many cells are below an angle and what keeps them there. Nothing where none are.
 void print_limits(const Result& result);
+/// One line: what became of a surface that might change.
+void print_surface(const SurfaceReport& surface);
 /// One line: the file and its counts.
 void print_written(const std::string& path, const io::MeshData& data);
 /// "3, 17, 20 and 5 more".

@@ -256,11 +256,12 @@ Arrays ball(Index n, double radius) {
   return mesh;
 }
 
-Arrays cylinder(Index n_radial, Index n_axial, double radius, double height, double twist) {
+Arrays cylinder(Index n_radial, Index n_axial, double radius, double height, double twist, double wring) {
   HFR_REQUIRE(n_radial >= 1 && n_axial >= 1, "a cylinder needs at least one ring and one layer");
   HFR_REQUIRE(std::isfinite(radius) && radius > 0 && std::isfinite(height) && height > 0,
               "radius and height must be above 0");
   HFR_REQUIRE(std::isfinite(twist), "the twist must be a finite number");
+  HFR_REQUIRE(std::isfinite(wring), "the wring must be a finite number");
   require_countable(18.0 * static_cast<double>(n_radial) * static_cast<double>(n_radial) *
                     static_cast<double>(n_axial));
   const Index layer = disc_vertex(n_radial + 1, 0);  // vertices of one disc
@@ -269,12 +270,16 @@ Arrays cylinder(Index n_radial, Index n_axial, double radius, double height, dou
   for (Index k = 0; k <= n_axial; ++k) {
     const double part = static_cast<double>(k) / static_cast<double>(n_axial);
     const double turn = twist / 180 * std::numbers::pi * part;
+    const bool at_end = k == 0 || k == n_axial;  // where the sine is zero, but not in floating point
+    const double pull = at_end ? 0.0 : wring / 180 * std::numbers::pi * std::sin(std::numbers::pi * part);
     mesh.points.push_back({0, 0, height * part});
     for (Index m = 1; m <= n_radial; ++m) {
-      const double r = radius * (static_cast<double>(m) / static_cast<double>(n_radial));
+      const double share = static_cast<double>(m) / static_cast<double>(n_radial);
+      const double r = radius * share;
       for (Index s = 0; s < 6 * m; ++s) {
-        const double angle =
-            std::numbers::pi * static_cast<double>(s) / (3.0 * static_cast<double>(m)) + turn;
+        double angle = std::numbers::pi * static_cast<double>(s) / (3.0 * static_cast<double>(m));
+        if (pull != 0) angle += pull * share * share * std::sin(angle);
+        angle += turn;
         mesh.points.push_back({r * std::cos(angle), r * std::sin(angle), height * part});
       }
     }

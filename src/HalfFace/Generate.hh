@@ -67,8 +67,12 @@ Vec3 deform(Vec3 p, const CavityOptions& options);
 Arrays ball(Index n, double radius = 1);
 
 /// An upright cylinder of 18·n_radial²·n_axial cells from z = 0 to height, with n_radial rings round the
-/// axis. Cross sections are turned about the axis in proportion to z, the top by `twist` degrees.
-Arrays cylinder(Index n_radial, Index n_axial, double radius = 1, double height = 2, double twist = 0);
+/// axis. Cross sections are turned about the axis in proportion to z, the top by `twist` degrees. With
+/// `wring` a point at distance r from the axis is also turned by wring·(r/radius)²·sin(its
+/// angle)·sin(πz/height) degrees: from about 58 on the side folds over, near half the height, while top and
+/// bottom stay.
+Arrays cylinder(Index n_radial, Index n_axial, double radius = 1, double height = 2, double twist = 0,
+                double wring = 0);
 
 /// Moves every vertex inside, each coordinate by jitter·l·(2r-1), l being the vertex's shortest edge and r
 /// random_unit(seed, 3·vertex + axis). Vertices of the boundary stay.

@@ -144,6 +144,8 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, Result& result)
       result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled || result.stop == Stop::kIterations;
   result.stuck =
       stuck_cells(mesh, result.stuck_below, ended_early || full, result.folded_faces, options.policy);
+  if (options.surface.mode == SurfaceMode::kFrozen)
+    result.held = held_cells(mesh, result.stuck, result.stuck_below, options);
 }
 
 /// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
@@ -154,9 +156,9 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   if (!options.min_dihedral && is_scattered(mesh, options.policy))
     cell_order =
         reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
+  const SurfaceRun surface(mesh, options, at_first.n_invalid > 0, control.passes());
   Workspace work;
   work.attach(mesh, options.policy);
-  const SurfaceRun surface(mesh, options);
   control.set_surface(surface.get());
   const bool met = run_stages(mesh, work, options, control, at_first);
   restore_volume(mesh, work, options, control);

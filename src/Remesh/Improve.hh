@@ -130,6 +130,15 @@ struct SurfaceReport {
   std::size_t triangles_before = 0, triangles_after = 0;
 };
 
+/// Cells below Result::stuck_below that a frozen surface keeps there, and which mode would let them change.
+struct HeldCells {
+  std::size_t cells = 0;
+  bool known = false;  ///< whether the rest is; not without OpenMesh
+  std::size_t by_flat = 0;
+  std::size_t by_free = 0;   ///< that flat would not free
+  std::size_t by_shape = 0;  ///< that neither would: corners, and features narrower than the angle
+};
+
 struct Result {
   bool changed = false;
   bool goal_reached = false;  ///< nothing inverted or flat, and min_dihedral met where given
@@ -144,6 +153,7 @@ struct Result {
   /// angle was raised as far as it goes, the first angle that was tried for and missed; and what keeps each.
   std::vector<StuckCell> stuck;
   double stuck_below = 0;
+  HeldCells held;                        ///< with a frozen surface and options.statistics
   double seconds = 0;                    ///< of the work itself, statistics apart
   double seconds_device = 0;             ///< to open the device and get its kernels, part of `seconds`
   std::string device;                    ///< name of the device that was opened; empty: none

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/SurfaceRun.hh"
 
-#include <algorithm>
-#include <cmath>
-
 #include "HalfFace/Errors.hh"
+#include "Remesh/Surfaces.hh"
 #ifdef HFR_HAS_SURFACE
+#include "Surface/FeatureLabels.hh"
+#include "Surface/HeldCells.hh"
 #include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceUnfold.hh"
 #endif
 
 namespace hfr {
@@ -14,46 +15,14 @@ namespace hfr {
 #ifdef HFR_HAS_SURFACE
 namespace {
 
-/// Of the mean edge: how far apart the points are by which surfaces are compared.
-constexpr double kSpacing = 0.25;
-
 /// What the boundary encloses; interfaces take no part.
 double enclosed_volume(const TetMesh& mesh) {
-  if (mesh.n_vertices() == 0) return 0;
-  const Vec3 origin = mesh.points()[0];
-  double sum = 0;
-  double lost = 0;  // Kahan's: the volume is to be right to the last digits
+  std::vector<Triangle> boundary;
   for (HalfFaceHandle h : mesh.boundary_halffaces()) {
     const auto f = mesh.halfface_vertices(h);  // seen from inside
-    const Vec3 a = mesh.point(f[0]) - origin;
-    const double term = dot(a, cross(mesh.point(f[2]) - origin, mesh.point(f[1]) - origin)) / 6.0 - lost;
-    const double next = sum + term;
-    lost = (next - sum) - term;
-    sum = next;
+    boundary.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
   }
-  return sum;
-}
-
-double mean_edge(const std::vector<Triangle>& surface) {
-  double sum = 0;
-  for (const Triangle& t : surface)
-    for (std::size_t k = 0; k < 3; ++k) sum += norm(t[(k + 1) % 3] - t[k]);
-  return surface.empty() ? 0 : sum / (3.0 * static_cast<double>(surface.size()));
-}
-
-double diagonal(const std::vector<Triangle>& surface) {
-  if (surface.empty()) return 0;
-  Vec3 low = surface[0][0];
-  Vec3 high = low;
-  for (const Triangle& t : surface) {
-    for (Vec3 p : t) {
-      for (int d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], p[d]);
-        high[d] = std::max(high[d], p[d]);
-      }
-    }
-  }
-  return norm(high - low);
+  return enclosed_volume(boundary);
 }
 
 }  // namespace
@@ -63,10 +32,13 @@ struct SurfaceRun::Impl {
   bool measure = false;
   std::vector<Triangle> before;
   double volume = 0;
+  double bound = 0;  // largest distance allowed
   std::unique_ptr<SurfaceMesh> surface;
 };
 
-SurfaceRun::SurfaceRun(const TetMesh& mesh, const ImproveOptions& options) : impl_(new Impl) {
+SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold,
+                       std::vector<PassReport>& passes)
+    : impl_(new Impl) {
   if (options.surface.mode == SurfaceMode::kFrozen) return;
   impl_->policy = options.policy;
   impl_->measure = options.statistics;
@@ -74,7 +46,22 @@ SurfaceRun::SurfaceRun(const TetMesh& mesh, const ImproveOptions& options) : imp
     impl_->before = surface_triangles(mesh, options.policy);
     impl_->volume = enclosed_volume(mesh);
   }
-  impl_->surface = std::make_unique<SurfaceMesh>(mesh, options.surface, options.policy);
+  SurfaceOptions wanted = options.surface;
+  impl_->bound = SurfaceMesh::allowed_distance(mesh, wanted, options.policy);
+  if (unfold) {
+    const Unfolding done = unfold_surface(mesh, options.surface, options.policy);
+    PassReport pass;
+    pass.stage = "unfold";
+    pass.op = "surface unfold";
+    pass.iteration = 1;
+    pass.seeds = pass.candidates = done.n_folded;
+    pass.winners = done.n_moved;
+    if (done.n_folded > 0) passes.push_back(pass);
+    // What is left of the distance; the surface is taken as it is now.
+    if (done.n_moved > 0 && wanted.mode == SurfaceMode::kFree)
+      wanted.hausdorff = impl_->bound - done.distance;
+  }
+  impl_->surface = std::make_unique<SurfaceMesh>(mesh, wanted, options.policy);
 }
 
 SurfaceMesh* SurfaceRun::get() const { return impl_->surface.get(); }
@@ -83,17 +70,11 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   SurfaceReport report;
   if (!impl_->surface) return report;
   report.mode = impl_->surface->options().mode;
-  report.bound = impl_->surface->hausdorff();
+  report.bound = impl_->bound;
   report.feature_edges = impl_->surface->n_feature_edges();
   if (!impl_->measure) return report;
   const std::vector<Triangle> after = surface_triangles(mesh, impl_->policy);
-  report.triangles_before = impl_->before.size();
-  report.triangles_after = after.size();
-  const double spacing = kSpacing * mean_edge(impl_->before);
-  if (spacing > 0)
-    report.hausdorff = surface_distance(impl_->before, after, spacing, impl_->policy).hausdorff();
-  report.diagonal = diagonal(impl_->before);
-  if (impl_->volume != 0) report.volume_change = (enclosed_volume(mesh) - impl_->volume) / impl_->volume;
+  measure_surfaces(impl_->before, after, impl_->volume, enclosed_volume(mesh), impl_->policy, report);
   return report;
 }
 
@@ -101,7 +82,7 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
 
 struct SurfaceRun::Impl {};
 
-SurfaceRun::SurfaceRun(const TetMesh&, const ImproveOptions& options) {
+SurfaceRun::SurfaceRun(TetMesh&, const ImproveOptions& options, bool, std::vector<PassReport>&) {
   HFR_REQUIRE(options.surface.mode == SurfaceMode::kFrozen,
               "this hfremesh was built without OpenMesh and can only leave the surface as it is: "
               "use --surface frozen, or build with -DHFR_SURFACE=ON");
@@ -112,5 +93,36 @@ SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
 #endif
 
 SurfaceRun::~SurfaceRun() = default;
+
+void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
+#ifdef HFR_HAS_SURFACE
+  label_features(mesh, options, policy);
+#else
+  static_cast<void>(mesh), static_cast<void>(options), static_cast<void>(policy);
+  throw InvalidInput(
+      "this hfremesh was built without OpenMesh and finds no features: build it with "
+      "-DHFR_SURFACE=ON");
+#endif
+}
+
+HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
+                     const ImproveOptions& options) {
+  std::vector<CellHandle> cells;
+  for (const StuckCell& cell : stuck)
+    if (cell.limit != Limit::kBudget && cell.limit != Limit::kSearch) cells.push_back(cell.cell);
+  HeldCells held;
+  held.cells = cells.size();
+#ifdef HFR_HAS_SURFACE
+  held.known = true;
+  for (FreedBy by : freed_by(mesh, cells, degrees, options.surface, options.policy)) {
+    if (by == FreedBy::kFlat) ++held.by_flat;
+    if (by == FreedBy::kFree) ++held.by_free;
+    if (by == FreedBy::kShape) ++held.by_shape;
+  }
+#else
+  static_cast<void>(mesh), static_cast<void>(degrees), static_cast<void>(options);
+#endif
+  return held;
+}
 
 }  // namespace hfr

@@ -13,8 +13,9 @@ namespace hfr {
 /// The surface of one run: made before its first pass unless it is frozen, and measured after its last.
 class SurfaceRun {
  public:
-  /// Throws InvalidInput where the surface is not to be frozen but the build has no OpenMesh.
-  SurfaceRun(const TetMesh& mesh, const ImproveOptions& options);
+  /// Throws InvalidInput where the surface is not to be frozen but the build has no OpenMesh. With `unfold`,
+  /// folds of a surface that may change are spread first, which moves vertices of the mesh; see `passes`.
+  SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold, std::vector<PassReport>& passes);
   ~SurfaceRun();
   SurfaceRun(const SurfaceRun&) = delete;
   SurfaceRun& operator=(const SurfaceRun&) = delete;
@@ -27,6 +28,14 @@ class SurfaceRun {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What the frozen surface holds back among the cells that are stuck below `degrees`.
+HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
+                     const ImproveOptions& options);
+
+/// Labels on the feature edges and corners of the surface as it is now: see Surface/FeatureLabels.hh. Throws
+/// InvalidInput in a build without OpenMesh.
+void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
 
 }  // namespace hfr
 

@@ -15,13 +15,13 @@ namespace {
 /// the area, is what the volume may change.
 constexpr double kCoplanar = 1e-13;
 
-double diagonal(const TetMesh& mesh, const Arrays& arrays) {
+double diagonal(const Arrays& arrays) {
   if (arrays.faces.empty()) return 0;
-  Vec3 low = mesh.point(arrays.faces[0][0]);
+  Vec3 low = arrays.points[arrays.faces[0][0].idx()];
   Vec3 high = low;
   for (const auto& f : arrays.faces) {
     for (VertexHandle v : f) {
-      const Vec3 p = mesh.point(v);
+      const Vec3 p = arrays.points[v.idx()];
       for (int d = 0; d < 3; ++d) {
         low[d] = std::min(low[d], p[d]);
         high[d] = std::max(high[d], p[d]);
@@ -63,15 +63,14 @@ std::vector<Edge> find_edges(const Arrays& arrays) {
 
 /// Planar facets: grown from the largest face that is in none yet, over edges where the surface does not turn
 /// back, as long as all corners lie in the plane.
-std::vector<std::uint32_t> find_facets(const TetMesh& mesh, const Arrays& arrays,
-                                       const std::vector<Edge>& edges, double tolerance,
+std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<Edge>& edges, double tolerance,
                                        std::vector<Freedom>& planes) {
   constexpr std::uint32_t kNone = ~0U;
   const std::size_t n = arrays.faces.size();
   std::vector<Vec3> normal(n);
   std::vector<std::uint32_t> order(n);
   std::vector<std::array<std::uint32_t, 3>> across(n, {kNone, kNone, kNone});
-  for (std::size_t i = 0; i < n; ++i) normal[i] = scaled_normal(corners(mesh, arrays.faces[i]));
+  for (std::size_t i = 0; i < n; ++i) normal[i] = scaled_normal(corners(arrays.points, arrays.faces[i]));
   for (const Edge& e : edges) {
     if (!e.manifold) continue;
     across[e.f[0]][e.k[0]] = e.f[1];
@@ -85,7 +84,7 @@ std::vector<std::uint32_t> find_facets(const TetMesh& mesh, const Arrays& arrays
   for (std::uint32_t seed : order) {
     if (facet[seed] != kNone) continue;
     const auto number = static_cast<std::uint32_t>(planes.size());
-    const Freedom plane{SurfaceKind::kFacet, mesh.point(arrays.faces[seed][0]), unit(normal[seed])};
+    const Freedom plane{SurfaceKind::kFacet, arrays.points[arrays.faces[seed][0].idx()], unit(normal[seed])};
     planes.push_back(plane);
     facet[seed] = number;
     front.assign(1, seed);
@@ -95,7 +94,7 @@ std::vector<std::uint32_t> find_facets(const TetMesh& mesh, const Arrays& arrays
       for (std::uint32_t g : across[f]) {
         if (g == kNone || facet[g] != kNone || !(dot(normal[g], plane.axis) > 0)) continue;
         const bool flat = std::all_of(arrays.faces[g].begin(), arrays.faces[g].end(), [&](VertexHandle v) {
-          return std::abs(dot(mesh.point(v) - plane.anchor, plane.axis)) <= tolerance;
+          return std::abs(dot(arrays.points[v.idx()] - plane.anchor, plane.axis)) <= tolerance;
         });
         if (!flat) continue;
         facet[g] = number;
@@ -108,14 +107,14 @@ std::vector<std::uint32_t> find_facets(const TetMesh& mesh, const Arrays& arrays
 
 /// Edges that only turn, in connected sets that fit into a box of a few times the length that is taken for
 /// noise, are noise of the input and no features.
-void drop_small(const TetMesh& mesh, std::vector<Edge>& edges, const std::vector<std::uint8_t>& only_turns,
-                double detail) {
+void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
+                const std::vector<std::uint8_t>& only_turns, double detail) {
   constexpr double kSmall = 3;
   struct Set {
     Vec3 low, high;
     bool keeps = false;  // has an edge that is one for another reason
   };
-  std::vector<Index> parent(mesh.n_vertices());
+  std::vector<Index> parent(points.size());
   std::iota(parent.begin(), parent.end(), Index{0});
   const auto root = [&](Index i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
@@ -133,9 +132,9 @@ void drop_small(const TetMesh& mesh, std::vector<Edge>& edges, const std::vector
     if (!e.feature) continue;
     const auto [at, is_new] = sets.try_emplace(root(e.a.idx()));
     Set& set = at->second;
-    if (is_new) set.low = set.high = mesh.point(e.a);
+    if (is_new) set.low = set.high = points[e.a.idx()];
     for (VertexHandle v : {e.a, e.b}) {
-      const Vec3 p = mesh.point(v);
+      const Vec3 p = points[v.idx()];
       for (int d = 0; d < 3; ++d) {
         set.low[d] = std::min(set.low[d], p[d]);
         set.high[d] = std::max(set.high[d], p[d]);
@@ -157,14 +156,14 @@ struct Incidence {
   bool locked = false;
 };
 
-Freedom freedom_of(const TetMesh& mesh, VertexHandle v, const Incidence& at, const SurfaceOptions& options,
-                   double tolerance, Freedom plane) {
-  const Vec3 p = mesh.point(v);
+Freedom freedom_of(std::span<const Vec3> points, VertexHandle v, const Incidence& at,
+                   const SurfaceOptions& options, double tolerance, Freedom plane) {
+  const Vec3 p = points[v.idx()];
   const Freedom fixed{SurfaceKind::kFixed, p, {}};
   if (at.locked || (at.n_features != 0 && at.n_features != 2)) return fixed;
   if (at.n_features == 0) return plane;
-  const Vec3 back = mesh.point(at.along[0]);
-  const Vec3 ahead = mesh.point(at.along[1]);
+  const Vec3 back = points[at.along[0].idx()];
+  const Vec3 ahead = points[at.along[1].idx()];
   const Vec3 axis = unit(ahead - back);
   if (options.mode == SurfaceMode::kFlat) {
     const Vec3 r = p - back;
@@ -179,6 +178,59 @@ Freedom freedom_of(const TetMesh& mesh, VertexHandle v, const Incidence& at, con
 
 }  // namespace
 
+namespace {
+
+std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
+  std::sort(f.begin(), f.end());
+  return f;
+}
+
+/// The faces that the user wants as they are.
+class FixedFaces {
+ public:
+  explicit FixedFaces(const SurfaceOptions& options) : patches_(options.fixed_patches) {
+    for (const auto& f : options.fixed_faces) faces_.insert(sorted(f));
+  }
+  bool has(const std::array<VertexHandle, 3>& f, const int* label) const {
+    return faces_.contains(sorted(f)) ||
+           (label && std::find(patches_.begin(), patches_.end(), *label) != patches_.end());
+  }
+
+ private:
+  std::set<std::array<VertexHandle, 3>> faces_;
+  const std::vector<int>& patches_;
+};
+
+void add_fixed(Arrays& arrays, const SurfaceOptions& options) {
+  arrays.locked_edges.insert(arrays.locked_edges.end(), options.fixed_edges.begin(),
+                             options.fixed_edges.end());
+  for (auto& e : arrays.locked_edges)
+    if (e[1] < e[0]) std::swap(e[0], e[1]);
+  std::sort(arrays.locked_edges.begin(), arrays.locked_edges.end());
+  for (VertexHandle v : options.fixed_vertices)
+    if (v.idx() < arrays.points.size()) arrays.locked_vertices.push_back(v);
+}
+
+/// Labelled faces inside a region are no part of the surface; they hold what they meet.
+void lock_labelled_inside(const TetMesh& mesh, Arrays& arrays) {
+  std::vector<std::uint8_t> on_surface(mesh.n_vertices(), 0);
+  for (const auto& f : arrays.faces)
+    for (VertexHandle v : f) on_surface[v.idx()] = 1;
+  for (const auto& entry : mesh.labels().faces.entries()) {
+    const bool known = std::all_of(entry.vertices.begin(), entry.vertices.end(),
+                                   [&](VertexHandle v) { return on_surface[v.idx()] != 0; });
+    if (known) {
+      const HalfFaceHandle h = mesh.find_halfface(entry.vertices);
+      if (!h.is_valid() || mesh.is_boundary(h) ||
+          mesh.region(cell_of(h)) != mesh.region(cell_of(mesh.opposite_halfface(h))))
+        continue;
+    }
+    for (VertexHandle v : entry.vertices) arrays.locked_vertices.push_back(v);
+  }
+}
+
+}  // namespace
+
 Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
   const auto halffaces = par::compact<Index>(policy, 4 * mesh.n_cells(), [&](std::size_t i) {
     const HalfFaceHandle h(i);
@@ -186,12 +238,9 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     const HalfFaceHandle m = mesh.opposite_halfface(h);
     return !m.is_valid() || mesh.region(cell_of(h)) < mesh.region(cell_of(m));
   });
-  std::set<std::array<VertexHandle, 3>> fixed;
-  for (auto f : options.fixed_faces) {
-    std::sort(f.begin(), f.end());
-    fixed.insert(f);
-  }
+  const FixedFaces fixed(options);
   Arrays arrays;
+  arrays.points = mesh.points();
   const auto& labels = mesh.labels().faces;
   for (Index i : halffaces) {
     const HalfFaceHandle h(i);
@@ -203,58 +252,78 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     arrays.patch.push_back(label ? *label : 0);
     const bool inward = label && CyclicOrder::key(labels.entries()[entry].vertices) == CyclicOrder::key(f);
     arrays.inward.push_back(inward ? 1 : 0);
-    auto key = f;
-    std::sort(key.begin(), key.end());
-    const auto& patches = options.fixed_patches;
-    const bool locked = !mesh.is_boundary(h) || fixed.contains(key) ||
-                        (label && std::find(patches.begin(), patches.end(), *label) != patches.end());
-    arrays.locked.push_back(locked ? 1 : 0);
+    arrays.interface.push_back(mesh.is_boundary(h) ? 0 : 1);
+    arrays.locked.push_back(arrays.interface.back() || fixed.has(f, label) ? 1 : 0);
   }
+  lock_labelled_inside(mesh, arrays);
+  for (const auto& entry : mesh.labels().edges.entries()) {  // those inside, too
+    arrays.locked_edges.push_back(entry.vertices);
+    arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
+  }
+  for (VertexHandle v : mesh.vertices())
+    if (mesh.is_fixed(v)) arrays.locked_vertices.push_back(v);
+  add_fixed(arrays, options);
   return arrays;
 }
 
-double mean_edge(const TetMesh& mesh, const Arrays& arrays) {
+Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options) {
+  const FixedFaces fixed(options);
+  Arrays arrays;
+  arrays.points = mesh.points;
+  arrays.faces = mesh.triangles;
+  arrays.halffaces.resize(arrays.faces.size());
+  arrays.patch = mesh.patches;
+  arrays.patch.resize(arrays.faces.size());
+  arrays.inward.resize(arrays.faces.size());
+  arrays.interface.resize(arrays.faces.size());
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i)
+    arrays.locked.push_back(fixed.has(arrays.faces[i], &arrays.patch[i]) ? 1 : 0);
+  add_fixed(arrays, options);
+  return arrays;
+}
+
+double mean_edge(const Arrays& arrays) {
   double sum = 0;
-  for (const auto& f : arrays.faces)
-    for (std::size_t k = 0; k < 3; ++k) sum += norm(mesh.point(f[(k + 1) % 3]) - mesh.point(f[k]));
+  for (const auto& f : arrays.faces) {
+    const Triangle t = corners(arrays.points, f);
+    for (std::size_t k = 0; k < 3; ++k) sum += norm(t[(k + 1) % 3] - t[k]);
+  }
   return arrays.faces.empty() ? 0 : sum / (3.0 * static_cast<double>(arrays.faces.size()));
 }
 
-Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options,
-                       double detail) {
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail) {
   const bool flat = options.mode != SurfaceMode::kFree;
-  const double tolerance = kCoplanar * diagonal(mesh, arrays);
+  const double tolerance = kCoplanar * diagonal(arrays);
   const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
+  const std::size_t n_vertices = arrays.points.size();
   Features found;
   found.edges = find_edges(arrays);
   std::vector<Freedom> planes;
-  if (flat) found.facet = find_facets(mesh, arrays, found.edges, tolerance, planes);
+  if (flat) found.facet = find_facets(arrays, found.edges, tolerance, planes);
 
-  std::vector<Incidence> at(mesh.n_vertices());
-  std::vector<std::uint8_t> on_surface(mesh.n_vertices(), 0);
-  std::set<std::array<VertexHandle, 2>> fixed;
-  for (auto e : options.fixed_edges) fixed.insert({std::min(e[0], e[1]), std::max(e[0], e[1])});
+  std::vector<Incidence> at(n_vertices);
+  std::vector<std::uint8_t> on_surface(n_vertices, 0);
   std::vector<Vec3> normal;
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
-    normal.push_back(unit(scaled_normal(corners(mesh, arrays.faces[i]))));
-    const bool interface = !mesh.is_boundary(arrays.halffaces[i]);
+    normal.push_back(unit(scaled_normal(corners(arrays.points, arrays.faces[i]))));
     for (VertexHandle v : arrays.faces[i]) {
       on_surface[v.idx()] = 1;
       at[v.idx()].face = static_cast<std::uint32_t>(i);
       // An interface keeps its shape in both regions when its vertices slide within planes; nothing more yet.
-      if (arrays.locked[i] && !(interface && flat)) at[v.idx()].locked = true;
+      if (arrays.locked[i] && !(arrays.interface[i] && flat)) at[v.idx()].locked = true;
     }
   }
   std::vector<std::uint8_t> only_turns;
   for (Edge& e : found.edges) {
     const bool turns = flat ? e.manifold && found.facet[e.f[0]] != found.facet[e.f[1]]
                             : e.manifold && dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
-    e.locked = mesh.is_labelled_edge(e.a, e.b) || fixed.contains({e.a, e.b});
+    e.locked = std::binary_search(arrays.locked_edges.begin(), arrays.locked_edges.end(),
+                                  std::array<VertexHandle, 2>{e.a, e.b});
     const bool other = !e.manifold || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] || e.locked;
     e.feature = turns || other;
     only_turns.push_back(other ? 0 : 1);
   }
-  if (!flat) drop_small(mesh, found.edges, only_turns, detail);
+  if (!flat) drop_small(arrays.points, found.edges, only_turns, detail);
   for (const Edge& e : found.edges) {
     if (!e.feature) continue;
     const std::array<VertexHandle, 2> ends = {e.a, e.b};
@@ -265,31 +334,14 @@ Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceO
       here.locked = here.locked || e.locked;
     }
   }
-  // Labelled faces inside a region are no part of the surface; they hold what they meet.
-  for (const auto& entry : mesh.labels().faces.entries()) {
-    const bool known = std::all_of(entry.vertices.begin(), entry.vertices.end(),
-                                   [&](VertexHandle v) { return on_surface[v.idx()] != 0; });
-    if (known) {
-      const HalfFaceHandle h = mesh.find_halfface(entry.vertices);
-      if (!h.is_valid() || mesh.is_boundary(h) ||
-          mesh.region(cell_of(h)) != mesh.region(cell_of(mesh.opposite_halfface(h))))
-        continue;
-    }
-    for (VertexHandle v : entry.vertices) at[v.idx()].locked = true;
-  }
-  for (const auto& entry : mesh.labels().edges.entries())  // inside, too
-    for (VertexHandle v : entry.vertices) at[v.idx()].locked = true;
-  for (VertexHandle v : options.fixed_vertices)
-    if (v.idx() < at.size()) at[v.idx()].locked = true;
-  found.freedom.resize(mesh.n_vertices());
-  for (std::size_t i = 0; i < found.freedom.size(); ++i) {
+  for (VertexHandle v : arrays.locked_vertices) at[v.idx()].locked = true;
+  found.freedom.resize(n_vertices);
+  for (std::size_t i = 0; i < n_vertices; ++i) {
     if (!on_surface[i]) continue;
-    const VertexHandle v(i);
-    at[i].locked = at[i].locked || mesh.is_fixed(v);
     const std::uint32_t f = at[i].face;
     const Freedom plane =
-        flat ? planes[found.facet[f]] : Freedom{SurfaceKind::kFacet, mesh.point(v), normal[f]};
-    found.freedom[i] = freedom_of(mesh, v, at[i], options, tolerance, plane);
+        flat ? planes[found.facet[f]] : Freedom{SurfaceKind::kFacet, arrays.points[i], normal[f]};
+    found.freedom[i] = freedom_of(arrays.points, VertexHandle(i), at[i], options, tolerance, plane);
   }
   return found;
 }

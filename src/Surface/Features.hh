@@ -5,23 +5,30 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceOptions.hh"
+#include "Surface/TriangleMesh.hh"
 
 namespace hfr::surface {
 
-/// Triangles of the boundary and of the interfaces.
+/// Triangles of the boundary and of the interfaces, or of a mesh of triangles.
 struct Arrays {
+  std::span<const Vec3> points;                    ///< per vertex; those of the mesh
   std::vector<std::array<VertexHandle, 3>> faces;  ///< seen from outside, or from the larger region
-  std::vector<HalfFaceHandle> halffaces;           ///< inside of each
+  std::vector<HalfFaceHandle> halffaces;           ///< inside of each; invalid where there are no cells
   std::vector<int> patch;                          ///< label, 0 = none
   std::vector<std::uint8_t> inward;                ///< the label names the face as seen from inside
+  std::vector<std::uint8_t> interface;             ///< between two regions
   std::vector<std::uint8_t> locked;                ///< may not change: interface, or fixed
+  std::vector<std::array<VertexHandle, 2>> locked_edges;  ///< ascending
+  std::vector<VertexHandle> locked_vertices;
 };
 Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
+Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options);
 
 /// An edge of the surface: faces f[0] and f[1] meet in it, local edge k from corner k to the next.
 struct Edge {
@@ -39,10 +46,9 @@ struct Features {
   std::vector<Freedom> freedom;      ///< per vertex of the volume
 };
 /// `detail`: what lies within a few times that length is too small to be a feature.
-Features find_features(const TetMesh& mesh, const Arrays& arrays, const SurfaceOptions& options,
-                       double detail);
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail);
 /// Mean length of the triangles' edges; 0 without any.
-double mean_edge(const TetMesh& mesh, const Arrays& arrays);
+double mean_edge(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.
 inline double six_volume(const Triangle& t, Vec3 from) {
   return dot(t[0] - from, cross(t[1] - from, t[2] - from));
@@ -55,8 +61,8 @@ inline Vec3 unit(Vec3 n) {
   const double length = norm(n);
   return length > 0 ? Vec3{n.x / length, n.y / length, n.z / length} : Vec3{};
 }
-inline Triangle corners(const TetMesh& mesh, const std::array<VertexHandle, 3>& f) {
-  return {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
+inline Triangle corners(std::span<const Vec3> points, const std::array<VertexHandle, 3>& f) {
+  return {points[f[0].idx()], points[f[1].idx()], points[f[2].idx()]};
 }
 
 }  // namespace hfr::surface

@@ -46,7 +46,7 @@ std::vector<Triangle> surface_triangles(const TetMesh& mesh, par::Policy policy)
   const surface::Arrays arrays = surface::gather(mesh, {}, policy);
   std::vector<Triangle> triangles;
   triangles.reserve(arrays.faces.size());
-  for (const auto& f : arrays.faces) triangles.push_back(surface::corners(mesh, f));
+  for (const auto& f : arrays.faces) triangles.push_back(surface::corners(mesh.points(), f));
   return triangles;
 }
 

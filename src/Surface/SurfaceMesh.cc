@@ -103,6 +103,8 @@ struct SurfaceMesh::Impl {
   Vec3 origin;                                    // from which volumes are measured
   double six_volume = 0, area = 0;                // of the input
   double six_gain = 0;                            // of the volume since
+  bool alone = false;                             // there are no cells
+  bool is_open = false;                           // and the surface encloses nothing
 
   bool flat() const { return options.mode != SurfaceMode::kFree; }
 
@@ -153,8 +155,9 @@ struct SurfaceMesh::Impl {
   FaceRecord& record(OmFace f) { return faces[static_cast<std::size_t>(f.idx())]; }
   const FaceRecord& record(OmFace f) const { return faces[static_cast<std::size_t>(f.idx())]; }
 
-  void build(const TetMesh& mesh, const Arrays& arrays, const surface::Features& features);
-  void take_shape(const TetMesh& mesh, const Arrays& arrays, const surface::Features& features);
+  void build(const Arrays& arrays, const surface::Features& features);
+  void take_shape(const Arrays& arrays, const surface::Features& features);
+  void begin(const Arrays& arrays, const SurfaceOptions& wanted);
 
   OmVertex add_vertex(VertexHandle v, Vec3 p) {
     const OmVertex w = om.add_vertex(eigen(p));
@@ -216,7 +219,7 @@ struct SurfaceMesh::Impl {
   }
 };
 
-void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const surface::Features& features) {
+void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& features) {
   const std::size_t n = arrays.faces.size();
   Union corners_of(3 * n);
   for (const surface::Edge& e : features.edges) {
@@ -225,7 +228,7 @@ void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const s
     corners_of.join(corner(0, 0), corner(1, 1));  // the faces have the edge in opposite directions
     corners_of.join(corner(0, 1), corner(1, 0));
   }
-  first.resize(mesh.n_vertices());
+  first.resize(arrays.points.size());
   std::vector<OmVertex> sheet(3 * n);
   // A pair of vertices may be joined by several edges that meet no face in common; OpenMesh would take them
   // for one.
@@ -235,7 +238,7 @@ void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const s
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t root = corners_of.find(static_cast<std::uint32_t>(3 * i + k));
       if (!sheet[root].is_valid())
-        sheet[root] = add_vertex(arrays.faces[i][k], mesh.point(arrays.faces[i][k]));
+        sheet[root] = add_vertex(arrays.faces[i][k], arrays.points[arrays.faces[i][k].idx()]);
       w[k] = sheet[root];
     }
     const auto key = [&](std::size_t k) {
@@ -243,7 +246,7 @@ void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const s
     };
     if (used.contains(key(0)) || used.contains(key(1)) || used.contains(key(2)))
       for (std::size_t k = 0; k < 3; ++k)
-        w[k] = add_vertex(arrays.faces[i][k], mesh.point(arrays.faces[i][k]));
+        w[k] = add_vertex(arrays.faces[i][k], arrays.points[arrays.faces[i][k].idx()]);
     for (std::size_t k = 0; k < 3; ++k) used.insert(key(k));
     const OmFace f = om.add_face(w[0], w[1], w[2]);
     HFR_ASSERT(f.is_valid());
@@ -268,17 +271,16 @@ void SurfaceMesh::Impl::build(const TetMesh& mesh, const Arrays& arrays, const s
   }
 }
 
-void SurfaceMesh::Impl::take_shape(const TetMesh& mesh, const Arrays& arrays,
-                                   const surface::Features& features) {
+void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features& features) {
   std::vector<Triangle> triangles;
   std::vector<std::array<Vec3, 2>> segments;
-  std::vector<std::uint8_t> is_sampled(mesh.n_vertices(), 0);
+  std::vector<std::uint8_t> is_sampled(arrays.points.size(), 0);
   const auto inside = [](const Triangle& t, double u, double v) {
     return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
   };
-  if (!arrays.faces.empty()) origin = mesh.point(arrays.faces[0][0]);
+  if (!arrays.faces.empty()) origin = arrays.points[arrays.faces[0][0].idx()];
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
-    const Triangle t = surface::corners(mesh, arrays.faces[i]);
+    const Triangle t = surface::corners(arrays.points, arrays.faces[i]);
     triangles.push_back(t);
     for (const auto& [u, v] : kInner) faces[i].samples.push_back(inside(t, u, v));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -286,12 +288,12 @@ void SurfaceMesh::Impl::take_shape(const TetMesh& mesh, const Arrays& arrays,
       if (!done) faces[i].samples.push_back(t[k]);
       done = 1;
     }
-    if (!mesh.is_boundary(arrays.halffaces[i])) continue;
+    if (arrays.interface[i]) continue;
     six_volume += surface::six_volume(t, origin);
     area += 0.5 * norm(scaled_normal(t));
   }
   for (const surface::Edge& e : features.edges) {
-    const std::array<Vec3, 2> ends = {mesh.point(e.a), mesh.point(e.b)};
+    const std::array<Vec3, 2> ends = {arrays.points[e.a.idx()], arrays.points[e.b.idx()]};
     faces[e.f[0]].samples.push_back(0.5 * (ends[0] + ends[1]));
     if (e.feature) segments.push_back(ends);
   }
@@ -299,29 +301,56 @@ void SurfaceMesh::Impl::take_shape(const TetMesh& mesh, const Arrays& arrays,
   if (!segments.empty()) curves.emplace(segments);
 }
 
-SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy)
-    : impl_(new Impl) {
+void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted) {
+  if (!flat()) {
+    detail = kHausdorff * surface::mean_edge(arrays);
+    hausdorff = wanted.hausdorff.value_or(detail);
+    detail = std::min(detail, hausdorff);
+  }
+  surface::Features features = surface::find_features(arrays, options, detail);
+  build(arrays, features);
+  if (!flat()) take_shape(arrays, features);
+  freedom = std::move(features.freedom);
+}
+
+namespace {
+
+/// The options as they are meant: a surface that may not go anywhere is flat.
+SurfaceOptions checked(SurfaceOptions options) {
   HFR_REQUIRE(
       options.feature_angle >= 0 && options.feature_angle <= 180,
       "the feature angle must lie between 0 and 180 degrees, not " + std::to_string(options.feature_angle));
   HFR_REQUIRE(!options.hausdorff || *options.hausdorff >= 0,
               "the distance from the surface must not be negative");
-  impl_->options = options;
   if (options.mode == SurfaceMode::kFree && options.hausdorff && *options.hausdorff == 0)
-    impl_->options.mode = SurfaceMode::kFlat;
-  const Arrays arrays = surface::gather(mesh, impl_->options, policy);
-  if (!impl_->flat()) {
-    impl_->detail = kHausdorff * surface::mean_edge(mesh, arrays);
-    impl_->hausdorff = options.hausdorff.value_or(impl_->detail);
-    impl_->detail = std::min(impl_->detail, impl_->hausdorff);
-  }
-  surface::Features features = surface::find_features(mesh, arrays, impl_->options, impl_->detail);
-  impl_->build(mesh, arrays, features);
-  if (!impl_->flat()) impl_->take_shape(mesh, arrays, features);
-  impl_->freedom = std::move(features.freedom);
+    options.mode = SurfaceMode::kFlat;
+  return options;
+}
+
+}  // namespace
+
+SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy)
+    : impl_(new Impl) {
+  impl_->options = checked(options);
+  impl_->begin(surface::gather(mesh, impl_->options, policy), options);
+}
+
+SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options) : impl_(new Impl) {
+  impl_->options = checked(options);
+  impl_->alone = true;
+  impl_->begin(surface::gather(mesh, impl_->options), options);
+  // What an open surface encloses is not defined.
+  impl_->is_open = std::any_of(impl_->om.halfedges_begin(), impl_->om.halfedges_end(),
+                               [&](OmHalfedge h) { return impl_->om.is_boundary(h); });
 }
 
 SurfaceMesh::~SurfaceMesh() = default;
+
+double SurfaceMesh::allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
+  if (options.mode != SurfaceMode::kFree) return 0;
+  if (options.hausdorff) return *options.hausdorff;
+  return kHausdorff * surface::mean_edge(surface::gather(mesh, options, policy));
+}
 
 const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }
 double SurfaceMesh::hausdorff() const { return impl_->hausdorff; }
@@ -365,7 +394,40 @@ std::size_t SurfaceMesh::face(const TetMesh& mesh, HalfFaceHandle h) const {
   return f.is_valid() ? static_cast<std::size_t>(f.idx()) : kNoFace;
 }
 
-bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
+bool SurfaceMesh::is_deleted(std::size_t f) const {
+  return impl_->om.status(OmFace(static_cast<int>(f))).deleted();
+}
+
+std::array<VertexHandle, 3> SurfaceMesh::face_vertices(std::size_t f) const {
+  return impl_->vertices(OmFace(static_cast<int>(f)));
+}
+
+int SurfaceMesh::patch(std::size_t f) const { return impl_->faces[f].patch; }
+
+Vec3 SurfaceMesh::point(VertexHandle v) const {
+  const auto& p = impl_->om.point(impl_->first[v.idx()]);
+  return {p[0], p[1], p[2]};
+}
+
+void SurfaceMesh::star(VertexHandle v, std::vector<std::array<VertexHandle, 3>>& out) const {
+  impl_->for_sheets(v, [&](OmVertex w) {
+    for (auto it = impl_->om.cvf_iter(w); it.is_valid(); ++it) out.push_back(impl_->vertices(*it));
+  });
+}
+
+std::array<VertexHandle, 2> SurfaceMesh::across(VertexHandle a, VertexHandle b) const {
+  const Om& om = impl_->om;
+  std::array<VertexHandle, 2> apexes;
+  const OmHalfedge h = impl_->find(a, b);
+  if (!h.is_valid()) return apexes;
+  const std::array<OmHalfedge, 2> sides = {h, om.opposite_halfedge_handle(h)};
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!om.is_boundary(sides[i]))
+      apexes[i] = impl_->vertex_of(om.to_vertex_handle(om.next_halfedge_handle(sides[i])));
+  return apexes;
+}
+
+bool SurfaceMesh::is_inner(VertexHandle a, VertexHandle b) const {
   const Om& om = impl_->om;
   const OmHalfedge h = impl_->find(a, b);
   if (!h.is_valid()) return false;
@@ -373,16 +435,24 @@ bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
   if (om.is_boundary(e) || om.status(e).feature()) return false;
   const FaceRecord& f = impl_->record(om.face_handle(h));
   const FaceRecord& g = impl_->record(om.face_handle(om.opposite_halfedge_handle(h)));
-  return !f.locked && !g.locked && f.patch == g.patch && f.facet == g.facet && om.is_flip_ok(e);
+  return !f.locked && !g.locked && f.patch == g.patch && f.facet == g.facet;
+}
+
+bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
+  return is_inner(a, b) && impl_->om.is_flip_ok(impl_->om.edge_handle(impl_->find(a, b)));
 }
 
 bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
   const Om& om = impl_->om;
   const OmHalfedge h = impl_->find(a, b);
-  if (!h.is_valid() || om.is_boundary(om.edge_handle(h)) || om.status(om.edge_handle(h)).locked())
-    return false;
-  return !impl_->record(om.face_handle(h)).locked &&
-         !impl_->record(om.face_handle(om.opposite_halfedge_handle(h))).locked;
+  if (!h.is_valid() || om.status(om.edge_handle(h)).locked()) return false;
+  if (om.is_boundary(om.edge_handle(h))) {
+    // The rim of a surface without cells, and of no other.
+    if (!impl_->alone || !impl_->has_one_sheet(a) || !impl_->has_one_sheet(b)) return false;
+  }
+  for (OmHalfedge side : {h, om.opposite_halfedge_handle(h)})
+    if (!om.is_boundary(side) && impl_->record(om.face_handle(side)).locked) return false;
+  return true;
 }
 
 void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& out) {
@@ -390,11 +460,13 @@ void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& ou
   if ((kind != SurfaceKind::kFacet && kind != SurfaceKind::kCurve) || !impl_->has_one_sheet(v)) return;
   Om& om = impl_->om;
   const OmVertex from = impl_->first[v.idx()];
-  if (om.is_boundary(from)) return;
+  const bool on_rim = om.is_boundary(from);
+  if (on_rim && !impl_->alone) return;
   for (auto it = om.cvf_iter(from); it.is_valid(); ++it)
     if (impl_->record(*it).locked) return;
   for (auto it = om.cvoh_iter(from); it.is_valid(); ++it) {
     if (kind == SurfaceKind::kCurve && !om.status(om.edge_handle(*it)).feature()) continue;
+    if (on_rim && !om.is_boundary(om.edge_handle(*it))) continue;
     if (om.is_collapse_ok(*it)) out.push_back(impl_->vertex_of(om.to_vertex_handle(*it)));
   }
 }
@@ -424,8 +496,10 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   if (impl_->flat()) return true;
 
   double six_gain = 0;
-  for (const Triangle& t : born) six_gain += surface::six_volume(t, dead[0][0]);
-  for (const Triangle& t : dead) six_gain -= surface::six_volume(t, dead[0][0]);
+  if (!impl_->is_open)
+    for (const Triangle& t : born) six_gain += surface::six_volume(t, dead[0][0]);
+  if (!impl_->is_open)
+    for (const Triangle& t : dead) six_gain -= surface::six_volume(t, dead[0][0]);
   const double enough = kVolume * std::abs(impl_->six_volume);
   if (std::abs(impl_->six_gain) > enough && impl_->six_gain * six_gain > 0 &&
       std::abs(six_gain) > 1e-6 * enough)
@@ -476,27 +550,29 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
 }
 
 double SurfaceMesh::volume_gain() const {
-  return impl_->six_volume != 0 ? impl_->six_gain / impl_->six_volume : 0.0;
+  return impl_->six_volume != 0 && !impl_->is_open ? impl_->six_gain / impl_->six_volume : 0.0;
 }
 
 double SurfaceMesh::outward() const {
-  if (!(impl_->area > 0)) return 0;
+  if (!(impl_->area > 0) || impl_->is_open) return 0;
   const double limit = 0.1 * impl_->hausdorff;
   return std::clamp(-impl_->six_gain / (6.0 * impl_->area), -limit, limit);
 }
 
 void SurfaceMesh::moved(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
-  for (VertexHandle v : vertices) {
-    const Eigen::Vector3d place = eigen(mesh.point(v));
-    impl_->for_sheets(v, [&](OmVertex w) {
-      if (impl_->om.point(w) == place) return;
-      const std::vector<OmFace> round = impl_->faces_round(w);
-      impl_->six_gain -= impl_->six_volume_of(round);
-      impl_->om.set_point(w, place);
-      impl_->six_gain += impl_->six_volume_of(round);
-      if (!impl_->flat()) impl_->share_samples(round, {});
-    });
-  }
+  for (VertexHandle v : vertices) moved(v, mesh.point(v));
+}
+
+void SurfaceMesh::moved(VertexHandle v, Vec3 x) {
+  const Eigen::Vector3d place = eigen(x);
+  impl_->for_sheets(v, [&](OmVertex w) {
+    if (impl_->om.point(w) == place) return;
+    const std::vector<OmFace> round = impl_->faces_round(w);
+    impl_->six_gain -= impl_->six_volume_of(round);
+    impl_->om.set_point(w, place);
+    impl_->six_gain += impl_->six_volume_of(round);
+    if (!impl_->flat()) impl_->share_samples(round, {});
+  });
 }
 
 void SurfaceMesh::swapped(VertexHandle a, VertexHandle b) {
@@ -522,6 +598,7 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
   std::vector<OmVertex> sides;
   std::vector<std::uint8_t> is_feature;
   for (OmHalfedge side : {h, om.opposite_halfedge_handle(h)}) {
+    if (om.is_boundary(side)) continue;
     const OmHalfedge next = om.next_halfedge_handle(side);
     const OmHalfedge last = om.next_halfedge_handle(next);
     sides.push_back(om.to_vertex_handle(next));
@@ -540,7 +617,7 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
   om.collapse(h);
   std::erase_if(old, [&](OmFace f) { return om.status(f).deleted(); });
   impl_->six_gain += impl_->six_volume_of(old);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
     const OmHalfedge side = om.find_halfedge(to, sides[i]);
     om.status(om.edge_handle(side)).set_feature(is_feature[i] != 0);
   }
@@ -553,10 +630,12 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
 
 void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place) {
   Om& om = impl_->om;
-  const OmHalfedge h = impl_->find(a, b);
-  HFR_ASSERT(h.is_valid() && !om.is_boundary(om.edge_handle(h)));
+  OmHalfedge h = impl_->find(a, b);
+  HFR_ASSERT(h.is_valid());
+  if (om.is_boundary(h)) h = om.opposite_halfedge_handle(h);
   const OmEdge e = om.edge_handle(h);
-  const std::array<OmFace, 2> halves = {om.face_handle(h), om.face_handle(om.opposite_halfedge_handle(h))};
+  std::vector<OmFace> halves = {om.face_handle(h)};
+  if (!om.is_boundary(e)) halves.push_back(om.face_handle(om.opposite_halfedge_handle(h)));
   const std::array<OmVertex, 2> ends = {om.from_vertex_handle(h), om.to_vertex_handle(h)};
   const VertexHandle apex = impl_->vertex_of(om.to_vertex_handle(om.next_halfedge_handle(h)));
   const bool feature = om.status(e).feature();
@@ -571,8 +650,13 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
     if (impl_->flat() && impl_->freedom[v.idx()].kind == freedom.kind) freedom = impl_->freedom[v.idx()];
 
   for (OmFace f : halves) impl_->note_gone(f);
-  impl_->six_gain -= impl_->six_volume_of({halves[0], halves[1]});
-  const std::array<FaceRecord, 2> was = {impl_->record(halves[0]), impl_->record(halves[1])};
+  impl_->six_gain -= impl_->six_volume_of(halves);
+  std::vector<FaceRecord> was;
+  std::vector<Vec3> samples;
+  for (OmFace f : halves) {
+    was.push_back(impl_->record(f));
+    samples.insert(samples.end(), was.back().samples.begin(), was.back().samples.end());
+  }
   const OmVertex m = impl_->add_vertex(middle, place);
   om.split_edge(e, m);
   impl_->faces.resize(om.n_faces());
@@ -592,8 +676,6 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
   impl_->freedom.resize(std::max<std::size_t>(impl_->freedom.size(), middle.idx() + 1));
   impl_->freedom[middle.idx()] = freedom;
   if (impl_->flat()) return;
-  std::vector<Vec3> samples = was[0].samples;
-  samples.insert(samples.end(), was[1].samples.begin(), was[1].samples.end());
   impl_->share_samples(round, std::move(samples));
 }
 

@@ -10,6 +10,7 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "Surface/SurfaceOptions.hh"
+#include "Surface/TriangleMesh.hh"
 
 namespace hfr {
 
@@ -42,10 +43,14 @@ class SurfaceMesh {
  public:
   /// Takes the surface as it is now as the shape to keep. Throws InvalidInput for options out of range.
   SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
+  /// A surface without cells. What speaks of a TetMesh or a half-face is of no use then.
+  SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options);
   ~SurfaceMesh();
   SurfaceMesh(const SurfaceMesh&) = delete;
   SurfaceMesh& operator=(const SurfaceMesh&) = delete;
 
+  /// Largest distance that the options allow on this surface; 0 but in free mode.
+  static double allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
   const SurfaceOptions& options() const;
   /// Largest distance from the input that is allowed; 0 in flat mode.
   double hausdorff() const;
@@ -63,9 +68,21 @@ class SurfaceMesh {
   /// Number of the surface's face with the vertices of h; kNoFace when it is none.
   std::size_t face(const TetMesh& mesh, HalfFaceHandle h) const;
   static constexpr std::size_t kNoFace = ~std::size_t{0};
+  bool is_deleted(std::size_t f) const;
+  std::array<VertexHandle, 3> face_vertices(std::size_t f) const;  ///< in outward order
+  int patch(std::size_t f) const;
+  /// Where the vertex is by what has been told; it must be one of the surface.
+  Vec3 point(VertexHandle v) const;
+  /// Appends the vertices of all faces at v, whatever sheet they belong to.
+  void star(VertexHandle v, std::vector<std::array<VertexHandle, 3>>& out) const;
+  /// The vertices across the edge from a to b: on its left, and on its right. Invalid where there is no face,
+  /// both where there is no such edge.
+  std::array<VertexHandle, 2> across(VertexHandle a, VertexHandle b) const;
 
   // --- what is legal: topology by OpenMesh, features, labels, locks ---
-  /// May the edge from a to b be swapped?
+  /// Has the edge from a to b two faces of one facet and label, and is nothing about it to be kept?
+  bool is_inner(VertexHandle a, VertexHandle b) const;
+  /// May the edge from a to b be swapped? It must be an inner one.
   bool may_swap(VertexHandle a, VertexHandle b) const;
   /// May the edge from a to b be split?
   bool may_split(VertexHandle a, VertexHandle b) const;
@@ -90,6 +107,7 @@ class SurfaceMesh {
   // --- what has happened ---
   /// Vertices of the list may have been moved.
   void moved(const TetMesh& mesh, std::span<const VertexHandle> vertices);
+  void moved(VertexHandle v, Vec3 place);
   void swapped(VertexHandle a, VertexHandle b);
   void collapsed(VertexHandle v, VertexHandle onto);
   /// The edge from a to b has got the vertex `middle`.

@@ -6,6 +6,7 @@
 #include "kernels/star_newton.h"
 #include "kernels/star_volume_length.h"
 #include "kernels/tet_volume.h"
+#include "kernels/triangle.h"
 #include "kernels/untangle.h"
 #include "kernels/volume_length.h"
 
@@ -23,5 +24,5 @@ __kernel void evaluate(__global const double* points, __global double* values) {
          hfr_radius_ratio_decision(p[0], p[1], p[2], p[3]);
   sum += hfr_edge_ratio_decision(p[0], p[1], p[2], p[3]) + hfr_volume_decision(p[0], p[1], p[2], p[3]);
   sum += hfr_dihedral_cos_sin(frame, 3).sine + (double)hfr_orient_sign(p[0], p[1], p[2], p[3]);
-  values[i] = sum;
+  values[i] = sum + hfr_triangle_min_sin2(p[0], p[1], p[2]);
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numbers>
 #include <optional>
 
 #include "HalfFace/Check.hh"
@@ -140,6 +141,174 @@ TEST(SurfaceRuns, FreeKeepsTheCornersAndEdgesOfABox) {
   EXPECT_LT(result.surface.hausdorff, 1e-14);
   const SurfaceMesh surface(mesh, with(SurfaceMode::kFree).surface);
   EXPECT_EQ(surface.n_vertices(SurfaceKind::kFixed), 8U);
+}
+
+// The case of D'Amato & Venere (2013), figure 3.
+TEST(SurfaceRuns, CylinderWhoseSideFoldsOverIsRepairedUnlessFrozen) {
+  const TetMesh folded = built(generate::cylinder(6, 16, 1, 2, 0, /*wring=*/70));
+  ImproveOptions options = with(SurfaceMode::kFrozen);
+  options.time_limit = 60;
+  TetMesh frozen = folded;
+  const Result kept = improve(frozen, options);
+  EXPECT_FALSE(kept.goal_reached);
+  EXPECT_GT(kept.invalid_cells.size(), 5U);
+  EXPECT_GT(kept.folded_faces.size(), 0U);
+
+  TetMesh mesh = folded;
+  options.surface.mode = SurfaceMode::kFree;
+  options.surface.hausdorff = 0.03;
+  const Result result = improve(mesh, options);
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_TRUE(result.goal_reached);
+  EXPECT_TRUE(result.invalid_cells.empty());
+  EXPECT_GT(result.after.min_dihedral.min, 15);
+  EXPECT_LE(result.surface.hausdorff, 0.031);
+  EXPECT_LT(std::abs(result.surface.volume_change), 1e-3);
+  EXPECT_EQ(result.surface.bound, 0.03);
+  for (VertexHandle v : mesh.boundary_vertices()) {
+    const Vec3 p = mesh.point(v);
+    EXPECT_LT(std::hypot(p.x, p.y), 1 + 0.031);
+  }
+}
+
+TEST(SurfaceRuns, FrozenSaysWhatTheSurfaceHoldsBackAndWhatWouldFreeIt) {
+  // A block with a corner cut to 12 degrees: the shape itself rules out 20 degrees there, and in any mode.
+  const auto sheared = [](double slope, double bend) {
+    generate::Arrays arrays = generate::box({4, 4, 4});
+    for (Vec3& p : arrays.points) {
+      p.x += slope * p.y;
+      p.y += bend * p.x * p.x;
+    }
+    return built(arrays);
+  };
+  const auto held = [](TetMesh mesh, SurfaceMode mode, double goal) {
+    ImproveOptions options = with(mode);
+    options.min_dihedral = goal;
+    return improve(mesh, options);
+  };
+  const Result wedge = held(sheared(std::tan(78 * std::numbers::pi / 180), 0), SurfaceMode::kFrozen, 20);
+  ASSERT_GT(wedge.held.cells, 0U);
+  EXPECT_TRUE(wedge.held.known);
+  EXPECT_GT(wedge.held.by_shape, 0U);
+  EXPECT_EQ(wedge.held.by_flat + wedge.held.by_free + wedge.held.by_shape, wedge.held.cells);
+
+  // Jittered sides of a cube: flat frees what they hold. On a bent side only free does.
+  const auto bent = [](double bend) {
+    generate::Arrays arrays = generate::jittered_box({5, 5, 5}, 0.35, 4);
+    for (Vec3& p : arrays.points) p = p + bend * dot(p, p) * Vec3{p.y, p.z, p.x};
+    return built(arrays);
+  };
+  const Result flat = held(bent(0), SurfaceMode::kFrozen, 30);
+  ASSERT_GT(flat.held.cells, 0U);
+  EXPECT_EQ(flat.held.by_flat, flat.held.cells);
+  const Result curved = held(bent(0.2), SurfaceMode::kFrozen, 30);
+  ASSERT_GT(curved.held.cells, 0U);
+  EXPECT_EQ(curved.held.by_flat, 0U);
+  EXPECT_GT(curved.held.by_free, 0U);
+  EXPECT_EQ(held(bent(0), SurfaceMode::kFlat, 30).held.cells, 0U) << "counted for a frozen surface only";
+}
+
+/// A sector of a ring with a bent roof: straight and round sharp edges, smooth walls, and flat sides.
+TetMesh fan(double jitter) {
+  generate::Arrays arrays = generate::jittered_box({8, 4, 4}, jitter, 7);
+  for (Vec3& p : arrays.points) {
+    const double angle = std::numbers::pi / 2 * p.x;
+    const double r = 1 + p.y;
+    const double z = p.z * (1 + 0.1 * std::sin(2 * angle) * p.y);
+    // The sines and cosines of the ends are exact, so that the flat sides are.
+    p = {p.x == 1 ? 0 : r * std::cos(angle), p.x == 0 ? 0 : r * std::sin(angle), z};
+  }
+  return built(arrays);
+}
+
+/// Ends of the feature edges, and the corners in which they meet.
+struct Sharp {
+  std::set<Place> corners;
+  std::size_t n_edges = 0;
+};
+Sharp sharp_of(const TetMesh& mesh, SurfaceMode mode) {
+  const SurfaceMesh surface(mesh, with(mode).surface);
+  Sharp sharp;
+  sharp.n_edges = surface.n_feature_edges();
+  for (VertexHandle v : mesh.boundary_vertices())
+    if (surface.freedom(v).kind == SurfaceKind::kFixed) sharp.corners.insert(place_of(mesh, v));
+  return sharp;
+}
+
+TEST(SurfaceRuns, FanKeepsCornersSharpEdgesAndFlatSides) {
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    TetMesh mesh = fan(0.2);
+    const Sharp before = sharp_of(mesh, SurfaceMode::kFree);
+    ASSERT_EQ(before.corners.size(), 8U);
+    ImproveOptions options = with(mode);
+    const Result result = improve(mesh, options);
+    EXPECT_EQ(check(mesh), Ok);
+    EXPECT_GT(surface_changes(result), 20U);
+    EXPECT_EQ(sharp_of(mesh, SurfaceMode::kFree).corners, before.corners);
+    for (VertexHandle v : mesh.boundary_vertices()) {
+      const Vec3 p = mesh.point(v);
+      // The flat sides are x = 0, y = 0 and z = 0: on each exactly, or away from it.
+      for (int d = 0; d < 3; ++d) EXPECT_TRUE(p[d] == 0 || p[d] > 0.02) << "coordinate " << d << ": " << p[d];
+    }
+    if (mode == SurfaceMode::kFlat) {
+      EXPECT_LT(std::abs(result.surface.volume_change), 1e-12);
+      EXPECT_LT(result.surface.hausdorff, 1e-14);
+    } else {
+      EXPECT_LE(result.surface.hausdorff, 1.1 * result.surface.bound);
+      EXPECT_LT(std::abs(result.surface.volume_change), 1e-3);
+    }
+  }
+}
+
+TEST(SurfaceRuns, CylinderKeepsItsEndsAndRims) {
+  generate::Arrays arrays = generate::cylinder(4, 8, 1, 2, 60);
+  generate::jitter_inner(arrays, 0.3, 2);
+  TetMesh mesh = built(arrays);
+  const Result result = improve(mesh, with(SurfaceMode::kFree));
+  EXPECT_GT(surface_changes(result), 20U);
+  for (VertexHandle v : mesh.boundary_vertices()) {
+    const double z = mesh.point(v).z;
+    EXPECT_TRUE(z == 0 || z == 2 || (z > 0.02 && z < 1.98)) << z;
+  }
+  EXPECT_LE(result.surface.hausdorff, 1.1 * result.surface.bound);
+}
+
+TEST(SurfaceRuns, PeriodicPatchesStayMatched) {
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    TetMesh mesh = labelled_box(5, 0.3, 8);
+    // Both sides along x get the jitter of one of them, and so match.
+    std::map<std::pair<long, long>, Vec3> low;
+    const TetMesh regular = built(generate::box({5, 5, 5}));
+    for (VertexHandle v : regular.vertices())
+      if (regular.point(v).x == 0) {
+        const Vec3 p = regular.point(v);
+        low[{std::lround(5 * p.y), std::lround(5 * p.z)}] = mesh.point(v);
+      }
+    for (VertexHandle v : regular.vertices()) {
+      const Vec3 p = regular.point(v);
+      if (p.x != 1) continue;
+      const Vec3 match = low.at({std::lround(5 * p.y), std::lround(5 * p.z)});
+      mesh.set_point(v, {1, match.y, match.z});
+    }
+    const auto side = [](const TetMesh& m, double x) {
+      std::set<std::set<std::pair<double, double>>> faces;
+      for (HalfFaceHandle h : m.boundary_halffaces()) {
+        std::set<std::pair<double, double>> corners;
+        for (VertexHandle v : m.halfface_vertices(h))
+          if (m.point(v).x == x) corners.emplace(m.point(v).y, m.point(v).z);
+        if (corners.size() == 3) faces.insert(corners);
+      }
+      return faces;
+    };
+    ASSERT_EQ(side(mesh, 0).size(), 50U);
+    ASSERT_EQ(side(mesh, 0), side(mesh, 1));
+    ImproveOptions options = with(mode);
+    options.surface.fixed_patches = {1, 2};  // what --periodic 1:2 comes to
+    const Result result = improve(mesh, options);
+    EXPECT_GT(surface_changes(result), 10U);
+    EXPECT_EQ(side(mesh, 0).size(), 50U);
+    EXPECT_EQ(side(mesh, 0), side(mesh, 1)) << "torn apart";
+  }
 }
 
 TEST(SurfaceRuns, HausdorffOfZeroIsFlat) {

@@ -16,6 +16,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
+#ifdef HFR_HAS_SURFACE
+constexpr bool kHasSurface = true;
+#else
+constexpr bool kHasSurface = false;
+#endif
+
 /// Hash of a mesh file as `stats` sees it.
 std::string hash_of(Tool& tool, const std::string& file) {
   const Outcome outcome = tool.run("stats --json - " + file);
@@ -228,6 +234,59 @@ TEST(Commands, GenerateGivesTheSameFileEveryTime) {
   EXPECT_EQ(tool.content("a.mesh"), tool.content("b.mesh"));
   EXPECT_NE(tool.content("a.mesh"), tool.content("c.mesh"));
   EXPECT_EQ(tool.run("generate box --n 2 2 2 --low -1 -1 -1 --high 1 2 3 -o d.mesh").code, 0);
+}
+
+TEST(Commands, SurfaceFilesAreImprovedAsSurfaces) {
+  if (!kHasSurface) GTEST_SKIP() << "this is a build without OpenMesh";
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 4 4 4 --jitter 0.3 -o box.mesh").code, 0);
+  ASSERT_EQ(tool.run("convert box.mesh -o box.stl").code, 0);
+  const Outcome outcome = tool.run("box.stl -o better.ply --json report.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const json report = json::parse(tool.content("report.json"));
+  EXPECT_GT(report["after"]["min_angle"]["min"], report["before"]["min_angle"]["min"]);
+  EXPECT_EQ(report["after"]["open_edges"], 0);
+  EXPECT_NEAR(report["after"]["volume"].get<double>(), 1, 1e-6);  // STL rounds coordinates to 32 bits
+  EXPECT_EQ(report["surface"]["mode"], "free");
+  EXPECT_THAT(outcome.out, HasSubstr("angle min"));
+  EXPECT_THAT(tool.files(), ElementsAre("better.ply", "box.mesh", "box.stl", "report.json"));
+  const Outcome again = tool.run("better.ply -o same.off --min-angle 1 --json -");
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_FALSE(json::parse(again.out)["result"]["changed"]);
+}
+
+TEST(Commands, FeaturesComeBackAsLabels) {
+  if (!kHasSurface) GTEST_SKIP() << "this is a build without OpenMesh";
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 3 3 3 -o box.mesh").code, 0);
+  ASSERT_EQ(tool.run("box.mesh -o plain.mesh --surface flat").code, 0);
+  EXPECT_THAT(tool.content("plain.mesh"), Not(HasSubstr("Edges")));
+  for (const char* name : {"out.mesh", "out.msh", "out.vtu", "out.ovm"}) {
+    const Outcome outcome =
+        tool.run(std::string("box.mesh -o ") + name + " --surface flat --label-features --json report.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GE(json::parse(tool.content("report.json"))["output"]["edges"], 12) << name;
+  }
+  EXPECT_THAT(tool.content("out.mesh"), HasSubstr("Edges\n"));
+  EXPECT_THAT(tool.content("out.msh"), AllOf(HasSubstr("\"feature\""), HasSubstr("\"corner\"")));
+  ASSERT_EQ(tool.run("convert out.msh -o back.mesh").code, 0);
+  EXPECT_EQ(hash_of(tool, "out.mesh"), hash_of(tool, "back.mesh"));
+}
+
+TEST(Commands, SurfaceFilesHaveTheirOwnGoalAndModes) {
+  if (!kHasSurface) GTEST_SKIP() << "this is a build without OpenMesh";
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 3 3 3 --jitter 0.3 -o box.mesh").code, 0);
+  ASSERT_EQ(tool.run("convert box.mesh -o box.off").code, 0);
+  const std::string before = tool.content("box.off");
+  EXPECT_EQ(tool.run("box.off -o box.off --surface frozen").code, 1);
+  EXPECT_EQ(tool.run("box.off -o box.off --min-dihedral 20").code, 1);
+  EXPECT_EQ(tool.run("box.mesh -o out.mesh --min-angle 20").code, 1);
+  EXPECT_EQ(tool.content("box.off"), before) << "nothing may be written after a usage error";
+  const Outcome missed = tool.run("box.off -o out.off --min-angle 59");
+  EXPECT_EQ(missed.code, 3);
+  EXPECT_THAT(missed.err, HasSubstr("59 degrees"));
+  EXPECT_THAT(tool.files(), ElementsAre("box.mesh", "box.off", "out.off"));
 }
 
 }  // namespace

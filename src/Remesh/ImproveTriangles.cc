@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/ImproveTriangles.hh"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "HalfFace/Errors.hh"
+#include "Remesh/Surfaces.hh"
+#include "kernels/triangle.h"
+#ifdef HFR_HAS_SURFACE
+#include "Surface/SurfaceMesh.hh"
+#include "Surface/TriangleSweep.hh"
+#endif
+
+namespace hfr {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+std::array<Vec3, 3> corners(const TriangleMesh& mesh, const std::array<VertexHandle, 3>& t) {
+  return {mesh.points[t[0].idx()], mesh.points[t[1].idx()], mesh.points[t[2].idx()]};
+}
+
+/// In degrees, the smallest and the largest.
+std::array<double, 2> angles(const std::array<Vec3, 3>& t) {
+  std::array<double, 2> found = {180, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 u = t[(k + 1) % 3] - t[k];
+    const Vec3 v = t[(k + 2) % 3] - t[k];
+    const double angle = std::atan2(norm(cross(u, v)), dot(u, v)) / kDegree;
+    found = {std::min(found[0], angle), std::max(found[1], angle)};
+  }
+  return found;
+}
+
+void count_edges(const TriangleMesh& mesh, TriangleStatistics& s) {
+  struct Edge {
+    VertexHandle a, b;
+    bool forth;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexHandle from = t[k];
+      const VertexHandle to = t[(k + 1) % 3];
+      edges.push_back({std::min(from, to), std::max(from, to), from < to});
+    }
+  std::sort(edges.begin(), edges.end(),
+            [](const Edge& x, const Edge& y) { return std::tie(x.a, x.b) < std::tie(y.a, y.b); });
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].a == edges[i].a && edges[end].b == edges[i].b) ++end;
+    if (end - i == 1)
+      ++s.open_edges;
+    else if (end - i > 2 || edges[i].forth == edges[i + 1].forth)
+      ++s.non_manifold_edges;
+    i = end;
+  }
+}
+
+Distribution distribution(std::vector<double> values) {
+  Distribution d;
+  if (values.empty()) return d;
+  double sum = 0;
+  for (double v : values) sum += v;
+  std::sort(values.begin(), values.end());
+  const auto n = static_cast<double>(values.size());
+  d.min = values.front();
+  d.max = values.back();
+  d.mean = sum / n;
+  for (std::size_t i = 0; i < kPercentiles.size(); ++i) {
+    const auto rank = static_cast<std::size_t>(std::ceil(kPercentiles[i] / 100 * n));
+    d.percentiles[i] = values[std::clamp<std::size_t>(rank, 1, values.size()) - 1];
+  }
+  return d;
+}
+
+}  // namespace
+
+TriangleStatistics statistics(const TriangleMesh& mesh) {
+  TriangleStatistics s;
+  s.triangles = mesh.triangles.size();
+  std::vector<std::uint8_t> used(mesh.points.size(), 0);
+  std::vector<double> smallest;
+  smallest.reserve(mesh.triangles.size());
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (const auto& t : mesh.triangles) {
+    for (VertexHandle v : t) used[v.idx()] = 1;
+    triangles.push_back(corners(mesh, t));
+    const auto [least, largest] = angles(triangles.back());
+    smallest.push_back(least);
+    s.max_angle = std::max(s.max_angle, largest);
+    const Vec3 n =
+        cross(triangles.back()[1] - triangles.back()[0], triangles.back()[2] - triangles.back()[0]);
+    s.area += 0.5 * norm(n);
+    if (n == Vec3{}) ++s.flat;
+  }
+  s.vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), 1));
+  s.min_angle = distribution(std::move(smallest));
+  count_edges(mesh, s);
+  if (s.open_edges == 0 && s.non_manifold_edges == 0) s.volume = enclosed_volume(triangles);
+  return s;
+}
+
+#ifdef HFR_HAS_SURFACE
+
+namespace {
+
+/// Degrees; where no goal is given, the worst triangles are raised from one of these to the next.
+constexpr std::array<double, 8> kLadder = {2, 5, 10, 15, 20, 25, 30, 35};
+/// Where more triangles than this share lie below a rung nobody asked for, the mesh as a whole is beyond it.
+constexpr double kLargestShare = 0.25;
+constexpr int kMaxIterations = 30;
+constexpr int kBulkIterations = 4;
+constexpr int kMaxIdle = 2;
+constexpr double kEnoughOfAll = 0.01;  // a bulk iteration that changes less is the last one
+constexpr double kVolumeEnough = 5e-5;
+constexpr int kVolumePasses = 8;
+
+double decision(double degrees) {
+  const double sine = std::sin(degrees * kDegree);
+  return sine * sine;
+}
+
+class TriangleRun {
+ public:
+  TriangleRun(TriangleMesh& mesh, const TriangleOptions& options, TriangleResult& result)
+      : options_(options),
+        result_(result),
+        start_(std::chrono::steady_clock::now()),
+        surface_(mesh, options.surface),
+        sweep_(surface_) {}
+
+  void run() {
+    if (options_.min_angle) {
+      polish(*options_.min_angle);
+    } else {
+      bulk();
+      for (double rung : kLadder) {
+        if (stopped()) break;
+        sweep_.focus(decision(rung));
+        const auto n = static_cast<double>(sweep_.n_below());
+        if (n > kLargestShare * static_cast<double>(result_.before.triangles)) break;
+        if (n > 0) polish(rung);
+      }
+    }
+    restore_volume();
+  }
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  void write(TriangleMesh& mesh);
+  const SurfaceMesh& surface() const { return surface_; }
+
+ private:
+  bool stopped() {
+    if (options_.cancel && options_.cancel()) result_.stop = Stop::kCancelled;
+    if (seconds() > options_.time_limit) result_.stop = Stop::kTimeLimit;
+    return result_.stop != Stop::kNoProgress;
+  }
+  std::size_t pass(const char* stage, const char* op, int iteration, std::size_t (TriangleSweep::*work)()) {
+    if (stopped()) return 0;
+    PassReport report;
+    const double before = seconds();
+    report.stage = stage;
+    report.op = op;
+    report.iteration = iteration;
+    report.rounds = 1;
+    report.winners = report.candidates = (sweep_.*work)();
+    report.worst = sweep_.worst();
+    report.seconds = report.seconds_evaluate = seconds() - before;
+    result_.passes.push_back(report);
+    return report.winners;
+  }
+  void bulk() {
+    sweep_.focus(std::numeric_limits<double>::infinity());
+    for (int i = 1; i <= kBulkIterations && !stopped(); ++i) {
+      const std::size_t n = pass("bulk", "surface swap", i, &TriangleSweep::swap) +
+                            pass("bulk", "surface smooth", i, &TriangleSweep::smooth);
+      if (static_cast<double>(n) < kEnoughOfAll * static_cast<double>(result_.before.triangles)) break;
+    }
+  }
+  void polish(double degrees) {
+    sweep_.focus(decision(degrees));
+    std::size_t n_poor = sweep_.n_below();
+    int idle = 0;
+    for (int i = 1; i <= kMaxIterations && n_poor > 0 && !stopped(); ++i) {
+      std::size_t n = pass("polish", "surface swap", i, &TriangleSweep::swap);
+      n += pass("polish", "surface node", i, &TriangleSweep::collapse);
+      n += pass("polish", "surface smooth", i, &TriangleSweep::smooth);
+      std::size_t now = sweep_.n_below();
+      idle = now < n_poor ? 0 : idle + 1;
+      if (now > 0 && (n == 0 || idle >= kMaxIdle)) {
+        if (pass("polish", "surface split", i, &TriangleSweep::split) == 0) break;
+        now = sweep_.n_below();
+        if (idle > 2 * kMaxIdle) break;
+      }
+      n_poor = now;
+    }
+  }
+  void restore_volume() {
+    if (surface_.options().mode != SurfaceMode::kFree) return;
+    constexpr double kFarAbove = 1.1;
+    sweep_.focus(kFarAbove * sweep_.worst());
+    for (int i = 1; i <= kVolumePasses && std::abs(surface_.volume_gain()) > kVolumeEnough; ++i)
+      if (pass("volume", "surface volume", i, &TriangleSweep::offset) == 0) break;
+  }
+
+  const TriangleOptions& options_;
+  TriangleResult& result_;
+  std::chrono::steady_clock::time_point start_;
+  SurfaceMesh surface_;
+  TriangleSweep sweep_;
+};
+
+void TriangleRun::write(TriangleMesh& mesh) {
+  std::vector<std::uint8_t> had(sweep_.points().size(), 0), has(had);
+  had.resize(std::max(had.size(), mesh.points.size()));
+  has.resize(had.size());
+  for (const auto& t : mesh.triangles)
+    for (VertexHandle v : t) had[v.idx()] = 1;
+  mesh.triangles.clear();
+  const bool labelled = !mesh.patches.empty();
+  mesh.patches.clear();
+  for (std::size_t f = 0; f < surface_.n_faces(); ++f) {
+    if (surface_.is_deleted(f)) continue;
+    mesh.triangles.push_back(surface_.face_vertices(f));
+    if (labelled) mesh.patches.push_back(surface_.patch(f));
+    for (VertexHandle v : mesh.triangles.back()) has[v.idx()] = 1;
+  }
+  const std::size_t n_old = mesh.points.size();
+  std::vector<VertexHandle> number(had.size());
+  std::vector<Vec3> points;
+  for (std::size_t v = 0; v < had.size(); ++v) {
+    const bool stays = has[v] || (v < n_old && !had[v]);  // what no triangle used is none of ours
+    if (!stays) continue;
+    number[v] = VertexHandle(points.size());
+    points.push_back(has[v] ? sweep_.points()[v] : mesh.points[v]);
+  }
+  mesh.points = std::move(points);
+  for (auto& t : mesh.triangles)
+    for (VertexHandle& v : t) v = number[v.idx()];
+  number.resize(n_old);
+  result_.vertex_map = std::move(number);
+}
+
+void validate(const TriangleMesh& mesh, const TriangleOptions& options) {
+  HFR_REQUIRE(options.surface.mode != SurfaceMode::kFrozen,
+              "a surface without cells cannot be improved while it is frozen: use flat or free");
+  HFR_REQUIRE(!options.min_angle || (*options.min_angle > 0 && *options.min_angle < 60),
+              "the smallest angle asked for must lie between 0 and 60 degrees, not " +
+                  std::to_string(options.min_angle.value_or(0)));
+  HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
+  HFR_REQUIRE(mesh.patches.empty() || mesh.patches.size() == mesh.triangles.size(),
+              "there must be a label for each triangle, or none at all");
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& t = mesh.triangles[i];
+    const bool known = std::all_of(
+        t.begin(), t.end(), [&](VertexHandle v) { return v.is_valid() && v.idx() < mesh.points.size(); });
+    HFR_REQUIRE(known, "triangle " + std::to_string(i) + " names a vertex that is not there");
+    HFR_REQUIRE(t[0] != t[1] && t[1] != t[2] && t[2] != t[0],
+                "triangle " + std::to_string(i) + " names a vertex twice");
+  }
+}
+
+}  // namespace
+
+TriangleResult improve_triangles(TriangleMesh& mesh, const TriangleOptions& options) {
+  validate(mesh, options);
+  TriangleResult result;
+  result.before = statistics(mesh);
+  std::vector<Triangle> before;
+  for (const auto& t : mesh.triangles) before.push_back(corners(mesh, t));
+  const auto meets_goal = [&](const TriangleStatistics& s) {
+    return s.flat == 0 && (!options.min_angle || s.min_angle.min >= *options.min_angle);
+  };
+  TriangleRun run(mesh, options, result);
+  if (!options.min_angle || !meets_goal(result.before)) run.run();
+  run.write(mesh);
+  result.seconds = run.seconds();
+  result.changed = std::any_of(result.passes.begin(), result.passes.end(),
+                               [](const PassReport& pass) { return pass.winners > 0; });
+  result.after = result.changed ? statistics(mesh) : result.before;
+  result.goal_reached = meets_goal(result.after);
+  if (result.stop == Stop::kNoProgress && options.min_angle && result.goal_reached) result.stop = Stop::kGoal;
+  std::vector<Triangle> after;
+  for (const auto& t : mesh.triangles) after.push_back(corners(mesh, t));
+  result.surface.mode = run.surface().options().mode;
+  result.surface.bound = run.surface().hausdorff();
+  result.surface.feature_edges = run.surface().n_feature_edges();
+  measure_surfaces(before, after, result.before.volume, result.after.volume, options.policy, result.surface);
+  return result;
+}
+
+#else
+
+TriangleResult improve_triangles(TriangleMesh&, const TriangleOptions&) {
+  HFR_REQUIRE(false,
+              "this hfremesh was built without OpenMesh and cannot improve a surface without cells: build it "
+              "with -DHFR_SURFACE=ON");
+  return {};
+}
+
+#endif
+
+}  // namespace hfr

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surface/HeldCells.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "Surface/Features.hh"
+
+namespace hfr {
+namespace {
+
+using surface::corners;
+using surface::scaled_normal;
+using surface::unit;
+
+/// The surface as one mode sees it.
+class View {
+ public:
+  View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy) {
+    constexpr double kDetail = 0.1;  // of the mean edge, as in SurfaceMesh
+    options.mode = mode;
+    arrays_ = surface::gather(mesh, options, policy);
+    double detail = kDetail * surface::mean_edge(arrays_);
+    if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
+    features_ = surface::find_features(arrays_, options, mode == SurfaceMode::kFree ? detail : 0);
+  }
+
+  /// True when something of the cell's surface may change, and nothing that stays is too narrow for it.
+  bool lets_change(const TetMesh& mesh, CellHandle c, double degrees) const {
+    const auto& v = mesh.cell(c).v;
+    bool may_change = std::any_of(v.begin(), v.end(), [&](VertexHandle w) {
+      const SurfaceKind kind = features_.freedom[w.idx()].kind;
+      return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
+    });
+    for (const auto& [i, j] : kEdgeCorners) {
+      const surface::Edge* e = edge(v[i], v[j]);
+      if (!e || !e->manifold) continue;
+      if (e->feature && angle_inside(*e) < degrees) return false;
+      may_change = may_change || (!e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]]);
+    }
+    return may_change;
+  }
+
+ private:
+  const surface::Edge* edge(VertexHandle a, VertexHandle b) const {
+    if (b < a) std::swap(a, b);
+    const auto& edges = features_.edges;
+    const auto at =
+        std::lower_bound(edges.begin(), edges.end(), std::pair(a, b),
+                         [](const surface::Edge& e, const std::pair<VertexHandle, VertexHandle>& w) {
+                           return std::pair(e.a, e.b) < w;
+                         });
+    return at != edges.end() && at->a == a && at->b == b ? &*at : nullptr;
+  }
+  /// Degrees between the two faces, through the inside: below 180 where the surface is convex.
+  double angle_inside(const surface::Edge& e) const {
+    const Triangle f = corners(arrays_.points, arrays_.faces[e.f[0]]);
+    const Triangle g = corners(arrays_.points, arrays_.faces[e.f[1]]);
+    const Vec3 n = unit(scaled_normal(f));
+    const Vec3 m = unit(scaled_normal(g));
+    const double turn = std::atan2(norm(cross(n, m)), dot(n, m)) * (180.0 / std::numbers::pi);
+    const bool convex = dot(g[(e.k[1] + 2U) % 3] - f[e.k[0]], n) <= 0;
+    return convex ? 180 - turn : 180 + turn;
+  }
+
+  surface::Arrays arrays_;
+  surface::Features features_;
+};
+
+}  // namespace
+
+std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> cells, double degrees,
+                              const SurfaceOptions& options, par::Policy policy) {
+  std::vector<FreedBy> found;
+  if (cells.empty()) return found;
+  const View flat(mesh, options, SurfaceMode::kFlat, policy);
+  const View free(mesh, options, SurfaceMode::kFree, policy);
+  found.reserve(cells.size());
+  for (CellHandle c : cells)
+    found.push_back(flat.lets_change(mesh, c, degrees)   ? FreedBy::kFlat
+                    : free.lets_change(mesh, c, degrees) ? FreedBy::kFree
+                                                         : FreedBy::kShape);
+  return found;
+}
+
+}  // namespace hfr

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SURFACE_HELD_CELLS_HH
+#define HFR_SURFACE_HELD_CELLS_HH
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Surface/SurfaceOptions.hh"
+
+namespace hfr {
+
+/// The least that lets the surface of a cell change.
+enum class FreedBy : std::uint8_t {
+  kFlat,   ///< in flat mode one of its vertices may move, or one of its edges be swapped
+  kFree,   ///< in free mode one may, in flat mode none
+  kShape,  ///< in neither, or two faces at one of its edges, which both modes keep, leave less than `degrees`
+};
+
+/// For each cell, what would free it. `options` give the feature angle, the distance and what is fixed, for
+/// both modes; their own mode does not count. Cost: that of finding the features of the surface twice.
+std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> cells, double degrees,
+                              const SurfaceOptions& options, par::Policy policy = {});
+
+}  // namespace hfr
+
+#endif

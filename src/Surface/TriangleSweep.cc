@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// D'Amato & Venere, JPDC 73 (2013), section 7: "This scheme has already been successfully applied to surface
+// meshes composed of triangles." A cluster is the pair at an edge, the star of a vertex, or a cavity.
+#include "Surface/TriangleSweep.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "Quality/Metrics.hh"
+#include "Surface/Features.hh"
+#include "kernels/triangle.h"
+
+namespace hfr {
+
+using surface::scaled_normal;
+using surface::unit;
+
+namespace {
+
+constexpr int kHalvings = 5;
+constexpr std::size_t kMaxPolygon = 12;
+/// By what a new vertex must raise the worst decision value of its cavity: it costs two triangles.
+constexpr double kSplitGain = 1.1;
+
+std::array<Vec3, 2> tangents(Vec3 n) {
+  const Vec3 a = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
+  Vec3 u = a.x <= a.y && a.x <= a.z ? Vec3{0, n.z, -n.y}
+           : a.y <= a.z             ? Vec3{-n.z, 0, n.x}
+                                    : Vec3{n.y, -n.x, 0};
+  u = unit(u);
+  return {u, cross(n, u)};
+}
+
+/// Steps from `place` by `radius` in the free directions to where value(x) is larger, the radius halved when
+/// none is. `value` may give up once it is no larger than its second argument.
+template <class Value, class Project>
+Vec3 climb(Vec3 place, double radius, Vec3 axis, bool on_line, Project&& project, Value&& value) {
+  double best = value(place, -1.0);
+  const auto uv = tangents(axis);
+  for (int level = 0; level < kHalvings;) {
+    const Vec3 centre = place;
+    const auto consider = [&](Vec3 x) {
+      const Vec3 candidate = project(x);
+      const double now = value(candidate, best);
+      if (!(now > best)) return false;
+      best = now;
+      place = candidate;
+      return true;
+    };
+    bool better = false;
+    if (on_line) {
+      for (double s : {1.0, -1.0}) better = consider(centre + (s * radius) * axis) || better;
+    } else {
+      for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j)
+          if (i != 0 || j != 0)
+            better = consider(centre + radius * ((i * 1.0) * uv[0] + (j * 1.0) * uv[1])) || better;
+    }
+    if (better) continue;
+    radius *= 0.5;
+    ++level;
+  }
+  return place;
+}
+
+}  // namespace
+
+double triangle_decision(const Triangle& t) {
+  return hfr_triangle_min_sin2(to_real3(t[0]), to_real3(t[1]), to_real3(t[2]));
+}
+
+/// The faces round a vertex, and where it stands in each.
+struct TriangleSweep::Star {
+  std::vector<Face> faces;
+  std::vector<Triangle> dead;
+  std::vector<std::size_t> corner;
+  double worst = std::numeric_limits<double>::infinity();
+  double mean_edge = 0;
+  Vec3 normal;  // of length 1; zero when there is none
+
+  std::vector<Triangle> moved_to(Vec3 x) const {
+    std::vector<Triangle> born = dead;
+    for (std::size_t i = 0; i < born.size(); ++i) born[i][corner[i]] = x;
+    return born;
+  }
+  double worst_with(Vec3 x, double floor) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < dead.size() && least > floor; ++i) {
+      Triangle t = dead[i];
+      t[corner[i]] = x;
+      // A triangle that turns over is none.
+      const double now = dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0;
+      least = std::min(least, now);
+    }
+    return least;
+  }
+  bool is_flat() const {
+    constexpr double kLevel = 1.0 - 1e-9;
+    return std::all_of(dead.begin(), dead.end(), [&](const Triangle& t) {
+      const Vec3 n = scaled_normal(t);
+      return dot(n, normal) >= kLevel * norm(n);
+    });
+  }
+};
+
+/// A polygon of the surface, seen from outside; open (an edge is missing from its last to its first corner)
+/// where the split edge is on the rim.
+struct TriangleSweep::Insertion {
+  std::vector<VertexHandle> polygon;
+  bool closed = true;
+  std::vector<Face> faces;                                 // that it is made of
+  std::vector<std::array<VertexHandle, 2>> flips;          // edges across which it has grown, in order
+  double worst = std::numeric_limits<double>::infinity();  // of the faces
+  Vec3 axis;                                               // that the new vertex stays normal to, or on
+  bool on_line = false;
+  Vec3 anchor, middle;
+  double size = 0;
+  std::size_t weakest = 0;  // corner before the edge of the worst new triangle
+  double worst_new = 0;
+
+  std::size_t n_edges() const { return polygon.size() - (closed ? 0 : 1); }
+};
+
+TriangleSweep::TriangleSweep(SurfaceMesh& surface) : surface_(surface) {
+  for (std::size_t f = 0; f < surface.n_faces(); ++f) {
+    for (VertexHandle v : surface.face_vertices(f)) {
+      if (v.idx() >= points_.size()) points_.resize(v.idx() + 1);
+      points_[v.idx()] = surface.point(v);
+    }
+  }
+  changed_.assign(points_.size(), clock_);
+}
+
+void TriangleSweep::focus(double below) {
+  below_ = below;
+  looked_.fill(0);
+}
+
+std::size_t TriangleSweep::n_below() const {
+  std::size_t n = 0;
+  for (std::size_t f = 0; f < surface_.n_faces(); ++f)
+    if (!surface_.is_deleted(f) && decision(surface_.face_vertices(f)) < below_) ++n;
+  return n;
+}
+
+double TriangleSweep::worst() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t f = 0; f < surface_.n_faces(); ++f)
+    if (!surface_.is_deleted(f)) least = std::min(least, decision(surface_.face_vertices(f)));
+  return least;
+}
+
+bool TriangleSweep::changed_since(const Face& f, std::uint32_t since) const {
+  return changed_[f[0].idx()] > since || changed_[f[1].idx()] > since || changed_[f[2].idx()] > since;
+}
+
+void TriangleSweep::touch(VertexHandle v) { changed_[v.idx()] = clock_; }
+
+auto TriangleSweep::look(Kind kind) -> std::vector<Face> {
+  const std::uint32_t since = looked_[kind];
+  looked_[kind] = clock_++;
+  std::vector<Face> faces;
+  for (std::size_t f = 0; f < surface_.n_faces(); ++f) {
+    if (surface_.is_deleted(f)) continue;
+    const Face face = surface_.face_vertices(f);
+    if (changed_since(face, since) && decision(face) < below_) faces.push_back(face);
+  }
+  return faces;
+}
+
+auto TriangleSweep::free_vertices(const std::vector<Face>& faces) -> std::vector<VertexHandle> {
+  std::vector<std::uint8_t> seen(points_.size(), 0);
+  std::vector<VertexHandle> vertices;
+  for (const Face& f : faces) {
+    for (VertexHandle v : f) {
+      const SurfaceKind kind = surface_.freedom(v).kind;
+      if (seen[v.idx()] || (kind != SurfaceKind::kFacet && kind != SurfaceKind::kCurve)) continue;
+      seen[v.idx()] = 1;
+      vertices.push_back(v);
+    }
+  }
+  return vertices;
+}
+
+bool TriangleSweep::still_there(const Face& f) const {
+  for (VertexHandle apex : surface_.across(f[0], f[1]))
+    if (apex == f[2]) return true;
+  return false;
+}
+
+bool TriangleSweep::gather(VertexHandle v, Star& star) const {
+  surface_.star(v, star.faces);
+  if (star.faces.empty()) return false;
+  Vec3 sum;
+  double length = 0;
+  for (const Face& f : star.faces) {
+    const Triangle t = corners(f);
+    star.dead.push_back(t);
+    star.corner.push_back(f[0] == v ? 0 : f[1] == v ? 1 : 2);
+    star.worst = std::min(star.worst, triangle_decision(t));
+    sum = sum + scaled_normal(t);
+    for (std::size_t k = 0; k < 3; ++k) length += k == star.corner.back() ? 0.0 : norm(t[k] - point(v));
+  }
+  star.normal = unit(sum);
+  star.mean_edge = length / (2.0 * static_cast<double>(star.faces.size()));
+  return star.normal != Vec3{};
+}
+
+std::size_t TriangleSweep::swap() {
+  std::size_t n = 0;
+  for (const Face& f : look(kSwap))
+    for (std::size_t k = 0; k < 3; ++k)
+      if (try_swap(f[k], f[(k + 1) % 3])) {
+        ++n;
+        break;  // the face is no more
+      }
+  return n;
+}
+
+bool TriangleSweep::try_swap(VertexHandle a, VertexHandle b) {
+  const auto [c, d] = surface_.across(a, b);
+  if (!c.is_valid() || !d.is_valid()) return false;
+  const std::array<Face, 2> faces = {{{a, b, c}, {b, a, d}}};
+  const std::array<Triangle, 2> dead = {corners(faces[0]), corners(faces[1])};
+  const std::array<Triangle, 2> born = {corners({c, d, b}), corners({d, c, a})};
+  const double worst = std::min(triangle_decision(dead[0]), triangle_decision(dead[1]));
+  if (!(triangle_decision(born[0]) > worst) || !(triangle_decision(born[1]) > worst)) return false;
+  if (!surface_.may_swap(a, b) || !surface_.keeps_shape(faces, dead, born)) return false;
+  surface_.swapped(a, b);
+  for (VertexHandle v : {a, b, c, d}) touch(v);
+  return true;
+}
+
+std::size_t TriangleSweep::collapse() {
+  std::size_t n = 0;
+  for (VertexHandle v : free_vertices(look(kCollapse)))
+    if (try_collapse(v)) ++n;
+  return n;
+}
+
+bool TriangleSweep::try_collapse(VertexHandle v) {
+  std::vector<VertexHandle> targets;
+  surface_.collapse_targets(v, targets);
+  if (targets.empty()) return false;
+  Star star;
+  if (!gather(v, star)) return false;
+  // Best first; the first whose shape is right is taken.
+  std::vector<std::pair<double, VertexHandle>> ranked;
+  const auto without = [&](VertexHandle onto) {
+    std::vector<Triangle> born;
+    for (std::size_t i = 0; i < star.faces.size(); ++i) {
+      const Face& f = star.faces[i];
+      if (f[0] == onto || f[1] == onto || f[2] == onto) continue;
+      born.push_back(star.dead[i]);
+      born.back()[star.corner[i]] = point(onto);
+    }
+    return born;
+  };
+  for (VertexHandle onto : targets) {
+    double worst = std::numeric_limits<double>::infinity();
+    for (const Triangle& t : without(onto)) worst = std::min(worst, triangle_decision(t));
+    if (worst > star.worst && worst < std::numeric_limits<double>::infinity())
+      ranked.emplace_back(worst, onto);
+  }
+  std::sort(ranked.begin(), ranked.end(), [](const auto& x, const auto& y) {
+    return x.first != y.first ? x.first > y.first : x.second < y.second;
+  });
+  for (const auto& [worst, onto] : ranked) {
+    if (!surface_.keeps_shape(star.faces, star.dead, without(onto))) continue;
+    surface_.collapsed(v, onto);
+    for (const Face& f : star.faces)
+      for (VertexHandle w : f) touch(w);
+    return true;
+  }
+  return false;
+}
+
+std::size_t TriangleSweep::smooth() {
+  std::size_t n = 0;
+  for (VertexHandle v : free_vertices(look(kSmooth)))
+    if (try_smooth(v)) ++n;
+  return n;
+}
+
+bool TriangleSweep::try_smooth(VertexHandle v) {
+  const Freedom& freedom = surface_.freedom(v);
+  const bool on_curve = freedom.kind == SurfaceKind::kCurve;
+  const bool is_free = surface_.options().mode == SurfaceMode::kFree;
+  Star star;
+  if (!gather(v, star)) return false;
+  const Vec3 axis = !on_curve && is_free ? star.normal : freedom.axis;
+  if (axis == Vec3{}) return false;
+  const Vec3 lift = is_free && !on_curve && !star.is_flat() ? surface_.outward() * axis : Vec3{};
+  const Vec3 origin = point(v);
+  Vec3 place = climb(
+      origin, 0.5 * star.mean_edge, axis, on_curve, [&](Vec3 x) { return surface_.project(v, x + lift); },
+      [&](Vec3 x, double floor) { return star.worst_with(x, floor); });
+  for (int i = 0; i < 3 && place != origin; ++i) {
+    if (star.worst_with(place, star.worst) > star.worst &&
+        surface_.keeps_shape(star.faces, star.dead, star.moved_to(place))) {
+      points_[v.idx()] = place;
+      surface_.moved(v, place);
+      for (const Face& f : star.faces)
+        for (VertexHandle w : f) touch(w);
+      return true;
+    }
+    place = surface_.project(v, origin + 0.5 * (place - origin));
+  }
+  return false;
+}
+
+std::size_t TriangleSweep::offset() {
+  std::vector<Face> all;
+  for (std::size_t f = 0; f < surface_.n_faces(); ++f)
+    if (!surface_.is_deleted(f)) all.push_back(surface_.face_vertices(f));
+  std::size_t n = 0;
+  for (VertexHandle v : free_vertices(all))
+    if (try_offset(v)) ++n;
+  return n;
+}
+
+bool TriangleSweep::try_offset(VertexHandle v) {
+  constexpr double kTrifle = 0.97;
+  Star star;
+  if (surface_.freedom(v).kind != SurfaceKind::kFacet || !gather(v, star) || star.is_flat()) return false;
+  const Vec3 place = point(v) + surface_.outward() * star.normal;
+  const double floor = std::max(kTrifle * star.worst, std::min(star.worst, below_));
+  if (place == point(v) || !(star.worst_with(place, floor) > floor) ||
+      !surface_.keeps_shape(star.faces, star.dead, star.moved_to(place)))
+    return false;
+  points_[v.idx()] = place;
+  surface_.moved(v, place);
+  return true;
+}
+
+std::size_t TriangleSweep::split() {
+  std::size_t n = 0;
+  for (const Face& f : look(kSplit)) {
+    if (!still_there(f) || !(decision(f) < below_)) continue;
+    std::array<std::size_t, 3> order = {0, 1, 2};  // the longest edge first
+    const auto length2 = [&](std::size_t k) { return norm2(point(f[(k + 1) % 3]) - point(f[k])); };
+    std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+      return length2(i) != length2(j) ? length2(i) > length2(j) : f[i] < f[j];
+    });
+    for (std::size_t k : order)
+      if (try_split(f[k], f[(k + 1) % 3])) {
+        ++n;
+        break;
+      }
+  }
+  return n;
+}
+
+/// Where the new vertex is best, and what the worst triangle is then.
+void TriangleSweep::place(Insertion& cavity) const {
+  const auto triangle = [&](std::size_t i, Vec3 x) {
+    return Triangle{x, point(cavity.polygon[i]), point(cavity.polygon[(i + 1) % cavity.polygon.size()])};
+  };
+  Vec3 normal;
+  for (const Face& f : cavity.faces) normal = normal + scaled_normal(corners(f));
+  const auto value = [&](Vec3 x, double floor) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < cavity.n_edges() && least > floor; ++i) {
+      const Triangle t = triangle(i, x);
+      least = std::min(least, dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0);
+    }
+    return least;
+  };
+  const auto project = [&](Vec3 x) {
+    const Vec3 r = x - cavity.anchor;
+    return cavity.on_line ? cavity.anchor + dot(r, cavity.axis) * cavity.axis
+                          : x - dot(r, cavity.axis) * cavity.axis;
+  };
+  cavity.middle = climb(cavity.middle, 0.25 * cavity.size, cavity.axis, cavity.on_line, project, value);
+  cavity.worst_new = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < cavity.n_edges(); ++i) {
+    const Triangle t = triangle(i, cavity.middle);
+    const double now = dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0;
+    if (now < cavity.worst_new) {
+      cavity.worst_new = now;
+      cavity.weakest = i;
+    }
+  }
+}
+
+bool TriangleSweep::try_split(VertexHandle a, VertexHandle b) {
+  if (!surface_.may_split(a, b)) return false;
+  const auto [c, d] = surface_.across(a, b);
+  Insertion cavity;
+  cavity.closed = c.is_valid() && d.is_valid();
+  if (cavity.closed) {
+    cavity.polygon = {a, d, b, c};
+    cavity.faces = {{a, b, c}, {b, a, d}};
+  } else if (c.is_valid()) {
+    cavity.polygon = {b, c, a};
+    cavity.faces = {{a, b, c}};
+  } else if (d.is_valid()) {
+    cavity.polygon = {a, d, b};
+    cavity.faces = {{b, a, d}};
+  } else {
+    return false;
+  }
+  for (const Face& f : cavity.faces) cavity.worst = std::min(cavity.worst, decision(f));
+  cavity.on_line = surface_.is_feature(a, b);
+  cavity.middle = 0.5 * (point(a) + point(b));
+  cavity.anchor = point(a);
+  cavity.size = norm(point(b) - point(a));
+  if (cavity.on_line) {
+    cavity.axis = unit(point(b) - point(a));
+  } else {
+    Vec3 normal;
+    for (const Face& f : cavity.faces) normal = normal + scaled_normal(corners(f));
+    cavity.axis = unit(normal);
+  }
+  if (cavity.axis == Vec3{}) return false;
+  for (place(cavity); !(cavity.worst_new > kSplitGain * cavity.worst); place(cavity)) {
+    if (cavity.polygon.size() >= kMaxPolygon) return false;
+    const VertexHandle p = cavity.polygon[cavity.weakest];
+    const VertexHandle q = cavity.polygon[(cavity.weakest + 1) % cavity.polygon.size()];
+    const VertexHandle e = surface_.across(p, q)[1];  // the polygon is on the left
+    const bool known = std::find(cavity.polygon.begin(), cavity.polygon.end(), e) != cavity.polygon.end();
+    if (!e.is_valid() || known || !surface_.is_inner(p, q)) return false;
+    cavity.flips.push_back({p, q});
+    cavity.faces.push_back({q, p, e});
+    cavity.worst = std::min(cavity.worst, decision(cavity.faces.back()));
+    cavity.polygon.insert(cavity.polygon.begin() + static_cast<std::ptrdiff_t>(cavity.weakest) + 1, e);
+  }
+  std::vector<Triangle> dead, born;
+  for (const Face& f : cavity.faces) dead.push_back(corners(f));
+  for (std::size_t i = 0; i < cavity.n_edges(); ++i)
+    born.push_back(
+        {cavity.middle, point(cavity.polygon[i]), point(cavity.polygon[(i + 1) % cavity.polygon.size()])});
+  if (!surface_.keeps_shape(cavity.faces, dead, born)) return false;
+  const VertexHandle middle(points_.size());
+  points_.push_back(cavity.middle);
+  changed_.push_back(clock_);
+  surface_.was_split(a, b, middle, cavity.middle);
+  for (const auto& [p, q] : cavity.flips) surface_.swapped(p, q);
+  for (VertexHandle v : cavity.polygon) touch(v);
+  return true;
+}
+
+}  // namespace hfr
