@@ -115,6 +115,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["time_limit"] = line.time_limit > 0 ? Json(line.time_limit) : Json();
   json["ops"] = ops_to_list(options.ops);
   json["metric"] = metric_name(options.metric);
+  json["min_cells"] = options.min_cells > 0 ? Json(options.min_cells) : Json();
   json["max_cells"] = options.max_cells > 0 ? Json(options.max_cells) : Json();
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
@@ -328,7 +329,13 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
                    "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
       ->type_name("LIST");
   command->add_flag("--no-insert", line->no_insert, "No new vertices");
-  command->add_option("--max-cells", line->improve.max_cells, "No new vertices beyond N cells; 0 is no bound")
+  command
+      ->add_option("--min-cells", line->improve.min_cells,
+                   "No vertex is removed below N cells; 0: 81 % of the input's, without a bound for 'max'")
+      ->type_name("N");
+  command
+      ->add_option("--max-cells", line->improve.max_cells,
+                   "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
       ->type_name("N");
   command
       ->add_option("--ids", line->ids,

@@ -24,10 +24,13 @@ class RingTriangulation {
     return result;
   }
 
+  /// After solve(): the largest worst value over the polygon i … j, minus infinity where none beats the
+  /// floor.
+  double best(int i, int j) const { return best_[static_cast<std::size_t>(i * 32 + j)]; }
+
   /// Writes the apexes in preorder.
   void preorder(std::uint8_t* out) const { preorder(0, n_ - 1, out); }
-
- private:
+  /// The same for the polygon i … j. Returns where the next would stand.
   std::uint8_t* preorder(int i, int j, std::uint8_t* out) const {
     if (j - i < 2) return out;
     const std::uint8_t k = apex_[static_cast<std::size_t>(i * HFR_MAX_RING + j)];
@@ -35,6 +38,7 @@ class RingTriangulation {
     return preorder(k, j, preorder(i, k, out));
   }
 
+ private:
   int n_;
   std::array<double, HFR_MAX_RING * HFR_MAX_RING> best_;
   std::array<std::uint8_t, HFR_MAX_RING * HFR_MAX_RING> apex_;

@@ -18,6 +18,7 @@ constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 /// Degrees; where no goal is given, the worst cells are raised from one of these to the next.
 constexpr std::array<double, 13> kLadder = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
 constexpr double kCommonRung = 25;
+constexpr double kReliefRung = 30;
 /// The same where the worst is to be raised at any cost, until this many rungs in a row have not raised it by
 /// this factor.
 constexpr std::array<double, 21> kFullLadder = {1,  2,  3,    4,  5.5,  7,  8.5,  10,   12, 14, 16,
@@ -31,6 +32,19 @@ constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
 /// and going on would only remove vertices.
 constexpr double kLargestShare = 0.1;
+
+/// Cells that a run may leave of 100, and make of them, where the options do not say.
+constexpr std::size_t kLeastOfHundred = 81;
+constexpr std::size_t kMostOfHundred = 119;
+
+ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
+  if (options.raise_min_dihedral || options.compat != Compat::kNone ||
+      options.surface.mode != SurfaceMode::kFrozen)
+    return options;
+  if (options.min_cells == 0) options.min_cells = n_cells * kLeastOfHundred / 100;
+  if (options.max_cells == 0) options.max_cells = n_cells * kMostOfHundred / 100;
+  return options;
+}
 
 /// With a surface that may change, what many cells suffer from can be mended, too.
 double largest_share(const ImproveOptions& options) {
@@ -56,29 +70,44 @@ void validate(const ImproveOptions& options) {
 /// cell below it may give way on the next. `floor` is where it stood before: the bulk stage, which knows only
 /// volume-length, may have lowered it.
 void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor) {
-  if (smallest_dihedral(mesh, options.policy) < floor) polish(mesh, work, options, control, floor);
+  const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
+  if (smallest() < floor) polish(mesh, work, options, control, floor);
   double below = 0;  // the last rung that was worked for
   for (double rung : kLadder) {
     if (control.stopped()) return;
-    const double now = smallest_dihedral(mesh, options.policy);
+    const double now = smallest();
     if (now >= rung) continue;
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
-    if (rung > kCommonRung && now < below) return;
+    if (rung > kCommonRung && now < below) break;
     below = rung;
     polish(mesh, work, options, control, rung, largest_share(options));
   }
+  // The last few cells below the first rung that was missed, and those below the next ones.
+  for (double rung : kLadder) {
+    if (rung > kReliefRung || control.stopped()) return;
+    if (smallest() < rung && !relieve(mesh, work, options, control, rung)) return;
+  }
 }
 
-/// Works towards a goal; what misses it is raised as far as it goes, rung by rung, and tried once more if
+/// Works towards a goal: within the bounds on cells first, then within those that were asked for if the
+/// former were in the way. What misses it is raised as far as it goes, rung by rung, and tried once more if
 /// that has helped.
-bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal) {
-  if (polish(mesh, work, options, control, goal)) return true;
+bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const ImproveOptions& as_asked,
+           RunControl& control, double goal) {
+  const ImproveOptions* now = &options;
+  const auto reaches = [&] { return polish(mesh, work, *now, control, goal); };
+  if (reaches()) return true;
+  if (control.met_cell_bound() && !control.stopped()) {
+    control.forget_cell_bound();
+    now = &as_asked;
+    if (reaches()) return true;
+  }
   const double missed_at = smallest_dihedral(mesh, options.policy);
   for (double rung : kLadder)
     if (rung < goal && !control.stopped() && smallest_dihedral(mesh, options.policy) < rung)
-      polish(mesh, work, options, control, rung);
+      polish(mesh, work, *now, control, rung);
   if (control.stopped() || !(smallest_dihedral(mesh, options.policy) > missed_at)) return false;
-  return polish(mesh, work, options, control, goal);
+  return reaches();
 }
 
 /// Climbs again and again, and beyond rungs that are missed, while the worst rises.
@@ -102,8 +131,9 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
 }
 
 /// True when every cell is known to meet the goal.
-bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, RunControl& control,
                 const Survey& at_first) {
+  const ImproveOptions options = with_cell_bounds(as_asked, mesh.n_logical_cells());
   if (options.compat == Compat::kJpdc2013) {
     run_jpdc2013(mesh, work, options, control);
     return false;
@@ -111,7 +141,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& options, R
   const double floor = report_value(Metric::kMinDihedral, std::clamp(at_first.worst, 0.0, 8.0 / 9.0));
   if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
   control.set_fraction(0.1);
-  if (options.min_dihedral) return reach(mesh, work, options, control, *options.min_dihedral);
+  if (options.min_dihedral) return reach(mesh, work, options, as_asked, control, *options.min_dihedral);
   // The worst angles first: the bulk stage, which knows only volume-length, can box them in. Few cells, so
   // kind by kind, as towards a goal.
   ImproveOptions early = options;
@@ -134,16 +164,15 @@ double missed_rung(double smallest, bool to_the_end) {
 }
 
 /// What keeps the cells that are left below the goal.
-void explain(const TetMesh& mesh, const ImproveOptions& options, Result& result) {
+void explain(const TetMesh& mesh, const ImproveOptions& options, bool met_cell_bound, Result& result) {
   result.stuck_below = options.min_dihedral
                            ? *options.min_dihedral
                            : missed_rung(result.after.min_dihedral.min, options.raise_min_dihedral);
   if (result.stuck_below == 0) return;
-  const bool full = options.max_cells > 0 && result.after.cells + kCellsPerVertex > options.max_cells;
   const bool ended_early =
       result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled || result.stop == Stop::kIterations;
-  result.stuck =
-      stuck_cells(mesh, result.stuck_below, ended_early || full, result.folded_faces, options.policy);
+  result.stuck = stuck_cells(mesh, result.stuck_below, ended_early || met_cell_bound, result.folded_faces,
+                             options.policy);
   if (options.surface.mode == SurfaceMode::kFrozen)
     result.held = held_cells(mesh, result.stuck, result.stuck_below, options);
 }
@@ -209,7 +238,7 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   result.seconds = control.seconds();
   if (options.statistics) {
     result.after = result.changed ? statistics(mesh, options.policy) : result.before;
-    explain(mesh, options, result);
+    explain(mesh, options, control.met_cell_bound(), result);
   }
   return result;
 }

@@ -24,10 +24,21 @@ constexpr double kPolishGain = 1.01;
 constexpr int kMaxIdle = 2;
 // Cells that the polish may insert vertices for: at most so many, or one in so many.
 constexpr std::size_t kFewPoor = 50;
-constexpr std::size_t kPoorShare = 50;
+constexpr std::size_t kPoorShare = 40;
 constexpr std::size_t kPoorShareAtAnyCost = 4;  // where the worst angle is to be raised as far as it goes
 /// Cells whose surroundings are searched at most where nobody asked for an angle.
 constexpr std::size_t kFewToSearch = 100;
+
+/// What has run for cells that miss an angle by little: so many layers of cells round them are worked on as
+/// if the angle were larger, which makes room.
+struct Relief {
+  int layers;
+  double degrees;
+};
+constexpr std::array<Relief, 4> kReliefs = {{{2, 2.5}, {2, 5}, {4, 2.5}, {4, 5}}};
+constexpr std::size_t kFewToRelieve = 12;
+constexpr int kReliefIterations = 4;
+constexpr double kLargestRelief = 60;  // degrees
 
 /// Up to how many poor cells an expensive operator is worth it.
 struct Few {
@@ -81,6 +92,10 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     n_poor = n_poor_now;
     worst = stage.worst();
     if (n_poor == 0 || (changes > 0 && idle < kMaxIdle)) continue;
+    if (has(options.ops, Ops::kEdge) && stage.fan_pass(i, Focus{goal}) > 0) {
+      idle = kMaxIdle - 1;
+      continue;
+    }
     // Cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex. Where
     // the last ones have not paid, more of them would only fill the place with poor cells.
     const bool pays = !has_dug || 10 * n_poor <= 9 * n_poor_dug || worst > worst_dug * kPolishGain;
@@ -98,6 +113,40 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     idle = kMaxIdle - 1;
   }
   return n_poor == 0;
+}
+
+std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy) {
+  const double goal = dihedral_decision(degrees);
+  std::vector<CellHandle> cells;
+  for (Index i : par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t c) {
+         return !mesh.is_deleted(CellHandle(c)) && min_dihedral_of(mesh, CellHandle(c)) < goal;
+       }))
+    cells.push_back(CellHandle(i));
+  return cells;
+}
+
+/// Marks the vertices of cells and of so many layers round them.
+std::vector<std::uint8_t> surroundings(const TetMesh& mesh, std::span<const CellHandle> cells, int layers) {
+  std::vector<std::uint8_t> marked(mesh.n_vertices(), 0);
+  std::vector<VertexHandle> rim, next;
+  const auto mark = [&](CellHandle c) {
+    for (VertexHandle v : mesh.cell(c).v) {
+      if (marked[v.idx()]) continue;
+      marked[v.idx()] = 1;
+      next.push_back(v);
+    }
+  };
+  for (CellHandle c : cells) mark(c);
+  Star star;
+  for (int i = 0; i < layers; ++i) {
+    rim.swap(next);
+    next.clear();
+    for (VertexHandle v : rim) {
+      mesh.gather_star(v, star);
+      for (int k = 0; k < star.size; ++k) mark(star.cells[static_cast<std::size_t>(k)]);
+    }
+  }
+  return marked;
 }
 
 }  // namespace
@@ -171,6 +220,30 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
 void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   if (!control.surface() || options.surface.mode != SurfaceMode::kFree) return;
   Stage<MinSine2>(mesh, work, options, control, MinSine2{}, "volume").restore_volume();
+}
+
+bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+             double goal) {
+  const double decision = dihedral_decision(goal);
+  if (options.iterations > 0) return false;  // it would be further ones
+  const Few few{.to_dig = kFewToRelieve, .to_search = kFewToRelieve};
+  for (const Relief& relief : kReliefs) {
+    const std::vector<CellHandle> stuck = cells_below(mesh, goal, options.policy);
+    if (stuck.empty()) return true;
+    if (stuck.size() > kFewToRelieve || control.stopped()) return false;
+    const auto around = surroundings(mesh, stuck, relief.layers);
+    Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "relief");
+    const Focus focus{dihedral_decision(std::min(goal + relief.degrees, kLargestRelief)), around};
+    for (int i = 1; i <= kReliefIterations && !control.stopped(); ++i) {
+      std::size_t changes = stage.iterate(i, focus, true);
+      if (has(options.ops, Ops::kEdge)) changes += stage.fan_pass(i, focus);
+      if (has(options.ops, Ops::kInsert)) changes += stage.insert_pass(i, focus);
+      if (changes == 0) break;
+    }
+    stage.look_again();
+    polish_in(stage, options, control, decision, few);
+  }
+  return cells_below(mesh, goal, options.policy).empty();
 }
 
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,

@@ -9,9 +9,6 @@
 
 namespace hfr {
 
-/// Cells that one inserted vertex may add, at most: twice a largest cavity and two, less the cavity.
-inline constexpr std::size_t kCellsPerVertex = 50;
-
 /// sin² of an angle in degrees: what the dihedral metrics call their decision value.
 double dihedral_decision(double degrees);
 /// The mesh in two numbers, from one pass over its cells.
@@ -36,6 +33,9 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
 /// cells miss the goal.
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share = 1);
+/// Works on the surroundings of the cells below `goal` degrees as if the goal were larger, and then on these
+/// cells again. Where there are more than a few, it does nothing. True when none are left.
+bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal);
 /// With a surface that may change its shape: moves it so that the enclosed volume is what it was.
 void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
 /// The paper's pipeline in the paper's form: star operators and candidate smoothing over the whole mesh,

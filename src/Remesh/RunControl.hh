@@ -64,6 +64,11 @@ class RunControl {
   /// Why a device that was wanted is not, or no longer, used.
   const std::string& device_note() const { return device_note_; }
 
+  /// Something was left undone for the number of cells.
+  void note_cell_bound() { met_cell_bound_ = true; }
+  void forget_cell_bound() { met_cell_bound_ = false; }
+  bool met_cell_bound() const { return met_cell_bound_; }
+
   void add(PassReport pass) { passes_.push_back(std::move(pass)); }
   std::vector<PassReport>& passes() { return passes_; }
   /// Estimate of how much of the run is done, 0 … 1; never goes back.
@@ -77,6 +82,7 @@ class RunControl {
   Clock::time_point start_ = Clock::now();
   std::optional<Stop> reason_;
   double fraction_ = 0;
+  bool met_cell_bound_ = false;
   SurfaceMesh* surface_ = nullptr;
   std::vector<PassReport> passes_;
   std::unique_ptr<DeviceMesh> device_;

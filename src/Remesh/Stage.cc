@@ -82,10 +82,16 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
   for (int r = 0; r < limit && (replay_ || !control_.stopped()); ++r) {
     const Worklist list = worklist(kind, focus);
     if (list.cells().empty()) break;
-    Round<Op> round(mesh_, work_,
-                    {options_.policy, n_invalid_ > 0, options_.seed, options_.compat == Compat::kJpdc2013});
+    RoundOptions round_options{options_.policy, n_invalid_ > 0, options_.seed,
+                               options_.compat == Compat::kJpdc2013};
+    const std::size_t n_cells = mesh_.n_logical_cells();
+    if (options_.min_cells > 0) round_options.may_lose = n_cells - std::min(n_cells, options_.min_cells);
+    if (options_.max_cells > 0)
+      round_options.may_gain = options_.max_cells - std::min(n_cells, options_.max_cells);
+    Round<Op> round(mesh_, work_, round_options);
     const RoundCounts counts = run_round(round, make_op(), list);
     total += counts;
+    if (counts.held_back > 0) control_.note_cell_bound();
     if (n_invalid_ > 0) count(focus);
     if (r == 0) first = counts.winners;
     if (!replay_ && counts.winners * kLittle <= first) break;
@@ -191,6 +197,26 @@ std::size_t Stage<Metric>::multi_face_pass(int iteration, Focus focus) {
 }
 
 template <class Metric>
+std::size_t Stage<Metric>::fan_pass(int iteration, Focus focus) {
+  if constexpr (!kMeasuresAngles<Metric>) {
+    return 0;  // only the polish asks for it
+  } else {
+    using Op = FanMerge<Metric>;
+    return rounds(
+        kFan, iteration, focus,
+        [&] {
+          return Op{metric_, work_.quality};
+        },
+        [&](auto& round, const auto& op, const Worklist& list) {
+          return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+            for (std::uint8_t e = 0; e < 6; ++e)
+              visit(typename Op::Seed{CellHandle(list.cells()[i]), e, 0, 0});
+          });
+        });
+  }
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
   using Op = VertexInsertion<Metric>;
   const std::size_t n_inside = rounds(
@@ -199,26 +225,11 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus) {
         return Op{metric_, work_.quality, kLeastGain};
       },
       [&](auto& round, const auto& op, const Worklist& list) {
-        const std::vector<Index> cells = affordable(list);
-        return round.run(op, cells.size(), [&](std::size_t i, auto&& visit) {
-          visit(typename Op::Seed(CellHandle(cells[i])));
+        return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+          visit(typename Op::Seed(CellHandle(list.cells()[i])));
         });
       });
   return n_inside + (control_.surface() ? surface_splits(iteration, focus) : 0);
-}
-
-template <class Metric>
-std::vector<Index> Stage<Metric>::affordable(const Worklist& list) const {
-  std::vector<Index> cells(list.cells().begin(), list.cells().end());
-  if (options_.max_cells == 0) return cells;
-  const std::size_t now = mesh_.n_logical_cells();
-  const std::size_t n = options_.max_cells > now ? (options_.max_cells - now) / kCellsPerVertex : 0;
-  if (n >= cells.size()) return cells;
-  // The worst of them; of equal ones those that come first.
-  std::stable_sort(cells.begin(), cells.end(),
-                   [&](Index a, Index b) { return work_.quality[a] < work_.quality[b]; });
-  cells.resize(n);
-  return cells;
 }
 
 template <class Metric>

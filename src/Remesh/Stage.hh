@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_STAGE_HH
 #define HFR_REMESH_STAGE_HH
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
@@ -16,6 +17,7 @@
 #include "Operators/ClusterSearch.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/FanMerge.hh"
 #include "Operators/Metrics.hh"
 #include "Operators/MultiFaceRemoval.hh"
 #include "Operators/SmoothCandidates.hh"
@@ -38,6 +40,8 @@ namespace hfr {
 struct Focus {
   /// Cells whose decision value is below this; infinity: all.
   double below = std::numeric_limits<double>::infinity();
+  /// Unless empty, only cells with a vertex that is marked here, or that is newer.
+  std::span<const std::uint8_t> around = {};
   bool everything() const { return below == std::numeric_limits<double>::infinity(); }
 };
 
@@ -82,6 +86,8 @@ class Stage {
   std::size_t node_pass(int iteration, Focus focus);
   /// Face swap and its extension to several faces; more than face_pass finds, at three times its cost.
   std::size_t multi_face_pass(int iteration, Focus focus);
+  /// Cells in a row round an edge that stays, such as one of the surface, into one there.
+  std::size_t fan_pass(int iteration, Focus focus);
   /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass.
   std::size_t insert_pass(int iteration, Focus focus);
   /// All ways to connect the points round a poor cell: milliseconds a cell.
@@ -103,16 +109,28 @@ class Stage {
   void to_host();
 
  private:
-  enum Kind : std::uint8_t { kEdge, kFace, kNode, kInsert, kSmooth, kMultiFace, kMixed, kCluster, kKinds };
+  enum Kind : std::uint8_t {
+    kEdge,
+    kFace,
+    kNode,
+    kInsert,
+    kSmooth,
+    kMultiFace,
+    kMixed,
+    kCluster,
+    kFan,
+    kKinds
+  };
   /// As in a list of operators: variants of one are reported as one.
-  static constexpr std::array<const char*, kKinds> kNames = {"edge",   "face", "node",  "insert",
-                                                             "smooth", "face", "mixed", "cluster"};
+  static constexpr std::array<const char*, kKinds> kNames = {"edge", "face",  "node",    "insert", "smooth",
+                                                             "face", "mixed", "cluster", "edge"};
 
   /// Cells that operator `kind` has to look at; they count as looked at from now on.
   Worklist worklist(Kind kind, Focus focus) {
     to_host();
-    const auto bit = static_cast<std::uint8_t>(1U << kind);
     if (focus.everything()) {
+      HFR_ASSERT(kind < 8);  // a bit each in a byte; the later ones always have a focus
+      const auto bit = static_cast<std::uint8_t>(1U << kind);
       return Worklist(mesh_, options_.policy, [&](CellHandle c) {
         if (!(work_.pending[c.idx()] & bit)) return false;
         work_.pending[c.idx()] = static_cast<std::uint8_t>(work_.pending[c.idx()] & ~bit);
@@ -122,9 +140,12 @@ class Stage {
     const std::uint32_t since = looked_[kind];
     looked_[kind] = work_.clock;
     return Worklist(mesh_, options_.policy, poor(focus.below), [&](CellHandle c) {
-      for (VertexHandle v : mesh_.cell(c).v)
-        if (work_.changed[v.idx()] > since) return true;
-      return false;
+      const auto& v = mesh_.cell(c).v;
+      return std::any_of(v.begin(), v.end(),
+                         [&](VertexHandle u) { return work_.changed[u.idx()] > since; }) &&
+             (focus.around.empty() || std::any_of(v.begin(), v.end(), [&](VertexHandle u) {
+                return u.idx() >= focus.around.size() || focus.around[u.idx()];
+              }));
     });
   }
 
@@ -133,9 +154,6 @@ class Stage {
 
   /// Vertices of the listed cells that an operator may take out.
   std::vector<VertexHandle> removable(const Worklist& list) const;
-
-  /// The listed cells that may get a vertex before the mesh has as many cells as options allow.
-  std::vector<Index> affordable(const Worklist& list) const;
 
   /// Rounds of one operator until they bring little, then a line in the report.
   template <class MakeOp, class RunRound>

@@ -33,6 +33,10 @@ struct RoundOptions {
   /// are then often neighbours in rank: costs the claims many sub-rounds, and is no better
   /// (docs/scheduler.md).
   bool worst_first = false;
+  /// Cells that removals of vertices may take away in one round, and insertions add. What would exceed that
+  /// is given up, the last in rank order first.
+  std::size_t may_lose = std::numeric_limits<std::size_t>::max();
+  std::size_t may_gain = std::numeric_limits<std::size_t>::max();
 };
 
 /// One round of one operator kind, or of several that compete (see AnyOf): evaluate the seeds in parallel,
@@ -67,7 +71,10 @@ class Round {
     start = Clock::now();
     rank_all(op);
     counts.sub_rounds = select(op);
+    const std::size_t n_selected = winners_.size();
+    keep_number_of_cells();
     counts.winners = winners_.size();
+    counts.held_back = n_selected - winners_.size();
     counts.seconds_select = since(start);
     start = Clock::now();
     ++work_.clock;
@@ -192,6 +199,34 @@ class Round {
     winners_.clear();
     for (std::uint32_t r : ranks) winners_.push_back({keys_[r].index, r, {}, {}, 0, {}});
     return sub_rounds;
+  }
+
+  /// Gives up the winners that would take away or add too many cells. Serial, over winners in rank order.
+  void keep_number_of_cells() {
+    const auto loss = [](const Plan& plan) {
+      return plan.removes_vertex && plan.n_dead > plan.n_born ? plan.n_dead - plan.n_born : std::size_t{0};
+    };
+    const auto gain = [](const Plan& plan) {
+      return plan.adds_vertex && plan.n_born > plan.n_dead ? plan.n_born - plan.n_dead : std::size_t{0};
+    };
+    std::size_t lost = 0, gained = 0, n = 0;
+    for (const Winner& winner : winners_) {
+      lost += loss(candidates_[winner.candidate]);
+      gained += gain(candidates_[winner.candidate]);
+    }
+    if (lost <= options_.may_lose && gained <= options_.may_gain) return;
+    std::size_t left = options_.may_lose, room = options_.may_gain;
+    for (const Winner& winner : winners_) {
+      const Plan& plan = candidates_[winner.candidate];
+      const bool stays = loss(plan) <= left && gain(plan) <= room;
+      for (CellHandle c : scopes_[winner.rank])
+        work_.claim[c.idx()] = stays ? static_cast<std::uint32_t>(n) : kUnclaimed;
+      if (!stays) continue;
+      left -= loss(plan);
+      room -= gain(plan);
+      winners_[n++] = winner;
+    }
+    winners_.resize(n);
   }
 
   /// Two winners that share no cell could still make the same edge in a folded mesh; the later one is

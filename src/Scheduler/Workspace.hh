@@ -77,6 +77,7 @@ struct RoundCounts {
   std::size_t seeds = 0;       ///< looked at
   std::size_t candidates = 0;  ///< that would improve their cluster
   std::size_t winners = 0;     ///< committed
+  std::size_t held_back = 0;   ///< that would be winners but for RoundOptions::may_lose and may_gain
   std::size_t sub_rounds = 0;  ///< of the selection: 1 a round when it is one marking loop
   double seconds_evaluate = 0;
   double seconds_select = 0;
@@ -87,6 +88,7 @@ struct RoundCounts {
     seeds += o.seeds;
     candidates += o.candidates;
     winners += o.winners;
+    held_back += o.held_back;
     sub_rounds += o.sub_rounds;
     seconds_evaluate += o.seconds_evaluate;
     seconds_select += o.seconds_select;

@@ -114,5 +114,25 @@ TEST(MaxCells, NoVertexIsInsertedBeyondIt) {
   EXPECT_GT(free_cells, 0U);
 }
 
+TEST(MinCells, CellsStayCloseToTheInputUnlessTheLargestAngleIsAskedFor) {
+  std::size_t fewer_at_any_cost = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    const TetMesh start = jittered(6, 0.24, s);
+    TetMesh by_default = start;
+    const std::size_t n = improve(by_default, serial()).after.cells;
+    EXPECT_GE(10 * n, 8 * start.n_cells());
+    EXPECT_LE(10 * n, 12 * start.n_cells());
+    TetMesh bounded = start;
+    ImproveOptions options = serial();
+    options.min_cells = start.n_cells() * 99 / 100;
+    options.ops = Ops::kNode;  // no swaps, which are not bounded
+    EXPECT_GE(improve(bounded, options).after.cells, options.min_cells);
+    options.min_cells = 1;
+    TetMesh free = start;
+    fewer_at_any_cost += improve(free, options).after.cells < bounded.n_cells() ? 1 : 0;
+  }
+  EXPECT_GT(fewer_at_any_cost, 0U) << "nothing was held back";
+}
+
 }  // namespace
 }  // namespace hfr::test

@@ -280,6 +280,47 @@ TEST(Round, VertexRemovalsGiveTheirSlotsAndVerticesBack) {
   EXPECT_GT(removed, 15U);
 }
 
+TEST(Round, RemovalsThatWouldTakeAwayTooManyCellsAreGivenUpLastRanksFirst) {
+  std::size_t held_back = 0, committed = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    Bench free(0.45, s);
+    const auto run = [](Bench& bench, std::size_t may_lose, std::vector<VertexHandle>& removed) {
+      RoundOptions options{{}, true, 1};
+      options.may_lose = may_lose;
+      const VertexRemoval<VolumeLength> op{{}, bench.work.quality, bench.work.frozen};
+      Round<VertexRemoval<VolumeLength>> round(bench.mesh, bench.work, options);
+      const auto seeds = vertex_seeds(bench.mesh, bench.everything(), bench.work.frozen, {});
+      const RoundCounts counts = round.run(op, seeds);
+      round.for_committed([&](const auto& plan, VertexHandle) { removed.push_back(plan.seed); });
+      return counts;
+    };
+    const std::size_t n_before = free.mesh.n_logical_cells();
+    std::vector<VertexHandle> all, some;
+    run(free, n_before, all);
+    const std::size_t n_lost = n_before - free.mesh.n_logical_cells();
+    for (const std::size_t may_lose : {std::size_t{0}, n_lost / 2, n_lost}) {
+      Bench bounded(0.45, s);
+      some.clear();
+      const RoundCounts counts = run(bounded, may_lose, some);
+      EXPECT_EQ(check(bounded.mesh), Ok);
+      EXPECT_GE(bounded.mesh.n_logical_cells() + may_lose, n_before);
+      EXPECT_EQ(counts.winners + counts.held_back, all.size());
+      EXPECT_EQ(counts.winners, some.size());
+      if (may_lose == n_lost) {
+        EXPECT_EQ(some, all);
+      }
+      if (!some.empty()) {
+        EXPECT_EQ(some[0], all[0]);
+      }
+      held_back += counts.held_back;
+      committed += may_lose == n_lost / 2 ? counts.winners : 0;
+      for (std::uint32_t claim : bounded.work.claim) EXPECT_EQ(claim, kUnclaimed);
+    }
+  }
+  EXPECT_GT(held_back, 20U);
+  EXPECT_GT(committed, 5U);
+}
+
 using EdgeFaceOrNode = AnyOf<EdgeRemoval<VolumeLength>, FaceSwap<VolumeLength>, VertexRemoval<VolumeLength>>;
 static_assert(LocalOperator<EdgeFaceOrNode>);
 
