@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stars of the vertices that a pass moves (Scheduler/StarTable.cc), and their colours: first-fit in the
-// order of the vertices, level by level. A vertex gets its colour as soon as all its neighbours of smaller
-// number have theirs, so the colours are those of the serial loop.
+// The stars of the vertices that a pass moves (Scheduler/StarTable.cc), and their colours (VertexColours.cc):
+// first-fit in the order of the vertices, level by level. A vertex gets its colour as soon as all its
+// neighbours of smaller number have theirs, so the colours are those of the serial loop.
 #include "common.cl"
 
 #define NO_COLOUR HFR_MAX_COLOURS
