@@ -4,7 +4,7 @@
 //   HFR_FAIL_ENQUEUE=N   the N-th launch of a kernel and all later calls on queues: the device is lost
 //   HFR_FAIL_BUFFER=N    the N-th buffer and all later ones: out of memory
 //   HFR_FAIL_BUILD=1     no program compiles
-//   HFR_FAIL_ROUNDING=1  programs compute something else than they say
+//   HFR_FAIL_ROUNDING=1  a product and a sum are fused, against what the source says
 //   HFR_FAIL_FP64=1      no device has 64-bit floating point
 //   HFR_FAIL_MEMORY=N    every device has N bytes of memory
 #define CL_TARGET_OPENCL_VERSION 120
@@ -64,11 +64,24 @@ cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void*
   return REAL(clCreateBuffer)(context, flags, size, host, error);
 }
 
+cl_program clCreateProgramWithSource(cl_context context, cl_uint n, const char** texts, const size_t* sizes,
+                                     cl_int* error) {
+  if (setting("HFR_FAIL_ROUNDING") <= 0)
+    return REAL(clCreateProgramWithSource)(context, n, texts, sizes, error);
+  std::string source;
+  for (cl_uint i = 0; i < n; ++i)
+    source.append(texts[i], sizes && sizes[i] > 0 ? sizes[i] : std::strlen(texts[i]));
+  const std::string exact = "(a.x * b.x + a.y * b.y)";
+  const std::size_t at = source.find(exact);
+  if (at != std::string::npos) source.replace(at, exact.size(), "fma(a.x, b.x, a.y * b.y)");
+  const char* text = source.c_str();
+  const size_t size = source.size();
+  return REAL(clCreateProgramWithSource)(context, 1, &text, &size, error);
+}
+
 cl_int clBuildProgram(cl_program program, cl_uint n_devices, const cl_device_id* devices, const char* options,
                       void (*notify)(cl_program, void*), void* user) {
-  const std::string otherwise = std::string(options ? options : "") + " -Dfabs=exp";
   if (setting("HFR_FAIL_BUILD") > 0) options = "-Dget_global_id=no_such_word";
-  if (setting("HFR_FAIL_ROUNDING") > 0) options = otherwise.c_str();
   return REAL(clBuildProgram)(program, n_devices, devices, options, notify, user);
 }
 
