@@ -24,7 +24,7 @@ constexpr double kPolishGain = 1.01;
 constexpr int kMaxIdle = 2;
 // Cells that the polish may insert vertices for: at most so many, or one in so many.
 constexpr std::size_t kFewPoor = 50;
-constexpr std::size_t kPoorShare = 40;
+constexpr std::size_t kPoorShare = 48;
 constexpr std::size_t kPoorShareAtAnyCost = 4;  // where the worst angle is to be raised as far as it goes
 /// Cells whose surroundings are searched at most where nobody asked for an angle.
 constexpr std::size_t kFewToSearch = 100;
