@@ -201,7 +201,7 @@ TEST(SurfaceRuns, FrozenSaysWhatTheSurfaceHoldsBackAndWhatWouldFreeIt) {
   const Result flat = held(bent(0), SurfaceMode::kFrozen, 30);
   ASSERT_GT(flat.held.cells, 0U);
   EXPECT_EQ(flat.held.by_flat, flat.held.cells);
-  const Result curved = held(bent(0.2), SurfaceMode::kFrozen, 30);
+  const Result curved = held(bent(0.2), SurfaceMode::kFrozen, 42);
   ASSERT_GT(curved.held.cells, 0U);
   EXPECT_EQ(curved.held.by_flat, 0U);
   EXPECT_GT(curved.held.by_free, 0U);
