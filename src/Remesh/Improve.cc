@@ -71,21 +71,27 @@ void validate(const ImproveOptions& options) {
 /// volume-length, may have lowered it.
 void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
-  if (smallest() < floor) polish(mesh, work, options, control, floor);
+  double now = smallest();  // a pass over the mesh: only after what may have changed it
+  if (now < floor) {
+    polish(mesh, work, options, control, floor);
+    now = smallest();
+  }
   double below = 0;  // the last rung that was worked for
   for (double rung : kLadder) {
     if (control.stopped()) return;
-    const double now = smallest();
     if (now >= rung) continue;
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
     if (rung > kCommonRung && now < below) break;
     below = rung;
     polish(mesh, work, options, control, rung, largest_share(options));
+    now = smallest();
   }
   // The last few cells below the first rung that was missed, and those below the next ones.
   for (double rung : kLadder) {
     if (rung > kReliefRung || control.stopped()) return;
-    if (smallest() < rung && !relieve(mesh, work, options, control, rung)) return;
+    if (now >= rung) continue;
+    if (!relieve(mesh, work, options, control, rung)) return;
+    now = smallest();
   }
 }
 
