@@ -58,7 +58,7 @@ std::vector<unsigned> numbers_after(const std::string& text, const std::string& 
   return numbers;
 }
 
-/// --fix and --periodic, whose patches could only be torn apart by letting them change.
+/// --fix and --periodic.
 void add_locks(SurfaceOptions& surface, const std::vector<std::string>& fix,
                const std::vector<std::string>& periodic) {
   for (const std::string& what : fix) {
@@ -80,7 +80,7 @@ void add_locks(SurfaceOptions& surface, const std::vector<std::string>& fix,
     const auto patches = numbers_after(pair, "", ':', 2);
     if (patches.empty())
       throw Failure(ExitCode::kUsage, "--periodic takes A:B, two patches, not '" + pair + "'");
-    for (unsigned patch : patches) surface.fixed_patches.push_back(static_cast<int>(patch));
+    surface.periodic.push_back({static_cast<int>(patches[0]), static_cast<int>(patches[1])});
   }
 }
 
@@ -378,7 +378,7 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->delimiter(',');
   command
       ->add_option("--periodic", line->periodic,
-                   "Patches A:B that match each other; they are kept as they are")
+                   "Patches A:B that match each other by a translation: their vertices move together")
       ->type_name("A:B")
       ->delimiter(',');
   command

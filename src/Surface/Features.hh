@@ -23,7 +23,9 @@ struct Arrays {
   std::vector<int> patch;                          ///< label, 0 = none
   std::vector<std::uint8_t> inward;                ///< the label names the face as seen from inside
   std::vector<std::uint8_t> interface;             ///< between two regions
-  std::vector<std::uint8_t> locked;                ///< may not change: interface, or fixed
+  std::vector<std::array<int, 2>> regions;         ///< inside and outside of each; the latter of interfaces
+  std::vector<std::uint8_t> locked;                ///< stays a face: fixed, or of a periodic patch
+  std::vector<std::uint8_t> fixed;                 ///< and its vertices stay where they are
   std::vector<std::array<VertexHandle, 2>> locked_edges;  ///< ascending
   std::vector<VertexHandle> locked_vertices;
 };

@@ -27,7 +27,10 @@ struct SurfaceOptions {
   std::optional<double> hausdorff;
   /// Degrees that a new triangle may be turned against the input beneath it.
   double normal_angle = 50;
-  /// What stays as it is beside what the mesh itself has fixed (TetMesh::set_fixed).
+  /// Pairs of patches that match by a translation: their vertices move together, by the same step, or not at
+  /// all, and their faces stay the same ones. Checked when the surface is made.
+  std::vector<std::array<int, 2>> periodic;
+  /// What stays as it is beside what the mesh itself has fixed (TetMesh::set_fixed, set_fixed_patch).
   std::vector<int> fixed_patches;
   std::vector<VertexHandle> fixed_vertices;
   std::vector<std::array<VertexHandle, 2>> fixed_edges;

@@ -273,7 +273,7 @@ TEST(SurfaceRuns, CylinderKeepsItsEndsAndRims) {
   EXPECT_LE(result.surface.hausdorff, 1.1 * result.surface.bound);
 }
 
-TEST(SurfaceRuns, PeriodicPatchesStayMatched) {
+TEST(SurfaceRuns, FixedPatchesStayMatched) {
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
     TetMesh mesh = labelled_box(5, 0.3, 8);
     // Both sides along x get the jitter of one of them, and so match.
@@ -303,7 +303,7 @@ TEST(SurfaceRuns, PeriodicPatchesStayMatched) {
     ASSERT_EQ(side(mesh, 0).size(), 50U);
     ASSERT_EQ(side(mesh, 0), side(mesh, 1));
     ImproveOptions options = with(mode);
-    options.surface.fixed_patches = {1, 2};  // what --periodic 1:2 comes to
+    options.surface.fixed_patches = {1, 2};
     const Result result = improve(mesh, options);
     EXPECT_GT(surface_changes(result), 10U);
     EXPECT_EQ(side(mesh, 0).size(), 50U);
