@@ -309,6 +309,10 @@ double mean_edge(const Arrays& arrays) {
   return arrays.faces.empty() ? 0 : sum / (3.0 * static_cast<double>(arrays.faces.size()));
 }
 
+double default_distance(const Arrays& arrays) {
+  return std::min(0.1 * mean_edge(arrays), 0.005 * diagonal(arrays));
+}
+
 Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail) {
   const bool flat = options.mode != SurfaceMode::kFree;
   const double tolerance = kCoplanar * diagonal(arrays);

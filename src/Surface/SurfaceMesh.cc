@@ -42,8 +42,6 @@ using OmFace = Om::FaceHandle;
 Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Of the mean edge length of the surface: how far it may go in free mode unless told otherwise.
-constexpr double kHausdorff = 0.1;
 /// Points of a triangle by which its distance is judged, beside its corners and the middles of its edges.
 constexpr std::array<std::array<double, 2>, 4> kInner = {
     {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
@@ -349,7 +347,7 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
 
 void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted) {
   if (!flat()) {
-    detail = kHausdorff * surface::mean_edge(arrays);
+    detail = surface::default_distance(arrays);
     hausdorff = wanted.hausdorff.value_or(detail);
     detail = std::min(detail, hausdorff);
   }
@@ -412,7 +410,7 @@ SurfaceMesh::~SurfaceMesh() = default;
 double SurfaceMesh::allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
   if (options.mode != SurfaceMode::kFree) return 0;
   if (options.hausdorff) return *options.hausdorff;
-  return kHausdorff * surface::mean_edge(surface::gather(mesh, options, policy));
+  return surface::default_distance(surface::gather(mesh, options, policy));
 }
 
 const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }

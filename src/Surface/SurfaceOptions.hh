@@ -23,7 +23,8 @@ struct SurfaceOptions {
   /// which it turns at all.
   double feature_angle = 40;
   /// Largest distance from the input surface and of it from the result, in the mesh's units. Default: a tenth
-  /// of the mean edge length of the surface. 0: only coplanar changes, as in flat mode.
+  /// of the mean edge length of the surface, but no more than 0.5 % of the diagonal of its bounding box. 0:
+  /// only coplanar changes, as in flat mode.
   std::optional<double> hausdorff;
   /// Degrees that a new triangle may be turned against the input beneath it.
   double normal_angle = 50;
