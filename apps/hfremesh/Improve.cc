@@ -116,6 +116,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["ops"] = ops_to_list(options.ops);
   json["metric"] = metric_name(options.metric);
   json["min_cells"] = options.min_cells > 0 ? Json(options.min_cells) : Json();
+  json["coarsen"] = options.coarsen;
   json["max_cells"] = options.max_cells > 0 ? Json(options.max_cells) : Json();
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
@@ -337,6 +338,10 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->add_option("--max-cells", line->improve.max_cells,
                    "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
       ->type_name("N");
+  command->add_flag(
+      "--coarsen", line->improve.coarsen,
+      "Remove vertices wherever that makes the worst angles there better, however few cells are "
+      "left; --min-cells still holds");
   command
       ->add_option("--ids", line->ids,
                    "Write the cells below the goal and what keeps them there; - is stdout")

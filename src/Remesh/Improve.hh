@@ -78,6 +78,10 @@ struct ImproveOptions {
   /// input, which towards min_dihedral count only until nothing else helps.
   std::size_t min_cells = 0;
   std::size_t max_cells = 0;
+  /// Vertices are removed wherever that makes the worst angle of their cells better: without a goal a stage
+  /// of its own looks for them. Of bounds on fewer cells only a min_cells that is given holds, and max_cells
+  /// is that of the input unless given.
+  bool coarsen = false;
   Smoother smoother = Smoother::kNewton;
   Rounds rounds = Rounds::kAuto;
   Compat compat = Compat::kNone;

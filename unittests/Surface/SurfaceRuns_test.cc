@@ -311,6 +311,22 @@ TEST(SurfaceRuns, FixedPatchesStayMatched) {
   }
 }
 
+TEST(SurfaceRuns, CoarseningTakesVerticesOfTheSurfaceToo) {
+  const TetMesh input = jittered(8, 0.4, 3);
+  ImproveOptions options = with(SurfaceMode::kFlat);
+  options.raise_min_dihedral = true;
+  TetMesh kept = input;
+  const Result without = improve(kept, options);
+  TetMesh mesh = input;
+  options.coarsen = true;
+  const Result result = improve(mesh, options);
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_LT(result.after.cells, without.after.cells);
+  EXPECT_LT(result.surface.triangles_after, result.surface.triangles_before);
+  EXPECT_GT(result.after.min_dihedral.min, without.after.min_dihedral.min - 1);
+  EXPECT_NEAR(volume(mesh), 1, 1e-13);
+}
+
 TEST(SurfaceRuns, HausdorffOfZeroIsFlat) {
   TetMesh mesh = small_cavity(6);
   TetMesh flat = mesh;
