@@ -68,10 +68,15 @@ generate::Arrays make_ball(const GenerateOptions& options) {
   return mesh;
 }
 
+generate::Arrays make_fandisk(const GenerateOptions& options) {
+  return generate::fandisk(counts<3>(options, {6, 6, 4}), options.jitter, options.seed);
+}
+
 generate::Arrays make(const std::string& shape, const GenerateOptions& options) {
   if (shape == "cavity") return make_cavity(options);
   if (shape == "box") return make_box(options);
   if (shape == "ball") return make_ball(options);
+  if (shape == "fandisk") return make_fandisk(options);
   return make_cylinder(options);
 }
 
@@ -121,7 +126,7 @@ void add_box_options(CLI::App& shape, GenerateOptions& options) {
 
 Run add_generate(CLI::App& app, CommonOptions& common) {
   const auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command = app.add_subcommand("generate", "Make a mesh: cavity, box, ball or cylinder");
+  CLI::App* command = app.add_subcommand("generate", "Make a mesh: cavity, box, ball, cylinder or fandisk");
   command->require_subcommand(1);
   CLI::App* cavity = command->add_subcommand("cavity", "Unit cube, deformed inside until cells invert");
   add_cavity_options(*cavity, options->cavity);
@@ -135,6 +140,13 @@ Run add_generate(CLI::App& app, CommonOptions& common) {
   cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned");
   cylinder->add_option("--wring", options->wring,
                        "Degrees by which the side is turned back and forth; from 58 on it folds over");
+  CLI::App* fandisk =
+      command->add_subcommand("fandisk", "Quarter of a ring with a step: planes, cylinders, sharp edges");
+  fandisk->add_option("--n", options->counts, "Grid cubes along the radius, each half of the arc, each level")
+      ->type_name("NR NA NZ")
+      ->expected(3);
+  fandisk->add_option("--jitter", options->jitter, "Random move within faces and inside, in cube widths");
+  fandisk->add_option("--seed", options->seed, "Seed of the jitter");
   for (CLI::App* shape : {ball, cylinder}) {
     shape->add_option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges");
     shape->add_option("--seed", options->seed, "Seed of the jitter");
@@ -145,7 +157,7 @@ Run add_generate(CLI::App& app, CommonOptions& common) {
         ->expected(3);
   ball->add_option("--n", options->counts, "Shells")->type_name("N")->expected(1);
   cylinder->add_option("--n", options->counts, "Rings and layers")->type_name("NR NZ")->expected(2);
-  for (CLI::App* shape : {cavity, box, ball, cylinder}) {
+  for (CLI::App* shape : {cavity, box, ball, cylinder, fandisk}) {
     shape->add_option("-o,--output", options->output, "Mesh to write")->required()->type_name("FILE");
     add_write_options(*shape, options->write);
     add_common_options(*shape, common);

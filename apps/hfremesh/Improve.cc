@@ -58,7 +58,7 @@ std::vector<unsigned> numbers_after(const std::string& text, const std::string& 
   return numbers;
 }
 
-/// --fix and --periodic, whose patches could only be torn apart by letting them change.
+/// --fix and --periodic.
 void add_locks(SurfaceOptions& surface, const std::vector<std::string>& fix,
                const std::vector<std::string>& periodic) {
   for (const std::string& what : fix) {
@@ -80,7 +80,7 @@ void add_locks(SurfaceOptions& surface, const std::vector<std::string>& fix,
     const auto patches = numbers_after(pair, "", ':', 2);
     if (patches.empty())
       throw Failure(ExitCode::kUsage, "--periodic takes A:B, two patches, not '" + pair + "'");
-    for (unsigned patch : patches) surface.fixed_patches.push_back(static_cast<int>(patch));
+    surface.periodic.push_back({static_cast<int>(patches[0]), static_cast<int>(patches[1])});
   }
 }
 
@@ -116,6 +116,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["ops"] = ops_to_list(options.ops);
   json["metric"] = metric_name(options.metric);
   json["min_cells"] = options.min_cells > 0 ? Json(options.min_cells) : Json();
+  json["coarsen"] = options.coarsen;
   json["max_cells"] = options.max_cells > 0 ? Json(options.max_cells) : Json();
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
@@ -337,6 +338,10 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->add_option("--max-cells", line->improve.max_cells,
                    "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
       ->type_name("N");
+  command->add_flag(
+      "--coarsen", line->improve.coarsen,
+      "Remove vertices wherever that makes the worst angles there better, however few cells are "
+      "left; --min-cells still holds");
   command
       ->add_option("--ids", line->ids,
                    "Write the cells below the goal and what keeps them there; - is stdout")
@@ -378,7 +383,7 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->delimiter(',');
   command
       ->add_option("--periodic", line->periodic,
-                   "Patches A:B that match each other; they are kept as they are")
+                   "Patches A:B that match each other by a translation: their vertices move together")
       ->type_name("A:B")
       ->delimiter(',');
   command

@@ -114,6 +114,9 @@ Json surface_json(const SurfaceReport& surface) {
   json["feature_edges"] = surface.feature_edges;
   json["triangles_before"] = surface.triangles_before;
   json["triangles_after"] = surface.triangles_after;
+  json["regions"] = Json::array();
+  for (const RegionChange& r : surface.regions)
+    json["regions"].push_back({{"region", r.region}, {"volume_before", r.before}, {"volume_after", r.after}});
   return json;
 }
 

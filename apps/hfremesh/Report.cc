@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace hfr::app {
 namespace {
@@ -109,6 +110,14 @@ void print_surface(const SurfaceReport& s) {
       "allowed; volume {:+.2e}\n",
       grouped(s.triangles_after), grouped(s.triangles_before), s.hausdorff,
       s.diagonal > 0 ? 100 * s.hausdorff / s.diagonal : 0.0, s.bound, s.volume_change);
+  const auto change = [](const RegionChange& r) { return r.before != 0 ? r.after / r.before - 1 : 0.0; };
+  const auto most =
+      std::max_element(s.regions.begin(), s.regions.end(), [&](const RegionChange& a, const RegionChange& b) {
+        return std::abs(change(a)) < std::abs(change(b));
+      });
+  if (most != s.regions.end() && s.regions.size() > 1)
+    fmt::print("regions: {}; volume changed most in region {}, by {:+.2e} of it\n", grouped(s.regions.size()),
+               most->region, change(*most));
 }
 
 void print_written(const std::string& path, const io::MeshData& data) {

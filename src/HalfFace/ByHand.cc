@@ -107,17 +107,21 @@ void TetMesh::delete_cell(CellHandle c) {
 
 void TetMesh::drop_labels_of_nothing(const Cell& dead) {
   for (const auto& f : kFaceCorners) {
-    if (labels_.faces.empty()) break;
+    if (labels_.faces.empty() && locks_.faces.empty()) break;
     const std::array<VertexHandle, 3> face = {dead.v[f[0]], dead.v[f[1]], dead.v[f[2]]};
-    if (!hand_index_.face.contains(AnyOrder::key(face))) labels_.faces.erase(face);
+    if (hand_index_.face.contains(AnyOrder::key(face))) continue;
+    labels_.faces.erase(face);
+    locks_.faces.erase(face);
   }
   for (const auto& e : kEdgeCorners) {
-    if (labels_.edges.empty()) break;
+    if (labels_.edges.empty() && locks_.edges.empty()) break;
     const std::array<VertexHandle, 2> edge = {dead.v[e[0]], dead.v[e[1]]};
-    if (!labels_.edges.find(edge)) continue;
+    if (!labels_.edges.find(edge) && !locks_.edges.find(edge)) continue;
     const bool lives = std::any_of(cells_.begin(), cells_.end(),
                                    [&](const Cell& k) { return k.has(edge[0]) && k.has(edge[1]); });
-    if (!lives) labels_.edges.erase(edge);
+    if (lives) continue;
+    labels_.edges.erase(edge);
+    locks_.edges.erase(edge);
   }
 }
 

@@ -43,6 +43,8 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
                        par::Policy policy) {
   rename_used(*this, map.vertices, labels_.faces);
   rename_used(*this, map.vertices, labels_.edges);
+  rename_used(*this, map.vertices, locks_.faces);
+  rename_used(*this, map.vertices, locks_.edges);
   properties_.renumber(*this, map.vertices, n_vertices, map.cells, n_cells);
   permute(policy, map.vertices, n_vertices, labels_.vertices);
   permute(policy, map.vertices, n_vertices, points_);

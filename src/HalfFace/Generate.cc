@@ -308,6 +308,58 @@ Arrays cylinder(Index n_radial, Index n_axial, double radius, double height, dou
   return mesh;
 }
 
+Arrays fandisk(Counts counts, double jitter, std::uint64_t seed) {
+  constexpr double kLevel = 0.5;
+  const Counts grid = {counts[0], 2 * counts[1], 2 * counts[2]};
+  require_box(grid, {0, 0, 0}, {1, 1, 1});
+  HFR_REQUIRE(std::isfinite(jitter), "the jitter must be a finite number");
+  const auto place = [&](Counts at, std::uint64_t v) -> Vec3 {
+    Vec3 along;  // radius, halves of the arc, levels
+    for (std::size_t d = 0; d < 3; ++d) {
+      const Index half = d == 0 ? grid[d] : counts[d];
+      double x = static_cast<double>(at[d]);
+      if (at[d] % half != 0 && jitter != 0) x += jitter * (2 * random_unit(seed, 3 * v + d) - 1);
+      along[static_cast<int>(d)] = x / static_cast<double>(half);
+    }
+    const double r = 1 + along.x;
+    const double angle = std::numbers::pi / 4 * along.y;
+    double c = std::cos(angle);
+    double s = std::sin(angle);
+    // The ends and the step are planes to the last bit.
+    if (at[1] == 0) s = 0;
+    if (at[1] == counts[1]) s = c;
+    if (at[1] == grid[1]) c = 0;
+    const double x = r * c;
+    const double top = 1.3 - 0.15 * x;
+    const double z = at[2] == grid[2]     ? top
+                     : at[2] <= counts[2] ? kLevel * along.z
+                                          : kLevel + (top - kLevel) * (along.z - 1);
+    return {x, r * s, z};
+  };
+  Arrays all;
+  for (Index k = 0; k <= grid[2]; ++k)
+    for (Index j = 0; j <= grid[1]; ++j)
+      for (Index i = 0; i <= grid[0]; ++i) all.points.push_back(place({i, j, k}, all.points.size()));
+  // Without the cubes above the low half, and their vertices.
+  const std::vector<Tet> cells = kuhn_cells(grid);
+  std::vector<Index> number(all.points.size(), VertexHandle::kInvalid);
+  Arrays mesh;
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    const std::size_t cube = cell / 6;
+    if (cube / grid[0] % grid[1] >= counts[1] && cube / grid[0] / grid[1] >= counts[2]) continue;
+    mesh.cells.push_back(cells[cell]);
+    for (Index v : cells[cell]) number[v] = 0;
+  }
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] != 0) continue;
+    number[v] = static_cast<Index>(mesh.points.size());
+    mesh.points.push_back(all.points[v]);
+  }
+  for (Tet& cell : mesh.cells)
+    for (Index& v : cell) v = number[v];
+  return mesh;
+}
+
 void jitter_inner(Arrays& mesh, double jitter, std::uint64_t seed) {
   HFR_REQUIRE(std::isfinite(jitter), "the jitter must be a finite number");
   const TetMesh built = build(mesh.points, mesh.cells);

@@ -74,6 +74,15 @@ Arrays ball(Index n, double radius = 1);
 Arrays cylinder(Index n_radial, Index n_axial, double radius = 1, double height = 2, double twist = 0,
                 double wring = 0);
 
+/// A part with what mechanical parts have: a quarter of a ring about the z axis, of radius 1 to 2, with a
+/// step halfway round. Its eight faces are six planes (bottom z = 0, the two ends y = 0 and x = 0, the step x
+/// = y, the low top z = 0.5 and the high top z = 1.3 - 0.15x, which is inclined) and two cylinders; they meet
+/// in sharp edges, 12 of them straight and 6 curved, and in 12 corners. The counts are the grid cubes along
+/// the radius, along each half of the arc and to each level; every cube of the three blocks is cut into 6
+/// cells. Jitter moves the coordinates along these directions, in cube widths, but none out of a face, an
+/// edge or a corner; numbers are drawn as for jittered_box(), grid vertex by grid vertex.
+Arrays fandisk(Counts counts, double jitter = 0, std::uint64_t seed = 1);
+
 /// Moves every vertex inside, each coordinate by jitter·l·(2r-1), l being the vertex's shortest edge and r
 /// random_unit(seed, 3·vertex + axis). Vertices of the boundary stay.
 void jitter_inner(Arrays& mesh, double jitter, std::uint64_t seed);

@@ -3,6 +3,7 @@
 #define HFR_HALFFACE_LABELS_HH
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,15 @@ struct Labels {
   std::map<std::pair<int, int>, std::string> names;  ///< (dimension, label or region) → name
 
   int vertex(VertexHandle v) const { return vertices.empty() ? 0 : vertices[v.idx()]; }
+};
+
+/// Edges, faces and patches that the user has fixed; see TetMesh::set_fixed().
+struct Locks {
+  TupleMap<3, bool> faces;
+  TupleMap<2, bool> edges;
+  std::set<int> patches;  ///< labels of faces
+
+  bool empty() const { return faces.empty() && edges.empty() && patches.empty(); }
 };
 
 }  // namespace hfr

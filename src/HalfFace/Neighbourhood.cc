@@ -20,7 +20,8 @@ std::size_t TetMesh::memory_bytes() const {
   std::size_t sum = array(cells_) + array(regions_) + array(cell_status_) + array(free_cells_) +
                     array(points_) + array(hook_) + array(vertex_status_) + array(labels_.vertices) +
                     array(hand_index_.n_cells);
-  sum += labels_.faces.memory_bytes() + labels_.edges.memory_bytes() + properties_.memory_bytes();
+  sum += labels_.faces.memory_bytes() + labels_.edges.memory_bytes() + locks_.faces.memory_bytes() +
+         locks_.edges.memory_bytes() + properties_.memory_bytes();
   sum += hand_index_.face.bucket_count() * sizeof(void*) + hand_index_.face.size() * 5 * sizeof(void*);
   return sum;
 }

@@ -40,6 +40,27 @@ void TetMesh::set_region(CellHandle c, int region) {
   regions_[c.idx()] = region;
 }
 
+void TetMesh::set_fixed(EdgeHandle e, bool fixed) {
+  if (fixed)
+    locks_.edges.set(edge_vertices(e), true);
+  else
+    locks_.edges.erase(edge_vertices(e));
+}
+
+void TetMesh::set_fixed(FaceHandle f, bool fixed) {
+  if (fixed)
+    locks_.faces.set(face_vertices(f), true);
+  else
+    locks_.faces.erase(face_vertices(f));
+}
+
+void TetMesh::set_fixed_patch(int label, bool fixed) {
+  if (fixed)
+    locks_.patches.insert(label);
+  else
+    locks_.patches.erase(label);
+}
+
 VertexHandle TetMesh::add_vertex(Vec3 p) {
   const VertexHandle v(points_.size());
   points_.push_back(p);

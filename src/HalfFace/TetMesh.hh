@@ -296,6 +296,19 @@ class TetMesh {
   bool is_fixed(VertexHandle v) const { return (vertex_status_[v.idx()] & kFixed) != 0; }
   void set_fixed(VertexHandle v, bool fixed = true) { set_bit(vertex_status_[v.idx()], kFixed, fixed); }
 
+  /// A fixed edge or face is not removed by any operator, and its vertices are neither moved nor removed.
+  /// Like a label it hangs on its vertices: it stays through renumbering and goes when no cell has it any
+  /// more.
+  bool is_fixed(EdgeHandle e) const { return locks_.edges.find(edge_vertices(e)) != nullptr; }
+  bool is_fixed(FaceHandle f) const { return locks_.faces.find(face_vertices(f)) != nullptr; }
+  void set_fixed(EdgeHandle e, bool fixed = true);
+  void set_fixed(FaceHandle f, bool fixed = true);
+  /// All faces of a fixed patch, those with that label, are as if fixed.
+  bool is_fixed_patch(int label) const { return locks_.patches.contains(label); }
+  void set_fixed_patch(int label, bool fixed = true);
+  /// The fixed edges, faces and patches; of the vertices see is_fixed().
+  const Locks& locks() const { return locks_; }
+
   // --- status bits for the user; no operator reads these ---
   bool is_selected(VertexHandle v) const { return (vertex_status_[v.idx()] & kSelected) != 0; }
   bool is_tagged(VertexHandle v) const { return (vertex_status_[v.idx()] & kTagged) != 0; }
@@ -373,11 +386,12 @@ class TetMesh {
     for (const auto& p : properties_.vertices) p->copy(from.idx(), to.idx());
   }
 
-  /// True when no operator may remove the face of h: boundary, interface between regions, or labelled.
+  /// True when no operator may remove the face of h: boundary, interface between regions, labelled or fixed.
   bool is_constrained(HalfFaceHandle h) const {
     const HalfFaceHandle m = opposite_halfface(h);
     if (!m.is_valid()) return true;
     if (!regions_.empty() && regions_[h.idx() / 4] != regions_[m.idx() / 4]) return true;
+    if (!locks_.faces.empty() && locks_.faces.find(halfface_vertices(h))) return true;
     return !labels_.faces.empty() && labels_.faces.find(halfface_vertices(h)) != nullptr;
   }
   /// True when no operator may remove the edge (a, b) for its own sake (its faces may constrain it too).
@@ -433,8 +447,8 @@ class TetMesh {
   /// True when some cell has all three vertices.
   bool has_face(VertexHandle a, VertexHandle b, VertexHandle c, Star& scratch) const;
 
-  /// Gives every vertex and cell that is not deleted a handle without gaps, in the old order. Labels of faces
-  /// and edges that no cell has any more are dropped.
+  /// Gives every vertex and cell that is not deleted a handle without gaps, in the old order. Labels and
+  /// locks of faces and edges that no cell has any more are dropped.
   GarbageMap collect_garbage(GarbageOptions options = {});
 
   // --- by hand, one at a time; the first call after building or low-level writing costs O(n) ---
@@ -514,6 +528,7 @@ class TetMesh {
   std::vector<std::uint8_t> vertex_status_;
   std::size_t n_deleted_vertices_ = 0;
   Labels labels_;
+  Locks locks_;
   PropertySet properties_;
   HandIndex hand_index_;
   bool hand_index_valid_ = false;

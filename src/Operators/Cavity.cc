@@ -86,22 +86,27 @@ bool is_ball(const TetMesh& mesh, const Cavity& cavity) {
 
 bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
   const Labels& labels = mesh.labels();
-  if (!labels.faces.empty()) {
+  const Locks& locks = mesh.locks();
+  if (!labels.faces.empty() || !locks.faces.empty()) {
     for (CellHandle c : cavity.dead) {
       for (int k = 0; k < 4; ++k) {
         const HalfFaceHandle h = halfface_of(c, k);
         const HalfFaceHandle m = mesh.opposite_halfface(h);
         if (!m.is_valid() || m < h) continue;
-        const bool inside =
-            std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m)) != cavity.dead.end();
-        if (inside && labels.faces.find(mesh.halfface_vertices(h))) return false;
+        const auto first = cavity.dead.begin() + static_cast<std::ptrdiff_t>(cavity.n_dead_first);
+        const auto other = std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m));
+        // What an interface is labelled with is the surface's to keep.
+        const bool is_first = std::find(cavity.dead.begin(), first, c) != first;
+        const bool inside = other != cavity.dead.end() && is_first == (other < first);
+        const auto face = mesh.halfface_vertices(h);
+        if (inside && (labels.faces.find(face) || locks.faces.find(face))) return false;
       }
     }
   }
-  if (!labels.edges.empty()) {
+  if (!labels.edges.empty() || !locks.edges.empty()) {
     const SimplexSet<2> kept = edges_of(cavity.born);
     for (const auto& edge : edges_of(dead_tets(mesh, cavity)))
-      if (!kept.has(edge) && labels.edges.find(edge)) return false;
+      if (!kept.has(edge) && (labels.edges.find(edge) || locks.edges.find(edge))) return false;
   }
   return !cavity.removed.is_valid() || labels.vertex(cavity.removed) == 0;
 }
@@ -122,9 +127,10 @@ bool exists(const TetMesh& mesh, const std::array<VertexHandle, 3>& face, Star& 
 bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch) {
   if (cavity.moved.is_valid()) return true;
   if (mesh.has_regions()) {
-    const int region = mesh.region(cavity.dead[0]);
-    for (CellHandle c : cavity.dead)
-      if (mesh.region(c) != region) return false;
+    for (std::size_t i = 0; i < cavity.dead.size(); ++i) {
+      const std::size_t first = i < cavity.n_dead_first ? 0 : cavity.n_dead_first;
+      if (mesh.region(cavity.dead[i]) != mesh.region(cavity.dead[first])) return false;
+    }
   }
   if (!labels_survive(mesh, cavity)) return false;
   if (!check_links) return true;

@@ -57,20 +57,36 @@ struct Cavity {
   std::optional<Vec3> new_vertex;  ///< position of kNewVertex
   VertexHandle moved;              ///< no cell changes, only this vertex's place
   Vec3 target;                     ///< of `moved`
+  /// Where dead cells lie in two regions, as many of `dead` and `born` belong to the first and stand first.
+  std::size_t n_dead_first = 0, n_born_first = 0;
 
   void clear() {
     dead.clear();
     born.clear();
+    n_dead_first = n_born_first = 0;
     removed.reset();
     new_vertex.reset();
     moved.reset();
   }
 };
 
+/// The cells of one region in a cavity: dead ones from first_dead on, and as many born.
+struct CavityPart {
+  std::size_t first_dead = 0, n_dead = 0, n_born = 0;
+};
+/// Of n_dead and n_born cells in all, those of the first region and those of the second, or only one.
+inline std::array<CavityPart, 2> parts_of(std::size_t n_dead, std::size_t n_born, std::size_t n_dead_first,
+                                          std::size_t n_born_first) {
+  return {{{0, n_dead_first, n_born_first}, {n_dead_first, n_dead - n_dead_first, n_born - n_born_first}}};
+}
+inline std::array<CavityPart, 2> parts_of(const Cavity& cavity) {
+  return parts_of(cavity.dead.size(), cavity.born.size(), cavity.n_dead_first, cavity.n_born_first);
+}
+
 /// True when the cavity may be committed as far as labels, regions and, if `check_links`, the link condition
 /// go:
-///  - all dead cells lie in one region,
-///  - no face between dead cells is labelled, and no labelled edge is lost,
+///  - all dead cells lie in one region, or in two as the cavity says,
+///  - no face between dead cells of one region is labelled or fixed, and no such edge is lost,
 ///  - the outer faces are a sphere and no edge or face would exist twice (the full link condition; it can
 ///  only
 ///    fail where cells are inverted or the boundary meets itself, so callers leave it out elsewhere).

@@ -40,6 +40,10 @@ std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy 
     for (VertexHandle v : face.vertices) frozen[v.idx()] = 1;
   for (const auto& edge : mesh.labels().edges.entries())
     for (VertexHandle v : edge.vertices) frozen[v.idx()] = 1;
+  for (const auto& face : mesh.locks().faces.entries())
+    for (VertexHandle v : face.vertices) frozen[v.idx()] = 1;
+  for (const auto& edge : mesh.locks().edges.entries())
+    for (VertexHandle v : edge.vertices) frozen[v.idx()] = 1;
   return frozen;
 }
 

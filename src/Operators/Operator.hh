@@ -20,6 +20,10 @@ struct PlanBase {
   std::uint32_t n_born = 0;  ///< cells that come; both 0 when a vertex only moves
   bool removes_vertex = false;
   bool adds_vertex = false;
+  /// Where the cluster lies in two regions: of n_dead and n_born, those of the first, which come first in the
+  /// scope and among the born.
+  std::uint16_t n_dead_first = 0;
+  std::uint16_t n_born_first = 0;
 };
 
 /// What the scheduler needs of a local operator.
@@ -57,7 +61,7 @@ constexpr double seed_nanoseconds() {
 }
 
 /// Per-vertex byte: 1 where the vertex must stay: boundary, interface between regions, on a labelled face
-/// inside or a labelled edge, or fixed.
+/// inside or a labelled edge, or fixed, itself or with an edge or a face.
 std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy policy = {});
 /// Number of cells of each vertex.
 std::vector<std::uint32_t> star_sizes(const TetMesh& mesh);

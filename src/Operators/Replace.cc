@@ -76,7 +76,9 @@ void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle
     open.exchange(mesh.halfface_vertices(h), static_cast<std::int32_t>(notes.size() - first_note));
     notes.push_back({h, m, HalfFaceHandle()});
   });
-  for (std::size_t i = slots.size(); i < cavity.dead.size(); ++i) mesh.mark_deleted(cavity.dead[i]);
+  for (const CavityPart& part : parts_of(cavity))
+    for (std::size_t i = part.n_born; i < part.n_dead; ++i)
+      mesh.mark_deleted(cavity.dead[part.first_dead + i]);
   const auto n_notes = static_cast<std::int32_t>(notes.size() - first_note);
   for (std::size_t i = 0; i < cavity.born.size(); ++i) {
     Cell& cell = mesh.mutable_cell(slots[i]);
@@ -108,19 +110,22 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
     mesh.set_point(cavity.moved, cavity.target);
     return;
   }
-  std::vector<CellHandle> slots(cavity.dead.begin(), cavity.dead.end());
+  std::vector<CellHandle> slots, freed;
   std::vector<CellHandle>& free = mesh.free_cells();
-  while (slots.size() < cavity.born.size()) {
-    if (free.empty()) {
-      mesh.resize_cells(mesh.n_cells() + 1);
-      free.push_back(CellHandle(mesh.n_cells() - 1));
+  for (const CavityPart& part : parts_of(cavity)) {
+    const CellHandle* dead = cavity.dead.begin() + part.first_dead;
+    for (std::size_t i = 0; i < part.n_dead; ++i) (i < part.n_born ? slots : freed).push_back(dead[i]);
+    for (std::size_t i = part.n_dead; i < part.n_born; ++i) {
+      if (free.empty()) {
+        mesh.resize_cells(mesh.n_cells() + 1);
+        free.push_back(CellHandle(mesh.n_cells() - 1));
+      }
+      slots.push_back(free.back());
+      free.pop_back();
+      mesh.copy_cell_data(dead[0], slots.back());
     }
-    slots.push_back(free.back());
-    free.pop_back();
-    mesh.copy_cell_data(cavity.dead[0], slots.back());
   }
-  for (std::size_t i = cavity.born.size(); i < slots.size(); ++i) free.push_back(slots[i]);
-  slots.resize(cavity.born.size());
+  free.insert(free.end(), freed.begin(), freed.end());
   VertexHandle new_vertex;
   if (cavity.new_vertex) {
     new_vertex = mesh.add_vertex(*cavity.new_vertex);

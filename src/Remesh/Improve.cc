@@ -38,10 +38,11 @@ constexpr std::size_t kLeastOfHundred = 81;
 constexpr std::size_t kMostOfHundred = 119;
 
 ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
+  if (options.coarsen && options.max_cells == 0) options.max_cells = n_cells;
   if (options.raise_min_dihedral || options.compat != Compat::kNone ||
       options.surface.mode != SurfaceMode::kFrozen)
     return options;
-  if (options.min_cells == 0) options.min_cells = n_cells * kLeastOfHundred / 100;
+  if (options.min_cells == 0 && !options.coarsen) options.min_cells = n_cells * kLeastOfHundred / 100;
   if (options.max_cells == 0) options.max_cells = n_cells * kMostOfHundred / 100;
   return options;
 }
@@ -88,7 +89,7 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   }
   // The last few cells below the first rung that was missed, and those below the next ones.
   for (double rung : kLadder) {
-    if (rung > kReliefRung || control.stopped()) return;
+    if ((rung > kReliefRung && !options.coarsen) || control.stopped()) return;
     if (now >= rung) continue;
     if (!relieve(mesh, work, options, control, rung)) return;
     now = smallest();
@@ -129,6 +130,7 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
       if (n_missed == kMaxMissed || control.stopped()) break;
       const auto n_poor = n_below(mesh, rung, options.policy);
       polish(mesh, work, options, control, rung);
+      if (options.coarsen) relieve(mesh, work, options, control, rung);
       const bool fewer =
           kFewer * static_cast<double>(n_poor) > static_cast<double>(n_below(mesh, rung, options.policy));
       n_missed = fewer || smallest() > now * kClimbGain ? 0 : n_missed + 1;
@@ -153,6 +155,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   ImproveOptions early = options;
   if (early.rounds == Rounds::kAuto) early.rounds = Rounds::kByKind;
   polish(mesh, work, early, control, kEarlyGoal, kLargestShare);
+  if (options.coarsen) coarsen(mesh, work, options, control);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
   climb(mesh, work, options, control, floor);

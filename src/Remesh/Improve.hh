@@ -78,6 +78,10 @@ struct ImproveOptions {
   /// input, which towards min_dihedral count only until nothing else helps.
   std::size_t min_cells = 0;
   std::size_t max_cells = 0;
+  /// Vertices are removed wherever that makes the worst angle of their cells better: without a goal a stage
+  /// of its own looks for them. Of bounds on fewer cells only a min_cells that is given holds, and max_cells
+  /// is that of the input unless given.
+  bool coarsen = false;
   Smoother smoother = Smoother::kNewton;
   Rounds rounds = Rounds::kAuto;
   Compat compat = Compat::kNone;
@@ -121,6 +125,12 @@ struct PassReport {
   double seconds_commit = 0;
 };
 
+/// The volume of a region before and after, summed up from its cells.
+struct RegionChange {
+  int region = 0;
+  double before = 0, after = 0;
+};
+
 /// What became of the surface, measured by itself; all 0 while it is frozen, and but for the first two where
 /// no statistics are asked for. Lengths are in the mesh's units.
 struct SurfaceReport {
@@ -131,6 +141,7 @@ struct SurfaceReport {
   double volume_change = 0;  ///< of the enclosed volume, as a share of it
   std::size_t feature_edges = 0;
   std::size_t triangles_before = 0, triangles_after = 0;
+  std::vector<RegionChange> regions;  ///< ascending; empty where there is but one
 };
 
 /// Cells below Result::stuck_below that a frozen surface keeps there, and which mode would let them change.

@@ -29,6 +29,12 @@ constexpr std::size_t kPoorShareAtAnyCost = 4;  // where the worst angle is to b
 /// Cells whose surroundings are searched at most where nobody asked for an angle.
 constexpr std::size_t kFewToSearch = 100;
 
+// While vertices are removed: the cells that are worked on, and how many of 1 may be left of an iteration's
+// for another one.
+constexpr double kCoarsenBelow = 50;  // degrees
+constexpr int kMaxCoarsenings = 20;
+constexpr double kStillCoarsens = 0.98;
+
 /// What has run for cells that miss an angle by little: so many layers of cells round them are worked on as
 /// if the angle were larger, which makes room.
 struct Relief {
@@ -215,6 +221,17 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
     }
     stage.to_host();
   });
+}
+
+void coarsen(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+  Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "coarsen");
+  const Focus focus{dihedral_decision(kCoarsenBelow)};
+  for (int i = 1; i <= kMaxCoarsenings && !control.stopped(); ++i) {
+    const auto n_before = static_cast<double>(mesh.n_logical_cells());
+    if (stage.iterate(i, focus, true) == 0) break;
+    if (static_cast<double>(mesh.n_logical_cells()) > kStillCoarsens * n_before) break;
+  }
+  stage.to_host();
 }
 
 void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {

@@ -28,6 +28,9 @@ std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy);
 void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
 /// Improves all cells in options.metric, until an iteration gains little.
 void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
+/// Removes vertices where that raises the worst angle of their cells, and works on all cells that are no very
+/// good ones, until an iteration takes few cells away.
+void coarsen(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control);
 /// Works on cells with a dihedral below `goal` degrees (or above 180 - goal) until there are none or nothing
 /// helps. True when the smallest dihedral meets the goal. Not begun when more than `largest_share` of the
 /// cells miss the goal.

@@ -172,12 +172,17 @@ class Stage {
   /// Cells in focus that, or whose surroundings, have changed since the clock stood at `since`.
   Worklist changed_since(std::uint32_t since, Focus focus);
   std::size_t surface_swaps(int iteration, const Worklist& list);
+  template <class Op>
+  std::size_t surface_swaps(const char* name, bool inside, int iteration, const Worklist& list);
   std::size_t surface_collapses(int iteration, const Worklist& list);
   std::size_t surface_moves(int iteration, const Worklist& list);
+  /// Moves the vertices of periodic patches, orbit by orbit: few, so one after the other.
+  RoundCounts periodic_moves(std::span<const VertexHandle> first_of_orbits);
   std::size_t surface_splits(int iteration, Focus focus);
-  /// Edges of the boundary in the listed cells, each from its smallest listed cell, that allow(a, b) lets by.
+  /// Edges of the boundary in the listed cells, each from its smallest listed cell, that allow(a, b) lets by;
+  /// with `inside` those between vertices of the surface that the boundary does not have.
   template <class Allow>
-  std::vector<EdgeHandle> surface_edges(const Worklist& list, Allow&& allow) const;
+  std::vector<EdgeHandle> surface_edges(const Worklist& list, bool inside, Allow&& allow) const;
 
   // Passes on the device: StageOnDevice.hh.
   /// True, with the mesh on the device, when passes of this kind run there.

@@ -27,7 +27,7 @@ bool Stage<Metric>::on_device(Kind kind) {
     } else {
       const Labels& labels = mesh_.labels();
       if (options_.hybrid || n_invalid_ > 0 || !labels.faces.empty() || !labels.edges.empty() ||
-          !labels.vertices.empty())
+          !labels.vertices.empty() || !mesh_.locks().empty())
         return false;
     }
     if (resident_) return true;

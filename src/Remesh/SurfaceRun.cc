@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/SurfaceRun.hh"
 
+#include <map>
+
 #include "HalfFace/Errors.hh"
 #include "Remesh/Surfaces.hh"
 #ifdef HFR_HAS_SURFACE
@@ -25,6 +27,27 @@ double enclosed_volume(const TetMesh& mesh) {
   return enclosed_volume(boundary);
 }
 
+std::map<int, double> region_volumes(const TetMesh& mesh) {
+  struct Sum {
+    double value = 0, lost = 0;  // Kahan's
+  };
+  std::map<int, Sum> sums;
+  if (!mesh.has_regions()) return {};
+  for (CellHandle c : mesh.cells()) {
+    const auto& v = mesh.cell(c).v;
+    const Vec3 a = mesh.point(v[0]);
+    Sum& sum = sums[mesh.region(c)];
+    const double term =
+        dot(mesh.point(v[1]) - a, cross(mesh.point(v[2]) - a, mesh.point(v[3]) - a)) / 6.0 - sum.lost;
+    const double next = sum.value + term;
+    sum.lost = (next - sum.value) - term;
+    sum.value = next;
+  }
+  std::map<int, double> volumes;
+  for (const auto& [region, sum] : sums) volumes[region] = sum.value;
+  return volumes;
+}
+
 }  // namespace
 
 struct SurfaceRun::Impl {
@@ -32,7 +55,8 @@ struct SurfaceRun::Impl {
   bool measure = false;
   std::vector<Triangle> before;
   double volume = 0;
-  double bound = 0;  // largest distance allowed
+  std::map<int, double> regions;  // their volumes
+  double bound = 0;               // largest distance allowed
   std::unique_ptr<SurfaceMesh> surface;
 };
 
@@ -45,6 +69,7 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   if (impl_->measure) {
     impl_->before = surface_triangles(mesh, options.policy);
     impl_->volume = enclosed_volume(mesh);
+    impl_->regions = region_volumes(mesh);
   }
   SurfaceOptions wanted = options.surface;
   impl_->bound = SurfaceMesh::allowed_distance(mesh, wanted, options.policy);
@@ -75,6 +100,8 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   if (!impl_->measure) return report;
   const std::vector<Triangle> after = surface_triangles(mesh, impl_->policy);
   measure_surfaces(impl_->before, after, impl_->volume, enclosed_volume(mesh), impl_->policy, report);
+  for (const auto& [region, volume] : region_volumes(mesh))
+    report.regions.push_back({region, impl_->regions[region], volume});
   return report;
 }
 

@@ -7,6 +7,8 @@
 
 #include "Remesh/Stage.hh"
 #ifdef HFR_HAS_SURFACE
+#include "Surface/InterfaceSwap.hh"
+#include "Surface/PeriodicSmooth.hh"
 #include "Surface/SurfaceCollapse.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceSmooth.hh"
@@ -36,6 +38,19 @@ std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& 
   return vertices;
 }
 
+/// Takes the vertices that periodic patches bind out of the list; returns the first vertex of each orbit.
+std::vector<VertexHandle> take_bound(const SurfaceMesh& surface, std::vector<VertexHandle>& vertices) {
+  std::vector<VertexHandle> first;
+  std::erase_if(vertices, [&](VertexHandle v) {
+    const auto orbit = surface.orbit(v);
+    if (!orbit.empty()) first.push_back(orbit[0]);
+    return !orbit.empty();
+  });
+  std::sort(first.begin(), first.end());
+  first.erase(std::unique(first.begin(), first.end()), first.end());
+  return first;
+}
+
 }  // namespace
 
 template <class Metric>
@@ -51,7 +66,7 @@ Worklist Stage<Metric>::changed_since(std::uint32_t since, Focus focus) {
 
 template <class Metric>
 template <class Allow>
-std::vector<EdgeHandle> Stage<Metric>::surface_edges(const Worklist& list, Allow&& allow) const {
+std::vector<EdgeHandle> Stage<Metric>::surface_edges(const Worklist& list, bool inside, Allow&& allow) const {
   const SurfaceMesh& surface = *control_.surface();
   std::vector<EdgeHandle> seeds;
   for (Index c : list.cells()) {
@@ -67,8 +82,8 @@ std::vector<EdgeHandle> Stage<Metric>::surface_edges(const Worklist& list, Allow
         return smallest;
       };
       const bool closed = mesh_.walk_ring(CellHandle(c), static_cast<int>(e), look);
-      if (closed || !smallest) continue;
-      mesh_.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
+      if (!smallest || closed != inside) continue;
+      if (!closed) mesh_.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
       if (smallest && allow(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
     }
   }
@@ -83,7 +98,7 @@ std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
   const std::uint32_t since = looked_at_surface_[kSplits];
   looked_at_surface_[kSplits] = work_.clock;
   std::vector<typename Op::Seed> seeds;
-  for (EdgeHandle e : surface_edges(changed_since(since, focus),
+  for (EdgeHandle e : surface_edges(changed_since(since, focus), /*inside=*/false,
                                     [&](VertexHandle a, VertexHandle b) { return surface.may_split(a, b); }))
     seeds.push_back(typename Op::Seed(e));
   RoundCounts counts;
@@ -107,12 +122,12 @@ std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
 }
 
 template <class Metric>
-std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
-  using Op = SurfaceSwap<Metric>;
+template <class Op>
+std::size_t Stage<Metric>::surface_swaps(const char* name, bool inside, int iteration, const Worklist& list) {
   SurfaceMesh& surface = *control_.surface();
   const double start = control_.seconds();
   const std::vector<EdgeHandle> seeds =
-      surface_edges(list, [&](VertexHandle a, VertexHandle b) { return surface.may_swap(a, b); });
+      surface_edges(list, inside, [&](VertexHandle a, VertexHandle b) { return surface.may_swap(a, b); });
   RoundCounts counts;
   if (!seeds.empty()) {
     Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
@@ -120,8 +135,20 @@ std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
     round.for_committed([&](const auto& plan, VertexHandle) { surface.swapped(plan.edge[0], plan.edge[1]); });
     surface.write_labels(mesh_);
   }
-  report("surface swap", iteration, counts, control_.seconds() - start);
+  report(name, iteration, counts, control_.seconds() - start);
   return counts.winners;
+}
+
+template <class Metric>
+std::size_t Stage<Metric>::surface_swaps(int iteration, const Worklist& list) {
+  const std::size_t n_listed = mesh_.n_cells();
+  std::size_t changes = surface_swaps<SurfaceSwap<Metric>>("surface swap", /*inside=*/false, iteration, list);
+  if (!control_.surface()->has_interfaces()) return changes;
+  // There are cells now that the list does not know.
+  const Worklist left(mesh_, options_.policy,
+                      [&](CellHandle c) { return c.idx() < n_listed && list.has(c); });
+  changes += surface_swaps<InterfaceSwap<Metric>>("surface interface", /*inside=*/true, iteration, left);
+  return changes;
 }
 
 template <class Metric>
@@ -155,14 +182,49 @@ template <class Metric>
 std::size_t Stage<Metric>::surface_moves(int iteration, const Worklist& list) {
   SurfaceMesh& surface = *control_.surface();
   const double start = control_.seconds();
-  const std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  const std::vector<VertexHandle> bound = take_bound(surface, vertices);
   RoundCounts counts;
+  if (!bound.empty()) counts = periodic_moves(bound);
   if (!vertices.empty()) {
-    counts = hfr::smooth_pass(mesh_, work_, SurfaceSearch{&surface}, metric_, vertices, options_.policy);
+    counts += hfr::smooth_pass(mesh_, work_, SurfaceSearch{&surface}, metric_, vertices, options_.policy);
     surface.moved(mesh_, vertices);
   }
   report("surface smooth", iteration, counts, control_.seconds() - start);
   return counts.winners;
+}
+
+template <class Metric>
+RoundCounts Stage<Metric>::periodic_moves(std::span<const VertexHandle> first_of_orbits) {
+  SurfaceMesh& surface = *control_.surface();
+  RoundCounts counts;
+  counts.rounds = 1;
+  ++work_.clock;
+  Star star;
+  for (VertexHandle first : first_of_orbits) {
+    const auto orbit = surface.orbit(first);
+    ++counts.seeds;
+    const auto plan = PeriodicSmooth<Metric>{metric_, work_.quality, &surface}.evaluate(mesh_, orbit);
+    if (!plan) continue;
+    ++counts.candidates;
+    ++counts.winners;
+    std::vector<CellHandle> cells;
+    for (std::size_t i = 0; i < orbit.size(); ++i) {
+      mesh_.set_point(orbit[i], plan->targets[i]);
+      mesh_.gather_star(orbit[i], star);
+      cells.insert(cells.end(), star.cells.begin(), star.cells.begin() + star.size);
+    }
+    for (CellHandle c : cells) {
+      const auto& v = mesh_.cell(c).v;
+      work_.quality[c.idx()] =
+          metric_(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
+      work_.pending[c.idx()] = 0xff;
+      for (VertexHandle u : v) work_.changed[u.idx()] = work_.clock;
+    }
+    if (!work_.all_touched) work_.touch(cells);
+    surface.moved(mesh_, orbit);
+  }
+  return counts;
 }
 
 template <class Metric>
@@ -176,7 +238,8 @@ std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_no
     if (!list.cells().empty()) changes += (this->*pass)(iteration, list);
     if (n_invalid_ > 0) count(focus);
   };
-  if (has(options_.ops, Ops::kEdge)) run(kSwaps, &Stage::surface_swaps);
+  using Pass = std::size_t (Stage::*)(int, const Worklist&);
+  if (has(options_.ops, Ops::kEdge)) run(kSwaps, static_cast<Pass>(&Stage::surface_swaps));
   if (with_node && has(options_.ops, Ops::kNode)) run(kCollapses, &Stage::surface_collapses);
   if (has(options_.ops, Ops::kSmooth)) run(kMoves, &Stage::surface_moves);
   count(focus);
@@ -189,7 +252,8 @@ void Stage<Metric>::restore_volume() {
   constexpr double kEnough = 5e-5;  // of the volume
   SurfaceMesh& surface = *control_.surface();
   const Worklist all(mesh_, options_.policy, [](CellHandle) { return true; });
-  const std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, all);
+  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, all);
+  take_bound(surface, vertices);  // those of periodic patches stay
   for (int i = 1; i <= kMaxPasses && std::abs(surface.volume_gain()) > kEnough; ++i) {
     const double start = control_.seconds();
     const RoundCounts counts =

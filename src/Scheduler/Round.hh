@@ -142,7 +142,7 @@ class Round {
   bool needs_admission() const {
     const Labels& labels = mesh_.labels();
     return options_.check_links || mesh_.has_regions() || !labels.faces.empty() || !labels.edges.empty() ||
-           !labels.vertices.empty();
+           !labels.vertices.empty() || !mesh_.locks().empty();
   }
 
   /// A worst cell that rises must not pay for itself with more inverted or flat cells.
@@ -327,20 +327,18 @@ class Round {
       winner.first_slot = slots_.size();
       if (plan.n_dead == 0) continue;
       HFR_ASSERT(scope.size() == plan.n_dead);
-      for (std::uint32_t i = 0; i < plan.n_dead; ++i) {
-        if (i < plan.n_born)
-          slots_.push_back(scope[i]);
-        else
-          freed_.push_back(scope[i]);
-      }
-      for (std::uint32_t i = plan.n_dead; i < plan.n_born; ++i) {
-        if (free.empty()) {
-          slots_.push_back(CellHandle(n_cells++));
-        } else {
-          slots_.push_back(free.back());
-          free.pop_back();
+      for (const CavityPart& p : parts_of(plan.n_dead, plan.n_born, plan.n_dead_first, plan.n_born_first)) {
+        for (std::size_t i = 0; i < p.n_dead; ++i)
+          (i < p.n_born ? slots_ : freed_).push_back(scope[p.first_dead + i]);
+        for (std::size_t i = p.n_dead; i < p.n_born; ++i) {
+          if (free.empty()) {
+            slots_.push_back(CellHandle(n_cells++));
+          } else {
+            slots_.push_back(free.back());
+            free.pop_back();
+          }
+          fresh.emplace_back(scope[p.first_dead], slots_.back());
         }
-        fresh.emplace_back(scope[0], slots_.back());
       }
       if (plan.adds_vertex) {
         op.commit(mesh_, plan, cavity);

@@ -8,12 +8,11 @@
 namespace hfr {
 
 FeatureLabels label_features(TetMesh& mesh, SurfaceOptions options, par::Policy policy) {
-  constexpr double kDetail = 0.1;  // of the mean edge, as in SurfaceMesh
   if (options.mode == SurfaceMode::kFrozen) options.mode = SurfaceMode::kFree;
   surface::Features found;
   {
     const surface::Arrays arrays = surface::gather(mesh, options, policy);
-    double detail = kDetail * surface::mean_edge(arrays);
+    double detail = surface::default_distance(arrays);
     if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
     found = surface::find_features(arrays, options, options.mode == SurfaceMode::kFree ? detail : 0);
   }

@@ -188,17 +188,21 @@ std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
 /// The faces that the user wants as they are.
 class FixedFaces {
  public:
-  explicit FixedFaces(const SurfaceOptions& options) : patches_(options.fixed_patches) {
+  FixedFaces(const SurfaceOptions& options, const Locks& locks)
+      : patches_(options.fixed_patches.begin(), options.fixed_patches.end()), locks_(locks) {
     for (const auto& f : options.fixed_faces) faces_.insert(sorted(f));
+    for (const auto& pair : options.periodic) periodic_.insert(pair.begin(), pair.end());
   }
   bool has(const std::array<VertexHandle, 3>& f, const int* label) const {
-    return faces_.contains(sorted(f)) ||
-           (label && std::find(patches_.begin(), patches_.end(), *label) != patches_.end());
+    return faces_.contains(sorted(f)) || locks_.faces.find(f) ||
+           (label && (patches_.contains(*label) || locks_.patches.contains(*label)));
   }
+  bool is_periodic(const int* label) const { return label && periodic_.contains(*label); }
 
  private:
   std::set<std::array<VertexHandle, 3>> faces_;
-  const std::vector<int>& patches_;
+  std::set<int> patches_, periodic_;
+  const Locks& locks_;
 };
 
 void add_fixed(Arrays& arrays, const SurfaceOptions& options) {
@@ -238,7 +242,7 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     const HalfFaceHandle m = mesh.opposite_halfface(h);
     return !m.is_valid() || mesh.region(cell_of(h)) < mesh.region(cell_of(m));
   });
-  const FixedFaces fixed(options);
+  const FixedFaces fixed(options, mesh.locks());
   Arrays arrays;
   arrays.points = mesh.points();
   const auto& labels = mesh.labels().faces;
@@ -252,14 +256,23 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     arrays.patch.push_back(label ? *label : 0);
     const bool inward = label && CyclicOrder::key(labels.entries()[entry].vertices) == CyclicOrder::key(f);
     arrays.inward.push_back(inward ? 1 : 0);
-    arrays.interface.push_back(mesh.is_boundary(h) ? 0 : 1);
-    arrays.locked.push_back(arrays.interface.back() || fixed.has(f, label) ? 1 : 0);
+    const HalfFaceHandle m = mesh.opposite_halfface(h);
+    arrays.interface.push_back(m.is_valid() ? 1 : 0);
+    arrays.regions.push_back({mesh.region(cell_of(h)), m.is_valid() ? mesh.region(cell_of(m)) : 0});
+    arrays.fixed.push_back(fixed.has(f, label) ? 1 : 0);
+    arrays.locked.push_back(arrays.fixed.back() || fixed.is_periodic(label) ? 1 : 0);
   }
   lock_labelled_inside(mesh, arrays);
   for (const auto& entry : mesh.labels().edges.entries()) {  // those inside, too
     arrays.locked_edges.push_back(entry.vertices);
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
   }
+  for (const auto& entry : mesh.locks().edges.entries()) {
+    arrays.locked_edges.push_back(entry.vertices);
+    arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
+  }
+  for (const auto& entry : mesh.locks().faces.entries())  // those inside, too
+    arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
   for (VertexHandle v : mesh.vertices())
     if (mesh.is_fixed(v)) arrays.locked_vertices.push_back(v);
   add_fixed(arrays, options);
@@ -267,7 +280,8 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
 }
 
 Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options) {
-  const FixedFaces fixed(options);
+  const Locks none;
+  const FixedFaces fixed(options, none);
   Arrays arrays;
   arrays.points = mesh.points;
   arrays.faces = mesh.triangles;
@@ -276,8 +290,12 @@ Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options) {
   arrays.patch.resize(arrays.faces.size());
   arrays.inward.resize(arrays.faces.size());
   arrays.interface.resize(arrays.faces.size());
-  for (std::size_t i = 0; i < arrays.faces.size(); ++i)
-    arrays.locked.push_back(fixed.has(arrays.faces[i], &arrays.patch[i]) ? 1 : 0);
+  arrays.regions.resize(arrays.faces.size());
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
+    const int* label = &arrays.patch[i];
+    arrays.locked.push_back(fixed.has(arrays.faces[i], label) || fixed.is_periodic(label) ? 1 : 0);
+  }
+  arrays.fixed = arrays.locked;
   add_fixed(arrays, options);
   return arrays;
 }
@@ -289,6 +307,10 @@ double mean_edge(const Arrays& arrays) {
     for (std::size_t k = 0; k < 3; ++k) sum += norm(t[(k + 1) % 3] - t[k]);
   }
   return arrays.faces.empty() ? 0 : sum / (3.0 * static_cast<double>(arrays.faces.size()));
+}
+
+double default_distance(const Arrays& arrays) {
+  return std::min(0.1 * mean_edge(arrays), 0.005 * diagonal(arrays));
 }
 
 Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail) {
@@ -309,8 +331,7 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
     for (VertexHandle v : arrays.faces[i]) {
       on_surface[v.idx()] = 1;
       at[v.idx()].face = static_cast<std::uint32_t>(i);
-      // An interface keeps its shape in both regions when its vertices slide within planes; nothing more yet.
-      if (arrays.locked[i] && !(arrays.interface[i] && flat)) at[v.idx()].locked = true;
+      if (arrays.fixed[i]) at[v.idx()].locked = true;
     }
   }
   std::vector<std::uint8_t> only_turns;

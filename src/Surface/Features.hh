@@ -23,7 +23,9 @@ struct Arrays {
   std::vector<int> patch;                          ///< label, 0 = none
   std::vector<std::uint8_t> inward;                ///< the label names the face as seen from inside
   std::vector<std::uint8_t> interface;             ///< between two regions
-  std::vector<std::uint8_t> locked;                ///< may not change: interface, or fixed
+  std::vector<std::array<int, 2>> regions;         ///< inside and outside of each; the latter of interfaces
+  std::vector<std::uint8_t> locked;                ///< stays a face: fixed, or of a periodic patch
+  std::vector<std::uint8_t> fixed;                 ///< and its vertices stay where they are
   std::vector<std::array<VertexHandle, 2>> locked_edges;  ///< ascending
   std::vector<VertexHandle> locked_vertices;
 };
@@ -49,6 +51,9 @@ struct Features {
 Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail);
 /// Mean length of the triangles' edges; 0 without any.
 double mean_edge(const Arrays& arrays);
+/// How far the surface may go in free mode unless told otherwise: a tenth of the mean edge, but no more than
+/// 0.5 % of the diagonal of the bounding box.
+double default_distance(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.
 inline double six_volume(const Triangle& t, Vec3 from) {
   return dot(t[0] - from, cross(t[1] - from, t[2] - from));

@@ -18,10 +18,9 @@ using surface::unit;
 class View {
  public:
   View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy) {
-    constexpr double kDetail = 0.1;  // of the mean edge, as in SurfaceMesh
     options.mode = mode;
     arrays_ = surface::gather(mesh, options, policy);
-    double detail = kDetail * surface::mean_edge(arrays_);
+    double detail = surface::default_distance(arrays_);
     if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
     features_ = surface::find_features(arrays_, options, mode == SurfaceMode::kFree ? detail : 0);
   }

@@ -9,11 +9,23 @@
 namespace hfr {
 namespace {
 
+/// The cells that a collapse may write, and in two regions those of the smaller one first; of either region
+/// the ones behind the star first.
+struct Cluster {
+  Star star;
+  Scope cells;
+  RawArray<std::uint8_t, Star::kCapacity> corner;  // of the vertex in each; 4 behind the star
+  std::size_t n_first = 0;                         // of the smaller region, where there are two
+};
+
 /// A vertex that has only one or two cells of the star may have none left that is born anew; the hook of
 /// such a vertex would point nowhere. So the cells behind those that belong to it come along. Which these are
 /// must not depend on the target: all cells behind link faces at vertices with at most two cells in the star.
-void gather_scope(const TetMesh& mesh, VertexHandle v, Star& star, Scope& out) {
-  out.clear();
+/// No cells where they are too many, or of more than two regions.
+void gather_cluster(const TetMesh& mesh, VertexHandle v, Cluster& out) {
+  out.cells.clear();
+  out.n_first = 0;
+  Star& star = out.star;
   if (!mesh.gather_star(v, star)) return;
   const auto n = static_cast<std::size_t>(star.size);
   struct Count {
@@ -34,6 +46,7 @@ void gather_scope(const TetMesh& mesh, VertexHandle v, Star& star, Scope& out) {
         counts.push_back({w, 1});
     }
   }
+  Scope behind;
   for (std::size_t i = 0; i < n; ++i) {
     const HalfFaceHandle h = halfface_of(star.cells[i], star.corners[i]);
     const auto f = mesh.halfface_vertices(h);
@@ -42,24 +55,46 @@ void gather_scope(const TetMesh& mesh, VertexHandle v, Star& star, Scope& out) {
     });
     const HalfFaceHandle m = mesh.opposite_halfface(h);
     if (!rare || !m.is_valid() || in_star(cell_of(m))) continue;
-    if (std::find(out.begin(), out.end(), cell_of(m)) == out.end()) out.push_back(cell_of(m));
+    if (std::find(behind.begin(), behind.end(), cell_of(m)) == behind.end()) behind.push_back(cell_of(m));
   }
-  if (out.size() + n > Star::kCapacity) {
-    out.clear();
-    return;
+  if (behind.size() + n > Star::kCapacity) return;
+  int low = mesh.region(star.cells[0]);
+  int high = low;
+  const auto look = [&](CellHandle c) {
+    low = std::min(low, mesh.region(c));
+    high = std::max(high, mesh.region(c));
+  };
+  if (mesh.has_regions()) {
+    for (CellHandle c : behind) look(c);
+    for (std::size_t i = 0; i < n; ++i) look(star.cells[i]);
   }
-  for (std::size_t i = 0; i < n; ++i) out.push_back(star.cells[i]);
+  const auto put = [&](int region) {
+    const auto take = [&](CellHandle c, std::uint8_t corner) {
+      if (mesh.region(c) != region) return;
+      out.corner[out.cells.size()] = corner;
+      out.cells.push_back(c);
+    };
+    for (CellHandle c : behind) take(c, 4);
+    for (std::size_t i = 0; i < n; ++i) take(star.cells[i], star.corners[i]);
+  };
+  put(low);
+  if (low == high) return;
+  out.n_first = out.cells.size();
+  put(high);
+  if (out.cells.size() != behind.size() + n) out.cells.clear();
 }
 
 bool has(const std::array<VertexHandle, 3>& f, VertexHandle v) { return f[0] == v || f[1] == v || f[2] == v; }
 
-/// Boundary faces of the star at v, as seen from outside.
+/// Faces of the surface in the star at v, as seen from outside or from the larger region.
 template <class Faces>
 bool gather_faces(const TetMesh& mesh, VertexHandle v, const Star& star, Faces& out) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) {
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(star.cells[i], k);
-      if (k == star.corners[i] || !mesh.is_boundary(h)) continue;
+      const HalfFaceHandle m = mesh.opposite_halfface(h);
+      if (k == star.corners[i] || (m.is_valid() && !(mesh.region(cell_of(h)) < mesh.region(cell_of(m)))))
+        continue;
       const auto f = mesh.halfface_vertices(h);
       if (out.full()) return false;
       if (has(f, v)) out.push_back({f[0], f[2], f[1]});
@@ -72,17 +107,19 @@ bool gather_faces(const TetMesh& mesh, VertexHandle v, const Star& star, Faces& 
 
 template <class Metric>
 void SurfaceCollapse<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope& out) const {
-  Star star;
-  gather_scope(mesh, seed.vertex, star, out);
+  Cluster cluster;
+  gather_cluster(mesh, seed.vertex, cluster);
+  out = cluster.cells;
 }
 
 template <class Metric>
 auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
   const VertexHandle v = seed.vertex;
   if (mesh.labels().vertex(v) != 0) return std::nullopt;
-  Star star;
-  Scope cells;
-  gather_scope(mesh, v, star, cells);
+  Cluster cluster;
+  gather_cluster(mesh, v, cluster);
+  const Star& star = cluster.star;
+  const Scope& cells = cluster.cells;
   if (cells.empty()) return std::nullopt;
   const auto n = static_cast<std::size_t>(star.size);
   const std::size_t n_behind = cells.size() - n;
@@ -93,7 +130,7 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   double floor = std::numeric_limits<double>::infinity();  // cells behind cannot get better
   for (std::size_t i = 0; i < cells.size(); ++i) {
     old_worst = std::min(old_worst, quality[cells[i].idx()]);
-    if (i < n_behind) floor = std::min(floor, quality[cells[i].idx()]);
+    if (cluster.corner[i] == 4) floor = std::min(floor, quality[cells[i].idx()]);
   }
   Plan plan;
   plan.old_worst = old_worst;
@@ -141,6 +178,11 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   }
   if (!plan.onto.is_valid()) return std::nullopt;
   plan.n_dead = static_cast<std::uint32_t>(cells.size());
+  plan.n_dead_first = static_cast<std::uint16_t>(cluster.n_first);
+  for (std::size_t i = 0; i < cluster.n_first; ++i)
+    if (cluster.corner[i] == 4 ||
+        !has(mesh.halfface_vertices(halfface_of(cells[i], cluster.corner[i])), plan.onto))
+      ++plan.n_born_first;
   plan.removes_vertex = true;
   plan.seed = seed;
   return plan;
@@ -148,16 +190,20 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
 
 template <class Metric>
 void SurfaceCollapse<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-  Star star;
-  Scope cells;
-  gather_scope(mesh, plan.seed.vertex, star, cells);
+  Cluster cluster;
+  gather_cluster(mesh, plan.seed.vertex, cluster);
   out.clear();
   out.removed = plan.seed.vertex;
-  for (CellHandle c : cells) out.dead.push_back(c);
-  const std::size_t n_behind = cells.size() - static_cast<std::size_t>(star.size);
-  for (std::size_t i = 0; i < n_behind; ++i) out.born.push_back(mesh.cell(cells[i]).v);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) {
-    const auto f = mesh.halfface_vertices(halfface_of(star.cells[i], star.corners[i]));
+  out.n_dead_first = plan.n_dead_first;
+  out.n_born_first = plan.n_born_first;
+  for (std::size_t i = 0; i < cluster.cells.size(); ++i) {
+    const CellHandle c = cluster.cells[i];
+    out.dead.push_back(c);
+    if (cluster.corner[i] == 4) {
+      out.born.push_back(mesh.cell(c).v);
+      continue;
+    }
+    const auto f = mesh.halfface_vertices(halfface_of(c, cluster.corner[i]));
     if (!has(f, plan.onto)) out.born.push_back({f[0], f[1], f[2], plan.onto});
   }
 }

@@ -13,8 +13,8 @@
 namespace hfr {
 
 /// Surface vertex removal: collapses a vertex of the surface along the edge of the surface that makes the
-/// best cells of its star. Cells behind the star that a vertex would otherwise lose sight of belong to the
-/// scope and are born as they were.
+/// best cells of its star. A vertex of an interface takes the cells of both regions along, in one step. Cells
+/// behind the star that a vertex would otherwise lose sight of belong to the scope and are born as they were.
 template <class Metric>
 struct SurfaceCollapse {
   /// The vertex, and where its legal targets stand in `targets`; see SurfaceMesh::collapse_targets().

@@ -16,6 +16,7 @@
 
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
+#include "Surface/Periodic.hh"
 
 namespace hfr {
 namespace {
@@ -41,8 +42,6 @@ using OmFace = Om::FaceHandle;
 Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Of the mean edge length of the surface: how far it may go in free mode unless told otherwise.
-constexpr double kHausdorff = 0.1;
 /// Points of a triangle by which its distance is judged, beside its corners and the middles of its edges.
 constexpr std::array<std::array<double, 2>, 4> kInner = {
     {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
@@ -52,14 +51,19 @@ constexpr double kBetween = 0.7;
 constexpr double kNotBack = 0.1;
 /// Share of the volume beyond which a change in the same direction is refused.
 constexpr double kVolume = 5e-4;
+/// And of a region's, which no single change may pass, either.
+constexpr double kRegionVolume = 9e-4;
+constexpr std::uint32_t kNoOrbit = ~0U;
 
 struct FaceRecord {
   int patch = 0;
   bool locked = false;
-  bool inward = false;        // its label names it as seen from inside
-  HalfFaceHandle inside;      // where it was when last asked for
-  std::uint32_t facet = 0;    // flat mode
-  std::vector<Vec3> samples;  // of the input, free mode: points that were nearest to this face
+  bool interface = false;
+  bool inward = false;                   // its label names it as seen from inside
+  std::array<std::uint32_t, 2> sides{};  // places of its regions in Impl::regions; the second of interfaces
+  HalfFaceHandle inside;                 // where it was when last asked for
+  std::uint32_t facet = 0;               // flat mode
+  std::vector<Vec3> samples;             // of the input, free mode: points that were nearest to this face
 };
 
 /// Disjoint sets of corners.
@@ -103,8 +107,15 @@ struct SurfaceMesh::Impl {
   Vec3 origin;                                    // from which volumes are measured
   double six_volume = 0, area = 0;                // of the input
   double six_gain = 0;                            // of the volume since
-  bool alone = false;                             // there are no cells
-  bool is_open = false;                           // and the surface encloses nothing
+  struct Region {
+    double six_volume = 0, six_gain = 0;
+  };
+  std::vector<Region> regions;  // by ascending number
+  bool has_interfaces = false;
+  std::vector<std::vector<VertexHandle>> orbits;
+  std::vector<std::uint32_t> orbit_of;  // per vertex; empty without orbits
+  bool alone = false;                   // there are no cells
+  bool is_open = false;                 // and the surface encloses nothing
 
   bool flat() const { return options.mode != SurfaceMode::kFree; }
 
@@ -158,6 +169,8 @@ struct SurfaceMesh::Impl {
   void build(const Arrays& arrays, const surface::Features& features);
   void take_shape(const Arrays& arrays, const surface::Features& features);
   void begin(const Arrays& arrays, const SurfaceOptions& wanted);
+  /// The vertices of each orbit move together; not at all where they are of several kinds.
+  void bind(std::vector<std::vector<VertexHandle>> found);
 
   OmVertex add_vertex(VertexHandle v, Vec3 p) {
     const OmVertex w = om.add_vertex(eigen(p));
@@ -188,11 +201,27 @@ struct SurfaceMesh::Impl {
     }
     return t;
   }
-  double six_volume_of(const std::vector<OmFace>& some) const {
+  /// Adds what the faces bound to what has been gained, or takes it away: sign 1 or -1.
+  void account(const std::vector<OmFace>& some, double sign) {
     double sum = 0;
-    for (OmFace f : some) sum += surface::six_volume(corners(f), origin);
-    return sum;
+    for (OmFace f : some) {
+      const double volume = surface::six_volume(corners(f), origin);
+      const FaceRecord& of_f = record(f);
+      if (!of_f.interface) sum += volume;
+      if (regions.size() == 1) continue;
+      regions[of_f.sides[0]].six_gain += sign * volume;
+      if (of_f.interface) regions[of_f.sides[1]].six_gain -= sign * volume;
+    }
+    six_gain += sign * sum;
   }
+  /// True when a volume that has lost or gained much already would lose or gain more.
+  static bool is_too_much(const Region& region, double six_more, double share = kVolume) {
+    const double enough = share * std::abs(region.six_volume);
+    return std::abs(region.six_gain) > enough && region.six_gain * six_more > 0 &&
+           std::abs(six_more) > 1e-6 * enough;
+  }
+  bool keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_dead, std::span<const Triangle> dead,
+                     std::span<const Triangle> born) const;
   /// Every sample goes to the nearest of these faces.
   void share_samples(const std::vector<OmFace>& among, std::vector<Vec3> samples) {
     for (OmFace f : among) {
@@ -229,6 +258,13 @@ void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& fea
     corners_of.join(corner(0, 1), corner(1, 0));
   }
   first.resize(arrays.points.size());
+  std::set<int> all_regions;
+  for (std::size_t i = 0; i < n; ++i) {
+    all_regions.insert(arrays.regions[i][0]);
+    if (arrays.interface[i]) all_regions.insert(arrays.regions[i][1]);
+  }
+  const std::vector<int> numbers(all_regions.begin(), all_regions.end());
+  regions.resize(std::max<std::size_t>(numbers.size(), 1));
   std::vector<OmVertex> sheet(3 * n);
   // A pair of vertices may be joined by several edges that meet no face in common; OpenMesh would take them
   // for one.
@@ -254,6 +290,11 @@ void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& fea
     FaceRecord& record_of_f = record(f);
     record_of_f.patch = arrays.patch[i];
     record_of_f.locked = arrays.locked[i] != 0;
+    record_of_f.interface = arrays.interface[i] != 0;
+    has_interfaces = has_interfaces || record_of_f.interface;
+    for (std::size_t k = 0; k < 2; ++k)
+      record_of_f.sides[k] = static_cast<std::uint32_t>(
+          std::lower_bound(numbers.begin(), numbers.end(), arrays.regions[i][k]) - numbers.begin());
     record_of_f.inward = arrays.inward[i] != 0;
     record_of_f.inside = arrays.halffaces[i];
     if (!features.facet.empty()) record_of_f.facet = features.facet[i];
@@ -288,8 +329,11 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
       if (!done) faces[i].samples.push_back(t[k]);
       done = 1;
     }
+    const double volume = surface::six_volume(t, origin);
+    regions[faces[i].sides[0]].six_volume += volume;
+    if (arrays.interface[i]) regions[faces[i].sides[1]].six_volume -= volume;
     if (arrays.interface[i]) continue;
-    six_volume += surface::six_volume(t, origin);
+    six_volume += volume;
     area += 0.5 * norm(scaled_normal(t));
   }
   for (const surface::Edge& e : features.edges) {
@@ -303,7 +347,7 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
 
 void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted) {
   if (!flat()) {
-    detail = kHausdorff * surface::mean_edge(arrays);
+    detail = surface::default_distance(arrays);
     hausdorff = wanted.hausdorff.value_or(detail);
     detail = std::min(detail, hausdorff);
   }
@@ -332,7 +376,24 @@ SurfaceOptions checked(SurfaceOptions options) {
 SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy)
     : impl_(new Impl) {
   impl_->options = checked(options);
-  impl_->begin(surface::gather(mesh, impl_->options, policy), options);
+  const Arrays arrays = surface::gather(mesh, impl_->options, policy);
+  impl_->begin(arrays, options);
+  impl_->bind(surface::periodic_orbits(arrays, options));
+}
+
+void SurfaceMesh::Impl::bind(std::vector<std::vector<VertexHandle>> found) {
+  orbits = std::move(found);
+  if (!orbits.empty()) orbit_of.assign(freedom.size(), kNoOrbit);
+  for (std::uint32_t i = 0; i < orbits.size(); ++i) {
+    const SurfaceKind kind = freedom[orbits[i][0].idx()].kind;
+    const bool alike = std::all_of(orbits[i].begin(), orbits[i].end(),
+                                   [&](VertexHandle v) { return freedom[v.idx()].kind == kind; });
+    for (VertexHandle v : orbits[i]) {
+      orbit_of[v.idx()] = i;
+      const auto& p = om.point(first[v.idx()]);
+      if (!alike) freedom[v.idx()] = {SurfaceKind::kFixed, {p[0], p[1], p[2]}, {}};
+    }
+  }
 }
 
 SurfaceMesh::SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options) : impl_(new Impl) {
@@ -349,7 +410,7 @@ SurfaceMesh::~SurfaceMesh() = default;
 double SurfaceMesh::allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
   if (options.mode != SurfaceMode::kFree) return 0;
   if (options.hausdorff) return *options.hausdorff;
-  return kHausdorff * surface::mean_edge(surface::gather(mesh, options, policy));
+  return surface::default_distance(surface::gather(mesh, options, policy));
 }
 
 const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }
@@ -370,6 +431,13 @@ std::size_t SurfaceMesh::n_vertices(SurfaceKind kind) const {
 const Freedom& SurfaceMesh::freedom(VertexHandle v) const {
   static const Freedom kInner;
   return v.idx() < impl_->freedom.size() ? impl_->freedom[v.idx()] : kInner;
+}
+
+bool SurfaceMesh::has_interfaces() const { return impl_->has_interfaces; }
+
+std::span<const VertexHandle> SurfaceMesh::orbit(VertexHandle v) const {
+  if (v.idx() >= impl_->orbit_of.size() || impl_->orbit_of[v.idx()] == kNoOrbit) return {};
+  return impl_->orbits[impl_->orbit_of[v.idx()]];
 }
 
 bool SurfaceMesh::is_feature(VertexHandle a, VertexHandle b) const {
@@ -451,7 +519,9 @@ bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
     if (!impl_->alone || !impl_->has_one_sheet(a) || !impl_->has_one_sheet(b)) return false;
   }
   for (OmHalfedge side : {h, om.opposite_halfedge_handle(h)})
-    if (!om.is_boundary(side) && impl_->record(om.face_handle(side)).locked) return false;
+    if (!om.is_boundary(side) &&
+        (impl_->record(om.face_handle(side)).locked || impl_->record(om.face_handle(side)).interface))
+      return false;
   return true;
 }
 
@@ -495,15 +565,7 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   }
   if (impl_->flat()) return true;
 
-  double six_gain = 0;
-  if (!impl_->is_open)
-    for (const Triangle& t : born) six_gain += surface::six_volume(t, dead[0][0]);
-  if (!impl_->is_open)
-    for (const Triangle& t : dead) six_gain -= surface::six_volume(t, dead[0][0]);
-  const double enough = kVolume * std::abs(impl_->six_volume);
-  if (std::abs(impl_->six_gain) > enough && impl_->six_gain * six_gain > 0 &&
-      std::abs(six_gain) > 1e-6 * enough)
-    return false;
+  if (!impl_->keeps_regions(faces_dead, dead, born)) return false;
 
   const InputSurface& shape = *impl_->shape;
   const double h = kBetween * impl_->hausdorff;
@@ -549,6 +611,45 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   return true;
 }
 
+/// Dead and born triangles correspond one to one where they bound different regions.
+bool SurfaceMesh::Impl::keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_dead,
+                                      std::span<const Triangle> dead, std::span<const Triangle> born) const {
+  if (is_open || dead.empty()) return true;
+  if (regions.size() == 1) {
+    double change = 0;
+    for (const Triangle& t : born) change += surface::six_volume(t, dead[0][0]);
+    for (const Triangle& t : dead) change -= surface::six_volume(t, dead[0][0]);
+    return !is_too_much({six_volume, six_gain}, change);
+  }
+  double outer = 0;
+  std::vector<std::pair<std::uint32_t, double>> of_region;
+  const auto add = [&](const Triangle& t, const std::array<VertexHandle, 3>& like, double sign) {
+    const OmFace f = find(like);
+    if (!f.is_valid()) return;
+    const FaceRecord& of_f = record(f);
+    const double volume = sign * surface::six_volume(t, dead[0][0]);
+    of_region.emplace_back(of_f.sides[0], volume);
+    if (of_f.interface)
+      of_region.emplace_back(of_f.sides[1], -volume);
+    else
+      outer += volume;
+  };
+  for (std::size_t i = 0; i < dead.size(); ++i) add(dead[i], faces_dead[i], -1);
+  for (std::size_t i = 0; i < born.size(); ++i)
+    add(born[i], faces_dead[born.size() == dead.size() ? i : 0], 1);
+  if (is_too_much({six_volume, six_gain}, outer)) return false;
+  std::sort(of_region.begin(), of_region.end());
+  for (std::size_t i = 0; i < of_region.size();) {
+    const std::uint32_t region = of_region[i].first;
+    double change = 0;
+    for (; i < of_region.size() && of_region[i].first == region; ++i) change += of_region[i].second;
+    // Of a small region a single change may be a large share.
+    const Region after{regions[region].six_volume, regions[region].six_gain + change};
+    if (is_too_much(regions[region], change) || is_too_much(after, change, kRegionVolume)) return false;
+  }
+  return true;
+}
+
 double SurfaceMesh::volume_gain() const {
   return impl_->six_volume != 0 && !impl_->is_open ? impl_->six_gain / impl_->six_volume : 0.0;
 }
@@ -568,9 +669,9 @@ void SurfaceMesh::moved(VertexHandle v, Vec3 x) {
   impl_->for_sheets(v, [&](OmVertex w) {
     if (impl_->om.point(w) == place) return;
     const std::vector<OmFace> round = impl_->faces_round(w);
-    impl_->six_gain -= impl_->six_volume_of(round);
+    impl_->account(round, -1);
     impl_->om.set_point(w, place);
-    impl_->six_gain += impl_->six_volume_of(round);
+    impl_->account(round, 1);
     if (!impl_->flat()) impl_->share_samples(round, {});
   });
 }
@@ -581,9 +682,9 @@ void SurfaceMesh::swapped(VertexHandle a, VertexHandle b) {
   HFR_ASSERT(h.is_valid() && om.is_flip_ok(om.edge_handle(h)));
   const std::vector<OmFace> both = {om.face_handle(h), om.face_handle(om.opposite_halfedge_handle(h))};
   for (OmFace f : both) impl_->note_gone(f);
-  impl_->six_gain -= impl_->six_volume_of(both);
+  impl_->account(both, -1);
   om.flip(om.edge_handle(h));
-  impl_->six_gain += impl_->six_volume_of(both);
+  impl_->account(both, 1);
   for (OmFace f : both) impl_->note_fresh(f);
   if (!impl_->flat()) impl_->share_samples(both, {});
 }
@@ -607,7 +708,7 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
   }
   std::vector<Vec3> samples;
   std::vector<OmFace> old = impl_->faces_round(from);
-  impl_->six_gain -= impl_->six_volume_of(old);
+  impl_->account(old, -1);
   for (OmFace f : old) {
     impl_->note_gone(f);
     auto& of_f = impl_->record(f).samples;
@@ -616,7 +717,7 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
   }
   om.collapse(h);
   std::erase_if(old, [&](OmFace f) { return om.status(f).deleted(); });
-  impl_->six_gain += impl_->six_volume_of(old);
+  impl_->account(old, 1);
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const OmHalfedge side = om.find_halfedge(to, sides[i]);
     om.status(om.edge_handle(side)).set_feature(is_feature[i] != 0);
@@ -650,7 +751,7 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
     if (impl_->flat() && impl_->freedom[v.idx()].kind == freedom.kind) freedom = impl_->freedom[v.idx()];
 
   for (OmFace f : halves) impl_->note_gone(f);
-  impl_->six_gain -= impl_->six_volume_of(halves);
+  impl_->account(halves, -1);
   std::vector<FaceRecord> was;
   std::vector<Vec3> samples;
   for (OmFace f : halves) {
@@ -661,7 +762,6 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
   om.split_edge(e, m);
   impl_->faces.resize(om.n_faces());
   const std::vector<OmFace> round = impl_->faces_round(m);
-  impl_->six_gain += impl_->six_volume_of(round);
   for (OmFace f : round) {
     const auto v = impl_->vertices(f);
     const bool first = v[0] == apex || v[1] == apex || v[2] == apex;
@@ -669,6 +769,7 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
     impl_->record(f).samples.clear();
     impl_->note_fresh(f);
   }
+  impl_->account(round, 1);
   for (auto it = om.cvoh_iter(m); it.is_valid(); ++it) {
     const OmVertex to = om.to_vertex_handle(*it);
     om.status(om.edge_handle(*it)).set_feature(feature && (to == ends[0] || to == ends[1]));

@@ -41,7 +41,8 @@ using Triangle = std::array<Vec3, 3>;
 /// change at a time, in the order of rank.
 class SurfaceMesh {
  public:
-  /// Takes the surface as it is now as the shape to keep. Throws InvalidInput for options out of range.
+  /// Takes the surface as it is now as the shape to keep. Throws InvalidInput for options out of range, and
+  /// for periodic patches that do not match.
   SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
   /// A surface without cells. What speaks of a TetMesh or a half-face is of no use then.
   SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options);
@@ -61,6 +62,10 @@ class SurfaceMesh {
   std::size_t n_feature_edges() const;
   std::size_t n_vertices(SurfaceKind kind) const;
   const Freedom& freedom(VertexHandle v) const;
+  bool has_interfaces() const;
+  /// The vertices that move with v by the same step, itself included; none where it moves alone. See
+  /// SurfaceOptions::periodic.
+  std::span<const VertexHandle> orbit(VertexHandle v) const;
   bool is_feature(VertexHandle a, VertexHandle b) const;  ///< false when it is no edge of the surface
   /// The half-face of the volume that face number f (0 … n_faces()-1 at first; numbers of deleted faces stay
   /// unused) is the outside of; searched anew when cells have changed. Invalid for a deleted face.
@@ -82,9 +87,9 @@ class SurfaceMesh {
   // --- what is legal: topology by OpenMesh, features, labels, locks ---
   /// Has the edge from a to b two faces of one facet and label, and is nothing about it to be kept?
   bool is_inner(VertexHandle a, VertexHandle b) const;
-  /// May the edge from a to b be swapped? It must be an inner one.
+  /// May the edge from a to b be swapped? It must be an inner one, of the boundary or of an interface.
   bool may_swap(VertexHandle a, VertexHandle b) const;
-  /// May the edge from a to b be split?
+  /// May the edge from a to b be split? Not where an interface meets it.
   bool may_split(VertexHandle a, VertexHandle b) const;
   /// Appends the vertices onto which v may be collapsed. Not for several threads: OpenMesh tags vertices.
   void collapse_targets(VertexHandle v, std::vector<VertexHandle>& out);
@@ -93,7 +98,8 @@ class SurfaceMesh {
   /// Point of the shape that v may move to, nearest to x. In free mode only curves hold a vertex: one on a
   /// facet moves where keeps_shape() allows it.
   Vec3 project(VertexHandle v, Vec3 x) const;
-  /// What the enclosed volume has gained, as a share of it.
+  /// What the enclosed volume has gained, as a share of it. In free mode changes of a region's volume are
+  /// bounded, too, by the same share of that region.
   double volume_gain() const;
   /// By how far the whole surface would have to move outwards for the volume to be what it was; at most a
   /// tenth of hausdorff() either way.

@@ -23,11 +23,15 @@ struct SurfaceOptions {
   /// which it turns at all.
   double feature_angle = 40;
   /// Largest distance from the input surface and of it from the result, in the mesh's units. Default: a tenth
-  /// of the mean edge length of the surface. 0: only coplanar changes, as in flat mode.
+  /// of the mean edge length of the surface, but no more than 0.5 % of the diagonal of its bounding box. 0:
+  /// only coplanar changes, as in flat mode.
   std::optional<double> hausdorff;
   /// Degrees that a new triangle may be turned against the input beneath it.
   double normal_angle = 50;
-  /// What stays as it is beside what the mesh itself has fixed (TetMesh::set_fixed).
+  /// Pairs of patches that match by a translation: their vertices move together, by the same step, or not at
+  /// all, and their faces stay the same ones. Checked when the surface is made.
+  std::vector<std::array<int, 2>> periodic;
+  /// What stays as it is beside what the mesh itself has fixed (TetMesh::set_fixed, set_fixed_patch).
   std::vector<int> fixed_patches;
   std::vector<VertexHandle> fixed_vertices;
   std::vector<std::array<VertexHandle, 2>> fixed_edges;

@@ -28,12 +28,16 @@ struct Patch {
   FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
   FixedVector<Triangle, kMaxFaces> dead;
   FixedVector<std::uint8_t, kMaxFaces> corner;  // of the vertex
+  bool has_interface = false;
 
   /// False when there are too many faces.
   bool gather(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
     for (HalfFaceHandle h : link) {
       for (HalfFaceHandle g : mesh.cell_halffaces(cell_of(h))) {
-        if (g == h || !mesh.is_boundary(g)) continue;
+        if (g == h) continue;
+        const HalfFaceHandle m = mesh.opposite_halfface(g);  // an interface counts from the smaller region
+        if (m.is_valid() && !(mesh.region(cell_of(g)) < mesh.region(cell_of(m)))) continue;
+        has_interface = has_interface || m.is_valid();
         const auto f = mesh.halfface_vertices(g);
         if (faces.full()) return false;
         faces.push_back({f[0], f[2], f[1]});
@@ -81,7 +85,8 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
   if (!on_curve && surface->options().mode == SurfaceMode::kFree) axis = patch.normal();
   if (axis == Vec3{}) return std::nullopt;
   // In the plane normal to the axis the volume stays; a little outwards makes up for what swaps have cost.
-  const bool bulges = surface->options().mode == SurfaceMode::kFree && !on_curve && !patch.is_flat();
+  const bool bulges =
+      surface->options().mode == SurfaceMode::kFree && !on_curve && !patch.has_interface && !patch.is_flat();
   const Vec3 lift = bulges ? surface->outward() * axis : Vec3{};
 
   Move move;
@@ -149,7 +154,7 @@ std::optional<Move> SurfaceOffset::operator()(const TetMesh& mesh, VertexHandle 
   constexpr double kFarAbove = 1.1;  // the worst
   if (surface->freedom(v).kind != SurfaceKind::kFacet) return std::nullopt;
   Patch patch;
-  if (!patch.gather(mesh, v, link) || patch.is_flat()) return std::nullopt;
+  if (!patch.gather(mesh, v, link) || patch.has_interface || patch.is_flat()) return std::nullopt;
   Move move;
   move.old_worst = worst_of(link, quality);
   move.target = mesh.point(v) + surface->outward() * patch.normal();

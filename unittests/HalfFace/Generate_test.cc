@@ -264,6 +264,38 @@ TEST(Generate, CylinderKeepsItsSurfaceUnderTwist) {
   EXPECT_THROW(cylinder(1, 1, 1, 0), InvalidInput);
 }
 
+TEST(Generate, FandiskHasItsPlanesCylindersAndCorners) {
+  for (const double jitter : {0.0, 0.2}) {
+    const Arrays mesh = fandisk({3, 4, 2}, jitter, 3);
+    EXPECT_EQ(mesh.cells.size(), 6U * 3 * 4 * 2 * 3);
+    EXPECT_EQ(n_not_positive(mesh), 0U);
+    EXPECT_EQ(n_boundary_faces(mesh), 2U * (3 * 8 * 2 + 2 * (8 * 2 + 4 * 2) + 3 * (2 + 4 + 2)));
+    expect_conforming(mesh);
+    const double half = std::sqrt(0.5);
+    std::size_t n_step = 0, n_high = 0, n_outer = 0;
+    for (const Vec3& p : mesh.points) {
+      EXPECT_TRUE(p.x >= 0 && p.y >= 0 && p.z >= 0 && std::hypot(p.x, p.y) <= 2 * (1 + 1e-15));
+      EXPECT_LE(p.z, p.x >= p.y ? 1.3 - 0.15 * p.x : 0.5);
+      n_step += p.x == p.y && p.z >= 0.5;
+      n_high += p.z == 1.3 - 0.15 * p.x;
+      n_outer += std::abs(std::hypot(p.x, p.y) - 2) < 1e-15;
+    }
+    EXPECT_EQ(n_step, 4U * 3);
+    EXPECT_EQ(n_high, 4U * 5);
+    EXPECT_EQ(n_outer, 9U * 3 + 5U * 2);
+    for (const Vec3 corner : {Vec3{1, 0, 0}, Vec3{2, 0, 1}, Vec3{0, 2, 0.5}})
+      EXPECT_EQ(std::count(mesh.points.begin(), mesh.points.end(), corner), 1);
+    const auto on_step = [&](const Vec3& p) { return p.z == 0.5 && std::abs(p.x - half) < 1e-15; };
+    EXPECT_EQ(std::count_if(mesh.points.begin(), mesh.points.end(), on_step), 1);
+  }
+  // Two quarters of a ring of area 3π/4 in all; the high one ends at 1.3 - 0.15x.
+  const double low = 0.5 * 3 * std::numbers::pi / 8;
+  const double high = 1.3 * 3 * std::numbers::pi / 8 - 0.15 * 7.0 / 3 * std::sqrt(0.5);
+  EXPECT_NEAR(total_volume(fandisk({4, 24, 2})), low + high, 2e-3);
+  EXPECT_THROW(fandisk({2, 0, 2}), InvalidInput);
+  EXPECT_THROW(fandisk({2, 2, 2}, NAN), InvalidInput);
+}
+
 TEST(Generate, RandomNumbersAreThoseOfSplitmix64) {
   EXPECT_EQ(random_unit(0, 0), static_cast<double>(0xe220a8397b1dcdafULL >> 11) * 0x1p-53);
   for (std::uint64_t i = 0; i < 1000; ++i) {

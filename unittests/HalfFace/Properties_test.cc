@@ -240,6 +240,51 @@ TEST(CopyVertexData, GivesPropertiesAndNoConstraint) {
   EXPECT_FALSE(mesh.is_tagged(v));
 }
 
+TEST(Locks, OfEdgesFacesAndPatchesAreSetAndTakenBack) {
+  TetMesh mesh = test::kuhn_box(1);
+  EXPECT_TRUE(mesh.locks().empty());
+  const EdgeHandle e = *mesh.edges().begin();
+  const FaceHandle f = *mesh.boundary_faces().begin();
+  mesh.set_fixed(e);
+  mesh.set_fixed(f);
+  mesh.set_fixed_patch(3);
+  EXPECT_TRUE(mesh.is_fixed(e) && mesh.is_fixed(f) && mesh.is_fixed_patch(3));
+  EXPECT_EQ(std::ranges::count_if(mesh.edges(), [&](EdgeHandle x) { return mesh.is_fixed(x); }), 1);
+  EXPECT_EQ(std::ranges::count_if(mesh.faces(), [&](FaceHandle x) { return mesh.is_fixed(x); }), 1);
+  EXPECT_FALSE(mesh.is_fixed_patch(2));
+  for (VertexHandle v : mesh.vertices()) EXPECT_FALSE(mesh.is_fixed(v)) << "that is another lock";
+  mesh.set_fixed(e, false);
+  mesh.set_fixed(f, false);
+  mesh.set_fixed_patch(3, false);
+  EXPECT_TRUE(mesh.locks().empty());
+}
+
+TEST(Locks, FollowTheirVerticesAndGoWithTheirLastCell) {
+  TetMesh mesh = test::kuhn_box(2);
+  const CellHandle first = *mesh.cells().begin();
+  const CellHandle last(mesh.n_cells() - 1);
+  for (CellHandle c : {first, last}) {
+    for (FaceHandle f : mesh.cell_faces(c)) mesh.set_fixed(f);
+    for (EdgeHandle e : mesh.cell_edges(c)) mesh.set_fixed(e);
+  }
+  std::vector<Vec3> corners;
+  for (VertexHandle v : mesh.cell(last).v) corners.push_back(mesh.point(v));
+  mesh.delete_cell(first);
+  const std::size_t n_faces = mesh.locks().faces.size();
+  EXPECT_LT(n_faces, 8U) << "the faces on the boundary are gone";
+  EXPECT_GE(n_faces, 4U);
+  mesh.delete_vertex(VertexHandle(0));
+  const GarbageMap map = mesh.collect_garbage();
+  const CellHandle kept = map.cells[last.idx()];
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(mesh.point(mesh.cell(kept).v[k]), corners[k]);
+  for (FaceHandle f : mesh.cell_faces(kept)) EXPECT_TRUE(mesh.is_fixed(f));
+  for (EdgeHandle e : mesh.cell_edges(kept)) EXPECT_TRUE(mesh.is_fixed(e));
+  for (const auto& entry : mesh.locks().faces.entries())
+    EXPECT_TRUE(mesh.find_face(entry.vertices).is_valid());
+  for (const auto& entry : mesh.locks().edges.entries())
+    EXPECT_TRUE(mesh.find_edge(entry.vertices[0], entry.vertices[1]).is_valid());
+}
+
 TEST(CellStatus, BitsAreIndependent) {
   TetMesh mesh = test::kuhn_box(1);
   const CellHandle c(1);

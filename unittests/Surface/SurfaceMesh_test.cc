@@ -139,21 +139,31 @@ TEST(SurfaceMesh, WhatTheUserHasLockedStays) {
   EXPECT_EQ(kind_with([](SurfaceOptions&) {}), SurfaceKind::kFixed);
 }
 
-TEST(SurfaceMesh, InterfaceBelongsToTheSurfaceAndIsNeverSwapped) {
-  const TetMesh mesh = built(generate::two_region_box({4, 4, 4}));
+TEST(SurfaceMesh, InterfaceBelongsToTheSurfaceAndIsSwappedUnlessFixed) {
+  TetMesh mesh = built(generate::two_region_box({4, 4, 4}));
   const SurfaceMesh surface(mesh, flat());
   EXPECT_EQ(surface.n_faces(), 6U * 16 * 2 + 16 * 2);
   EXPECT_TRUE(surface.in_step(mesh));
   const VertexHandle inside = at(mesh, {0.5, 0.5, 0.5});
   EXPECT_EQ(surface.freedom(inside).kind, SurfaceKind::kFacet);
-  std::size_t n_edges = 0;
-  for (EdgeHandle e : mesh.edges()) {
-    const auto [a, b] = mesh.edge_vertices(e);
-    if (mesh.point(a).x != 0.5 || mesh.point(b).x != 0.5) continue;
-    ++n_edges;
-    EXPECT_FALSE(surface.may_swap(a, b));
-  }
-  EXPECT_GT(n_edges, 20U);
+  const auto n_swappable = [&](const SurfaceMesh& of) {
+    std::size_t n = 0;
+    for (EdgeHandle e : mesh.edges()) {
+      const auto [a, b] = mesh.edge_vertices(e);
+      if (mesh.point(a).x != 0.5 || mesh.point(b).x != 0.5) continue;
+      n += of.may_swap(a, b);
+      EXPECT_FALSE(of.may_split(a, b));
+      if (mesh.is_boundary(e)) {
+        EXPECT_FALSE(of.may_swap(a, b)) << "three faces meet there";
+      }
+    }
+    return n;
+  };
+  EXPECT_GE(n_swappable(surface), 16U) << "the diagonals";
+  for (FaceHandle f : mesh.faces())
+    if (std::ranges::all_of(mesh.face_vertices(f), [&](VertexHandle v) { return mesh.point(v).x == 0.5; }))
+      mesh.set_fixed(f);
+  EXPECT_EQ(n_swappable(SurfaceMesh(mesh, flat())), 0U);
 }
 
 TEST(SurfaceMesh, PinchedSurfacesAreTakenApart) {

@@ -273,7 +273,7 @@ TEST(SurfaceRuns, CylinderKeepsItsEndsAndRims) {
   EXPECT_LE(result.surface.hausdorff, 1.1 * result.surface.bound);
 }
 
-TEST(SurfaceRuns, PeriodicPatchesStayMatched) {
+TEST(SurfaceRuns, FixedPatchesStayMatched) {
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
     TetMesh mesh = labelled_box(5, 0.3, 8);
     // Both sides along x get the jitter of one of them, and so match.
@@ -303,12 +303,28 @@ TEST(SurfaceRuns, PeriodicPatchesStayMatched) {
     ASSERT_EQ(side(mesh, 0).size(), 50U);
     ASSERT_EQ(side(mesh, 0), side(mesh, 1));
     ImproveOptions options = with(mode);
-    options.surface.fixed_patches = {1, 2};  // what --periodic 1:2 comes to
+    options.surface.fixed_patches = {1, 2};
     const Result result = improve(mesh, options);
     EXPECT_GT(surface_changes(result), 10U);
     EXPECT_EQ(side(mesh, 0).size(), 50U);
     EXPECT_EQ(side(mesh, 0), side(mesh, 1)) << "torn apart";
   }
+}
+
+TEST(SurfaceRuns, CoarseningTakesVerticesOfTheSurfaceToo) {
+  const TetMesh input = jittered(8, 0.4, 3);
+  ImproveOptions options = with(SurfaceMode::kFlat);
+  options.raise_min_dihedral = true;
+  TetMesh kept = input;
+  const Result without = improve(kept, options);
+  TetMesh mesh = input;
+  options.coarsen = true;
+  const Result result = improve(mesh, options);
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_LT(result.after.cells, without.after.cells);
+  EXPECT_LT(result.surface.triangles_after, result.surface.triangles_before);
+  EXPECT_GT(result.after.min_dihedral.min, without.after.min_dihedral.min - 1);
+  EXPECT_NEAR(volume(mesh), 1, 1e-13);
 }
 
 TEST(SurfaceRuns, HausdorffOfZeroIsFlat) {

@@ -43,7 +43,7 @@ TEST(Commands, HelpNamesEverySubcommandAndOption) {
         "--compat", "--json", "--quiet", "--verbose", "--progress", "--dry-run"})
     EXPECT_THAT(improve.out, HasSubstr(option));
   for (const char* command : {"check", "stats", "convert", "generate", "generate cavity", "generate box",
-                              "generate ball", "generate cylinder"})
+                              "generate ball", "generate cylinder", "generate fandisk"})
     EXPECT_EQ(tool.run(std::string(command) + " --help").code, 0) << command;
 }
 
@@ -210,6 +210,16 @@ TEST(Commands, StatsComparesTwoMeshes) {
   EXPECT_THAT(outcome.out,
               AllOf(HasSubstr("ball.mesh"), HasSubstr("cylinder.mesh"), HasSubstr("540"), HasSubstr("216")));
   EXPECT_THAT(tool.run("stats -v ball.mesh").out, HasSubstr("dihedral angles of ball.mesh"));
+}
+
+TEST(Commands, GeneratesAFandisk) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate fandisk -o a.mesh").code, 0);
+  ASSERT_EQ(tool.run("generate fandisk --n 6 6 4 --jitter 0 -o b.mesh").code, 0);
+  EXPECT_EQ(hash_of(tool, "a.mesh"), hash_of(tool, "b.mesh"));
+  ASSERT_EQ(tool.run("generate fandisk --n 2 3 1 --jitter 0.1 --seed 4 -o c.mesh").code, 0);
+  EXPECT_THAT(tool.run("stats c.mesh").out, HasSubstr("108"));
+  EXPECT_EQ(tool.run("generate fandisk --n 2 3 0 -o d.mesh").code, 1);
 }
 
 TEST(Commands, ConvertThereAndBackGivesTheSameMesh) {

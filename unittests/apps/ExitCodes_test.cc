@@ -71,6 +71,27 @@ TEST(ExitCodes, OneForACommandLineThatIsWrong) {
   expect_failure(tool, "convert in.mesh out.vtu --variant morse", 1, "morse");
 }
 
+#ifdef HFR_HAS_SURFACE
+TEST(ExitCodes, OneForPeriodicPatchesThatDoNotMatch) {
+  Tool tool;
+  // A cell over each of two triangles that are labelled 1 and 2; one is moved by (0, 0, 3), the other turned.
+  const auto mesh_with = [](const char* last) {
+    return std::string(
+               "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n0 0 0 0\n1 0 0 0\n0 1 0 0\n"
+               "0.3 0.3 1 0\n0 0 3 0\n1 0 3 0\n") +
+           last +
+           " 3 0\n0.3 0.3 2 0\nTetrahedra\n2\n1 2 3 4 0\n5 7 6 8 0\nTriangles\n2\n1 3 2 1\n5 6 7 2\nEnd\n";
+  };
+  tool.write("in.mesh", mesh_with("0 1"));
+  EXPECT_EQ(tool.run("in.mesh -o out.mesh --surface flat --periodic 1:2").code, 0);
+  tool.write("other.mesh", mesh_with("0.1 1"));
+  expect_failure(tool, "other.mesh -o b.mesh --surface flat --periodic 1:2", 1,
+                 "periodic patches 1 and 2 do not match: ");
+  expect_failure(tool, "in.mesh -o b.mesh --surface flat --periodic 1:5", 1, "periodic patch 5 has no faces");
+  expect_failure(tool, "in.mesh -o b.mesh --surface flat --periodic 1", 1, "--periodic takes A:B");
+}
+#endif
+
 TEST(ExitCodes, OneForAnOutputThatCannotBeWritten) {
   Tool tool;
   tool.write("in.mesh", kTwoCells);

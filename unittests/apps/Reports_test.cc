@@ -165,5 +165,17 @@ TEST(Reports, FileNamesCannotSteerATerminal) {
   EXPECT_THAT(outcome.err, Not(HasSubstr("\033")));
 }
 
+TEST(Reports, CoarsenLeavesFewerCells) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 8 8 8 --jitter 0.3 -o in.mesh").code, 0);
+  const auto cells_with = [&](const std::string& option, bool coarsen) {
+    EXPECT_EQ(tool.run("in.mesh -o out.mesh --json r.json " + option).code, 0);
+    const json report = json::parse(tool.content("r.json"));
+    EXPECT_EQ(report["options"]["coarsen"], coarsen);
+    return report["after"]["cells"].get<int>();
+  };
+  EXPECT_LT(cells_with("--coarsen", true), cells_with("", false));
+}
+
 }  // namespace
 }  // namespace hfr::app::test

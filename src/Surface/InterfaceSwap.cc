@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// SurfaceSwap's search, once for each region.
+#include "Surface/InterfaceSwap.hh"
+
+#include <algorithm>
+#include <limits>
+
+#include "Operators/Klincsek.hh"
+#include "Operators/Metrics.hh"
+
+namespace hfr {
+namespace {
+
+/// The cells of one region round a→b, counter-clockwise: cell i lies between vertices i and i+1.
+struct Side {
+  int n_cells = 0;
+  RawArray<CellHandle, 32> cells;
+  RawArray<VertexHandle, 32> vertices;
+};
+
+struct TwoSides {
+  VertexHandle a, b;
+  std::array<Side, 2> sides;  // the smaller region first
+};
+
+/// False unless the cells go all the way round, lie in two regions that meet in two faces, and either region
+/// has two to kMaxSide of them.
+bool gather_sides(const TetMesh& mesh, EdgeHandle seed, TwoSides& out) {
+  const std::size_t local = seed.idx() % 6;
+  const CellHandle c(seed.idx() / 6);
+  out.a = mesh.cell(c).v[kEdgeCorners[local][0]];
+  out.b = mesh.cell(c).v[kEdgeCorners[local][1]];
+  Ring ring;
+  if (!mesh.gather_ring({c, kEdgeOpposite[local][0], kEdgeOpposite[local][1]}, ring) || !ring.closed)
+    return false;
+  const auto n = static_cast<std::size_t>(ring.size);
+  const auto region = [&](std::size_t i) { return mesh.region(ring.places[i % n].cell); };
+  std::size_t first = 0;
+  while (first < n && !(region(first + n - 1) > region(first))) ++first;
+  if (first == n) return false;
+  std::size_t at = first;
+  for (Side& side : out.sides) {
+    const int mine = region(at);
+    side.n_cells = 0;
+    for (; at < first + n && region(at) == mine; ++at) {
+      if (side.n_cells == 31) return false;
+      const RingPlace place = ring.places[at % n];
+      const auto i = static_cast<std::size_t>(side.n_cells++);
+      side.cells[i] = place.cell;
+      side.vertices[i] = mesh.cell(place.cell).v[place.p];
+      side.vertices[i + 1] = mesh.cell(place.cell).v[place.q];
+    }
+    if (side.n_cells < 2) return false;
+  }
+  return at == first + n;  // no third region, nor one that comes twice
+}
+
+}  // namespace
+
+template <class Metric>
+void InterfaceSwap<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
+  TwoSides two;
+  out.clear();
+  if (!gather_sides(mesh, seed, two)) return;
+  for (const Side& side : two.sides)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i) out.push_back(side.cells[i]);
+}
+
+template <class Metric>
+auto InterfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std::optional<Plan> {
+  TwoSides two;
+  if (!gather_sides(mesh, seed, two)) return std::nullopt;
+  Plan plan;
+  plan.old_worst = std::numeric_limits<double>::infinity();
+  for (const Side& side : two.sides)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i)
+      plan.old_worst = std::min(plan.old_worst, quality[side.cells[i].idx()]);
+  plan.new_worst = std::numeric_limits<double>::infinity();
+  const Vec3 a = mesh.point(two.a);
+  const Vec3 b = mesh.point(two.b);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Side& side = two.sides[s];
+    RawArray<Vec3, 32> p;
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(side.n_cells); ++i)
+      p[i] = mesh.point(side.vertices[i]);
+    RingTriangulation table(side.n_cells + 1);
+    const double worst = table.solve(plan.old_worst, [&](int i, int k, int j, double floor) {
+      const Vec3 x = p[static_cast<std::size_t>(i)];
+      const Vec3 y = p[static_cast<std::size_t>(k)];
+      const Vec3 z = p[static_cast<std::size_t>(j)];
+      const double upper = metric(x, y, z, b);
+      return upper > floor ? std::min(upper, metric(y, x, z, a)) : upper;
+    });
+    if (!(worst > plan.old_worst)) return std::nullopt;
+    table.preorder(plan.apex[s].data());
+    plan.new_worst = std::min(plan.new_worst, worst);
+  }
+  const Side& inner = two.sides[0];  // interface faces are seen from the larger region
+  const auto n = static_cast<std::size_t>(inner.n_cells);
+  const VertexHandle p = inner.vertices[0];
+  const VertexHandle q = inner.vertices[n];
+  const Vec3 at_p = mesh.point(p);
+  const Vec3 at_q = mesh.point(q);
+  const std::array<std::array<VertexHandle, 3>, 2> faces = {{{two.b, two.a, p}, {two.a, two.b, q}}};
+  const std::array<Triangle, 2> dead = {{{b, a, at_p}, {a, b, at_q}}};
+  const std::array<Triangle, 2> born = {{{at_q, at_p, b}, {at_p, at_q, a}}};
+  if (!surface->keeps_shape(faces, dead, born)) return std::nullopt;
+  plan.seed = seed;
+  plan.edge = {two.a, two.b};
+  plan.n_dead_first = static_cast<std::uint16_t>(n);
+  plan.n_born_first = static_cast<std::uint16_t>(2 * (n - 1));
+  const auto m = static_cast<std::size_t>(two.sides[1].n_cells);
+  plan.n_dead = static_cast<std::uint32_t>(n + m);
+  plan.n_born = static_cast<std::uint32_t>(2 * (n + m - 2));
+  return plan;
+}
+
+template <class Metric>
+void InterfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  TwoSides two;
+  gather_sides(mesh, plan.seed, two);
+  out.clear();
+  out.n_dead_first = plan.n_dead_first;
+  out.n_born_first = plan.n_born_first;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Side& side = two.sides[s];
+    for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i)
+      out.dead.push_back(side.cells[i]);
+    for_triangles(0, side.n_cells, plan.apex[s].data(), [&](int i, int k, int j) {
+      const VertexHandle x = side.vertices[static_cast<std::size_t>(i)];
+      const VertexHandle y = side.vertices[static_cast<std::size_t>(k)];
+      const VertexHandle z = side.vertices[static_cast<std::size_t>(j)];
+      out.born.push_back({x, y, z, two.b});
+      out.born.push_back({y, x, z, two.a});
+    });
+  }
+}
+
+template <class Metric>
+Tet InterfaceSwap<Metric>::identity(const TetMesh& mesh, Seed seed) const {
+  const auto& ends = kEdgeCorners[seed.idx() % 6];
+  const Cell& cell = mesh.cell(CellHandle(seed.idx() / 6));
+  const VertexHandle a = cell.v[ends[0]];
+  const VertexHandle b = cell.v[ends[1]];
+  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+}
+
+HFR_INSTANTIATE_FOR_METRICS(InterfaceSwap)
+
+}  // namespace hfr
