@@ -242,6 +242,32 @@ TEST_P(OnDevice, VertexIsRemovedFromAStarOfUpTo256CellsAsOnTheHost) {
   }
 }
 
+TEST_P(OnDevice, OfEquallyGoodPlacesTheVertexGoesToThatOfTheHost) {
+  // Inside an octahedron, close to its surface: each corner as the apex makes four cells of the same shape.
+  const std::array<Vec3, 7> points = {Vec3{0, 0, 1},  Vec3{1, 0, 0}, Vec3{0.5, 0.25, 0.125}, Vec3{0, -1, 0},
+                                      Vec3{0, 0, -1}, Vec3{0, 1, 0}, Vec3{-1, 0, 0}};
+  constexpr std::array<std::array<Index, 3>, 8> kFaces = {
+      {{1, 5, 0}, {5, 6, 0}, {6, 3, 0}, {3, 1, 0}, {5, 1, 4}, {6, 5, 4}, {3, 6, 4}, {1, 3, 4}}};
+  for (std::size_t first = 0; first < kFaces.size(); ++first) {  // stars that begin with different cells
+    generate::Arrays arrays;
+    arrays.points.assign(points.begin(), points.end());
+    for (std::size_t i = 0; i < kFaces.size(); ++i) {
+      const auto& f = kFaces[(first + i) % kFaces.size()];
+      arrays.cells.push_back({f[0], f[2], f[1], 2});
+    }
+    Stand host(built(arrays));
+    Stand there = host;
+    ASSERT_GT(*std::min_element(host.work.quality.begin(), host.work.quality.end()), 0);
+    device_->upload(there.mesh, there.work);
+    ASSERT_EQ(round_on_host(host, DeviceMesh::Kind::kVertex, 1).winners, 1U);
+    device_->round(DeviceMesh::Kind::kVertex, {1, 0, 0}, 5, there.work.clock);
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    ASSERT_FALSE(HasFatalFailure()) << first;
+    EXPECT_EQ(host.mesh.cell(host.mesh.hook(VertexHandle(0))).v[3], VertexHandle(0));
+  }
+}
+
 TEST_P(OnDevice, RemovalsBeyondTheBoundOnCellsAreGivenUpAsOnTheHost) {
   Stand host(jittered_box(10, 0.27, 23));
   Stand there = host;
