@@ -5,7 +5,10 @@
 #include "Operators/VertexInsertion.hh"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
@@ -13,9 +16,10 @@
 namespace hfr {
 namespace {
 
-constexpr int kMaxDigs = 4;            // with a move of the new vertex after each
-constexpr int kAscent = 12;            // steps of one such move
-constexpr std::size_t kPatience = 12;  // cells dug without finding a better cavity
+constexpr int kMaxDigs = 4;                                     // with a move of the new vertex after each
+constexpr int kAscent = 12;                                     // steps of one such move
+constexpr std::array<double, 3> kAlongAxis = {0.15, 0.3, 0.5};  // places over a constrained face
+constexpr std::size_t kPatience = 12;                           // cells dug without finding a better cavity
 
 /// A cavity, the place of the new vertex, and what they would be worth.
 struct Site {
@@ -31,10 +35,36 @@ class Digger {
   Digger(const TetMesh& mesh, const Metric& metric, std::span<const double> quality, std::size_t max_cells)
       : mesh_(mesh), metric_(metric), quality_(quality), max_cells_(max_cells) {}
 
-  /// Digs from the cells given, moves the vertex, and digs on, until it brings no more. Nothing in
-  /// site.new_worst unless all its cells are positive.
-  Site search(GrownCells cells, Vec3 place) const {
-    Site best = dig(cells, place);
+  /// The best cavity on the way of digging behind the worst outer face until that is not possible.
+  /// site.new_worst is not positive unless all its cells are.
+  Site dig(GrownCells cells, Vec3 place) const {
+    Site best;
+    double old_worst = std::numeric_limits<double>::infinity();
+    for (CellHandle c : cells.cells()) old_worst = std::min(old_worst, quality_[c.idx()]);
+    std::size_t n_valued = 0;
+    for (std::size_t idle = 0; idle < kPatience; ++idle) {
+      for (std::size_t i = n_valued; i < cells.outer().size(); ++i)
+        cells.value(i) = value(cells.outer()[i], place);
+      HalfFaceHandle worst_face;
+      double worst = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < cells.outer().size(); ++i) {
+        if (!(cells.value(i) < worst)) continue;
+        worst = cells.value(i);
+        worst_face = cells.outer()[i];
+      }
+      if (worst > best.new_worst) {
+        best = {cells.growth(), place, old_worst, worst};
+        idle = 0;
+      }
+      if (cells.cells().size() >= max_cells_ || !worst_face.is_valid() || !cells.grow(worst_face)) break;
+      n_valued = cells.n_kept();
+      old_worst = std::min(old_worst, quality_[cells.cells()[cells.cells().size() - 1].idx()]);
+    }
+    return best;
+  }
+
+  /// Moves the vertex of what was dug, digs on from there, and so on until it brings no more.
+  Site follow_up(Site best) const {
     for (int i = 1; i < kMaxDigs && best.new_worst > 0; ++i) {
       const GrownCells now = replay(best.growth);
       MaxMinForm form(best.place, MaxMinForm::kAnglesOf<Metric>);
@@ -64,38 +94,41 @@ class Digger {
     return cells;
   }
 
-  /// The best cavity on the way of digging behind the worst outer face until that is not possible.
-  Site dig(GrownCells cells, Vec3 place) const {
-    Site best;
-    double old_worst = std::numeric_limits<double>::infinity();
-    for (CellHandle c : cells.cells()) old_worst = std::min(old_worst, quality_[c.idx()]);
-    std::size_t n_valued = 0;
-    for (std::size_t idle = 0; idle < kPatience; ++idle) {
-      for (std::size_t i = n_valued; i < cells.outer().size(); ++i)
-        cells.value(i) = value(cells.outer()[i], place);
-      HalfFaceHandle worst_face;
-      double worst = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < cells.outer().size(); ++i) {
-        if (!(cells.value(i) < worst)) continue;
-        worst = cells.value(i);
-        worst_face = cells.outer()[i];
-      }
-      if (worst > best.new_worst) {
-        best = {cells.growth(), place, old_worst, worst};
-        idle = 0;
-      }
-      if (cells.cells().size() >= max_cells_ || !worst_face.is_valid() || !cells.grow(worst_face)) break;
-      n_valued = cells.n_kept();
-      old_worst = std::min(old_worst, quality_[cells.cells()[cells.cells().size() - 1].idx()]);
-    }
-    return best;
-  }
-
   const TetMesh& mesh_;
   const Metric& metric_;
   std::span<const double> quality_;
   std::size_t max_cells_;
 };
+
+/// Places from which the cell on a triangle (corners in the order that a cell on it has) has a good smallest
+/// dihedral: the best one, and some between the shortest side and the corner across. Those are for needles,
+/// as a long face of the surface with one short side is: with short side s, at the share t of the way l to
+/// the tip and at height y, the angle at the short side is about y/(t l), that at the far edge (1-t) s/y,
+/// alike where y² = t(1-t) s l.
+template <class Metric>
+std::array<Vec3, 4> places_above(std::span<const Vec3> points, const std::array<VertexHandle, 3>& face) {
+  std::array<Vec3, 3> p;
+  for (std::size_t i = 0; i < 3; ++i) p[i] = points[face[i].idx()];
+  std::size_t first = 0;  // of the shortest side
+  const auto side2 = [&](std::size_t i) { return norm2(p[(i + 1) % 3] - p[i]); };
+  for (std::size_t i = 1; i < 3; ++i)
+    if (side2(i) < side2(first)) first = i;
+  const Vec3 middle = 0.5 * (p[first] + p[(first + 1) % 3]);
+  const Vec3 axis = p[(first + 2) % 3] - middle;
+  const double side = std::sqrt(side2(first));
+  const double length = norm(axis);
+  const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+  const double size = norm(normal);
+  const Vec3 up = size > 0 ? (1.0 / size) * normal : normal;
+  MaxMinForm form(middle, MaxMinForm::kAnglesOf<Metric>);
+  form.add(p[0], p[1], p[2]);
+  std::array<Vec3, 4> places = {form.ascend(middle + (0.8 * side) * up, kAscent)};
+  for (std::size_t i = 0; i < kAlongAxis.size(); ++i) {
+    const double t = kAlongAxis[i];
+    places[i + 1] = middle + t * axis + std::sqrt(t * (1 - t) * side * length) * up;
+  }
+  return places;
+}
 
 }  // namespace
 
@@ -107,11 +140,9 @@ void VertexInsertion<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope
 template <class Metric>
 auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
   const Digger<Metric> digger(mesh, metric, quality, std::min(max_cells, Growth::kMaxCells));
-  Site best;
+  FixedVector<Site, kMaxSites> sites;
   const auto try_from = [&](const GrownCells& cells, Vec3 place) {
-    const Site site = digger.search(cells, place);
-    if (site.new_worst > best.new_worst && site.new_worst > std::max(gain * site.old_worst, site.old_worst))
-      best = site;
+    sites.push_back(digger.dig(cells, place));
   };
   const Cell& cell = mesh.cell(seed.cell);
   const GrownCells alone(mesh, seed.cell);
@@ -137,6 +168,25 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
     }
     const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
     if (inside) try_from(ring, 0.5 * (at(ends[0]) + at(ends[1])));
+  }
+  for (int k = 0; k < 4; ++k) {
+    const HalfFaceHandle h = halfface_of(seed.cell, k);
+    if (mesh.is_constrained(h))
+      for (Vec3 place : places_above<Metric>(mesh.points(), mesh.halfface_vertices(h)))
+        try_from(alone, place);
+  }
+  std::array<std::uint8_t, kMaxSites> order;
+  const auto last = order.begin() + static_cast<std::ptrdiff_t>(sites.size());
+  std::iota(order.begin(), last, std::uint8_t{0});
+  std::sort(order.begin(), last, [&](std::uint8_t i, std::uint8_t j) {
+    return sites[i].new_worst != sites[j].new_worst ? sites[i].new_worst > sites[j].new_worst : i < j;
+  });
+  Site best;
+  for (std::size_t i = 0; i < std::min(max_sites, sites.size()); ++i) {
+    if (only_site >= 0 && i != static_cast<std::size_t>(only_site)) continue;
+    const Site site = digger.follow_up(sites[order[i]]);
+    const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
+    if (site.new_worst > best.new_worst && site.new_worst > least) best = site;
   }
   // Smaller inverted cells would look better in some metrics, and be cut again without end.
   if (!(best.new_worst > 0)) return std::nullopt;

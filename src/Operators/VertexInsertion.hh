@@ -12,13 +12,15 @@
 namespace hfr {
 
 /// A new vertex in or near a poor cell. From several places (the middles of the cell, of its inner faces and
-/// of its inner edges) a cavity is dug: always behind the outer face that makes the worst cell with the new
-/// vertex. The best cavity on the way is kept, the vertex moved to where the smallest dihedral of its cells
-/// is largest, and the digging goes on from there. Expensive, and it adds cells: for those few that nothing
-/// else mends. No face that is constrained vanishes, and no vertex.
+/// of its inner edges, and where a cell on one of its outer faces would be good) a cavity is dug: always
+/// behind the outer face that makes the worst cell with the new vertex. The best cavity on the way is kept,
+/// the vertex moved to where the smallest dihedral of its cells is largest, and the digging goes on from
+/// there. Expensive, and it adds cells: for those few that nothing else mends. No face that is constrained
+/// vanishes, and no vertex.
 template <class Metric>
 struct VertexInsertion {
   static constexpr double kSeedNanoseconds = 200'000;
+  static constexpr std::size_t kMaxSites = 1 + 4 + 6 + 16;
   /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
   struct Seed {
     CellHandle cell;
@@ -34,8 +36,12 @@ struct VertexInsertion {
 
   Metric metric;
   std::span<const double> quality;  ///< decision value per cell
-  double gain = 1.0;                ///< a new worst value must be more than this many times the old one
-  std::size_t max_cells = 48;       ///< of the cavity, at most Growth::kMaxCells
+  /// A new worst value must be more than this many times the old one. Less than 1: it may be worse by that
+  /// much, for callers that go on from there and take it back if nothing comes of it.
+  double gain = 1.0;
+  std::size_t max_sites = kMaxSites;  ///< first places that are followed up, the most promising ones
+  int only_site = -1;                 ///< not negative: only this one of them, counted by promise from 0
+  std::size_t max_cells = 48;         ///< of the cavity, at most Growth::kMaxCells
 
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;

@@ -27,6 +27,18 @@ constexpr int kMaxMissed = 4;
 constexpr double kClimbGain = 1.002;
 /// Nor left fewer than this share of the cells that were below the rung.
 constexpr double kFewer = 0.8;
+/// Where more than this share of the cells stays below so many degrees after the bulk stage, vertices are
+/// missing rather than badly connected, and are put in first.
+constexpr double kManyPoor = 0.08;
+constexpr double kRefineGoal = 30;
+/// What a new vertex must do there for sin² of the worst of its cells; the second where cells may be many.
+constexpr double kRefineGain = 1.6;
+constexpr double kRefineGainAtAnyCost = 1.3;
+/// Cells that raising the worst angle at any cost makes of 100 that the default run leaves, where the options
+/// do not say.
+constexpr std::size_t kMostAtAnyCost = 150;
+/// Of 100 cells that a run may make, those left to it when vertices are put in first.
+constexpr std::size_t kRefineOfHundred = 92;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -39,11 +51,18 @@ constexpr std::size_t kMostOfHundred = 119;
 
 ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
   if (options.coarsen && options.max_cells == 0) options.max_cells = n_cells;
-  if (options.raise_min_dihedral || options.compat != Compat::kNone ||
-      options.surface.mode != SurfaceMode::kFrozen)
+  if (options.compat != Compat::kNone || options.surface.mode != SurfaceMode::kFrozen ||
+      (options.raise_min_dihedral && options.coarsen))
     return options;
+  options.raise_min_dihedral = false;  // that comes after
   if (options.min_cells == 0 && !options.coarsen) options.min_cells = n_cells * kLeastOfHundred / 100;
   if (options.max_cells == 0) options.max_cells = n_cells * kMostOfHundred / 100;
+  return options;
+}
+
+/// The rest is for the worst cells, which come after.
+ImproveOptions with_room_left(ImproveOptions options) {
+  options.max_cells = options.max_cells * kRefineOfHundred / 100;
   return options;
 }
 
@@ -70,11 +89,18 @@ void validate(const ImproveOptions& options) {
 /// Raises the worst dihedrals rung by rung; one that is missed is no reason to stop, because what holds a
 /// cell below it may give way on the next. `floor` is where it stood before: the bulk stage, which knows only
 /// volume-length, may have lowered it.
-void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor) {
+void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor,
+           const PatchEffort& effort) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
   double now = smallest();  // a pass over the mesh: only after what may have changed it
   if (now < floor) {
     polish(mesh, work, options, control, floor);
+    now = smallest();
+  }
+  const auto n_poor = static_cast<double>(n_below(mesh, kRefineGoal, options.policy));
+  if (!control.surface() && now < kRefineGoal &&
+      n_poor > kManyPoor * static_cast<double>(mesh.n_logical_cells())) {
+    refine(mesh, work, with_room_left(options), control, kRefineGoal, kRefineGain);
     now = smallest();
   }
   double below = 0;  // the last rung that was worked for
@@ -91,8 +117,13 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   for (double rung : kLadder) {
     if ((rung > kReliefRung && !options.coarsen) || control.stopped()) return;
     if (now >= rung) continue;
-    if (!relieve(mesh, work, options, control, rung)) return;
-    now = smallest();
+    for (double before = 0; now < rung && now > kClimbGain * before && !control.stopped();) {
+      before = now;
+      relieve(mesh, work, options, control, few_below(mesh, rung, options.policy));
+      now = smallest();
+    }
+    if (now < rung && search_patches(mesh, work, options, control, rung, effort)) now = smallest();
+    if (now < rung) return;
   }
 }
 
@@ -121,6 +152,13 @@ bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const 
 void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
                           RunControl& control) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
+  const auto mend_last = [&] {
+    for (const PatchEffort& effort : kAllEfforts)
+      search_patches(mesh, work, options, control, kFullLadder.back(), effort);
+  };
+  mend_last();
+  if (!control.surface() && !options.coarsen && smallest() < kRefineGoal)
+    refine(mesh, work, options, control, kRefineGoal, kRefineGainAtAnyCost);
   for (double at_start = 0; smallest() > at_start * kClimbGain && !control.stopped();) {
     at_start = smallest();
     int n_missed = 0;
@@ -136,6 +174,7 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
       n_missed = fewer || smallest() > now * kClimbGain ? 0 : n_missed + 1;
     }
   }
+  mend_last();
 }
 
 /// True when every cell is known to meet the goal.
@@ -158,8 +197,16 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   if (options.coarsen) coarsen(mesh, work, options, control);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
-  climb(mesh, work, options, control, floor);
-  if (options.raise_min_dihedral) climb_while_it_helps(mesh, work, options, control);
+  climb(mesh, work, options, control, floor, as_asked.raise_min_dihedral ? kAllEfforts[0] : kLittleEffort);
+  if (as_asked.raise_min_dihedral) {
+    control.forget_cell_bound();
+    ImproveOptions further = options;
+    if (!options.raise_min_dihedral) {  // the bounds were those of the default run
+      further = as_asked;
+      if (further.max_cells == 0) further.max_cells = mesh.n_logical_cells() * kMostAtAnyCost / 100;
+    }
+    climb_while_it_helps(mesh, work, further, control);
+  }
   return false;
 }
 

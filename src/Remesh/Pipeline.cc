@@ -46,6 +46,11 @@ constexpr std::size_t kFewToRelieve = 12;
 constexpr int kReliefIterations = 4;
 constexpr double kLargestRelief = 60;  // degrees
 
+// Vertices are put in when an iteration leaves more than this share of the poor cells, and no more once
+// fewer than one in so many of these got one.
+constexpr double kRefineFewer = 0.98;
+constexpr std::size_t kRefineLittle = 50;
+
 /// Up to how many poor cells an expensive operator is worth it.
 struct Few {
   std::size_t to_dig = 0;
@@ -237,6 +242,39 @@ void coarsen(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   if (!control.surface() || options.surface.mode != SurfaceMode::kFree) return;
   Stage<MinSine2>(mesh, work, options, control, MinSine2{}, "volume").restore_volume();
+}
+
+void refine(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
+            double gain) {
+  const Focus focus{dihedral_decision(goal)};
+  Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "refine");
+  std::size_t n_poor = stage.n_below(focus.below);
+  for (int i = 1; i <= kMaxPolishIterations && n_poor > 0 && !control.stopped(); ++i) {
+    stage.iterate(i, focus, false);
+    const std::size_t n_left = stage.n_below(focus.below);
+    const bool helps = static_cast<double>(n_left) < kRefineFewer * static_cast<double>(n_poor);
+    n_poor = n_left;
+    if (helps) continue;
+    if (!has(options.ops, Ops::kInsert) || stage.insert_pass(i, focus, gain) * kRefineLittle <= n_poor)
+      return;
+  }
+}
+
+std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,
+                                          par::Policy policy) {
+  std::vector<std::pair<double, CellHandle>> ranked;
+  for (CellHandle c : cells_below(mesh, degrees, policy)) ranked.emplace_back(min_dihedral_of(mesh, c), c);
+  const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(std::min(n, ranked.size()));
+  std::partial_sort(ranked.begin(), end, ranked.end());
+  std::vector<CellHandle> cells;
+  for (auto at = ranked.begin(); at != end; ++at) cells.push_back(at->second);
+  return cells;
+}
+
+double few_below(const TetMesh& mesh, double degrees, par::Policy policy) {
+  const auto worst = worst_cells_below(mesh, degrees, kFewToRelieve + 1, policy);
+  if (worst.size() <= kFewToRelieve) return degrees;
+  return report_value(Metric::kMinDihedral, min_dihedral_of(mesh, worst.back()));
 }
 
 bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,

@@ -2,6 +2,8 @@
 #ifndef HFR_REMESH_PIPELINE_HH
 #define HFR_REMESH_PIPELINE_HH
 
+#include <array>
+
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/RunControl.hh"
@@ -36,6 +38,32 @@ void coarsen(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 /// cells miss the goal.
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share = 1);
+/// Puts vertices in where cells are below `goal` degrees and a new one raises sin² of the worst cell of its
+/// cavity by the factor `gain`, until that does not help many of them any more. Removes none.
+void refine(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
+            double gain);
+/// At most so many cells below so many degrees, the worst first.
+std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,
+                                          par::Policy policy);
+/// Degrees below which there are only as many cells as relieve() takes on, at most `degrees`.
+double few_below(const TetMesh& mesh, double degrees, par::Policy policy);
+/// How much search_patches() does.
+struct PatchEffort {
+  int layers;           ///< of cells round the worst one
+  std::size_t patches;  ///< at a time
+  int turns;            ///< at most
+  int tries;            ///< new vertices for one patch
+  double degrees;       ///< beyond the worst angle, that are worked for in a turn
+};
+constexpr PatchEffort kLittleEffort = {3, 4, 4, 8, 0.6};
+/// One after the other, where the worst angle is to be raised at any cost: what one cannot mend, another may.
+constexpr std::array<PatchEffort, 3> kAllEfforts = {
+    {{3, 8, 40, 20, 2}, {4, 8, 40, 20, 0.5}, {2, 8, 40, 20, 3}}};
+/// Tries new vertices for the worst cells below `goal` degrees, each on a copy of its surroundings that is
+/// improved and put back only if its worst cell has got better. For a mesh without invalid cells and with a
+/// frozen surface; does nothing elsewhere. True when the mesh has changed.
+bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                    double goal, const PatchEffort& effort);
 /// Works on the surroundings of the cells below `goal` degrees as if the goal were larger, and then on these
 /// cells again. Where there are more than a few, it does nothing. True when none are left.
 bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal);

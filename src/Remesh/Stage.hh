@@ -73,6 +73,7 @@ class Stage {
   void look_again() {
     to_host();
     looked_.fill(0);
+    waiting_.clear();
     looked_at_surface_.fill(0);
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
   }
@@ -88,8 +89,9 @@ class Stage {
   std::size_t multi_face_pass(int iteration, Focus focus);
   /// Cells in a row round an edge that stays, such as one of the surface, into one there.
   std::size_t fan_pass(int iteration, Focus focus);
-  /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass.
-  std::size_t insert_pass(int iteration, Focus focus);
+  /// A new vertex in a cavity that is dug round a poor cell: the most expensive pass. It must raise sin² (or
+  /// what else the metric decides by) of the worst cell of the cavity by the factor `gain`.
+  std::size_t insert_pass(int iteration, Focus focus, double gain = kLeastGain);
   /// All ways to connect the points round a poor cell: milliseconds a cell.
   std::size_t cluster_pass(int iteration, Focus focus);
   std::size_t smooth_pass(int iteration, Focus focus);
@@ -109,6 +111,8 @@ class Stage {
   void to_host();
 
  private:
+  /// Of a vertex that is inserted, or a cluster that is searched, at least.
+  static constexpr double kLeastGain = 1.02;
   enum Kind : std::uint8_t {
     kEdge,
     kFace,
@@ -159,6 +163,10 @@ class Stage {
 
   /// Vertices of the listed cells that an operator may take out.
   std::vector<VertexHandle> removable(const Worklist& list) const;
+
+  /// Of the listed cells and those that wait, the worst first, those that share no vertex with one before;
+  /// the others wait for the next round. Neighbours would dig the same cavity, and most of them lose.
+  std::vector<CellHandle> worst_apart(const Worklist& list, Focus focus);
 
   /// Rounds of one operator until they bring little, then a line in the report.
   template <class MakeOp, class RunRound>
@@ -212,6 +220,9 @@ class Stage {
   double poor_below_ = -std::numeric_limits<double>::infinity();
   std::array<std::uint32_t, kKinds> looked_{};
   std::array<std::uint32_t, 4> looked_at_surface_{};  // swap, collapse, smooth, split
+
+  std::vector<Index> waiting_;  // for their turn in insert_pass(), ascending
+  double insert_gain_ = 0;      // of the last insert_pass()
 
   struct DonePass {
     Kind kind;

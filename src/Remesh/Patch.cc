@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Patch.hh"
+
+#include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "HalfFace/TupleMap.hh"
+
+namespace hfr {
+namespace {
+
+/// The cells that share a vertex with the centre, and so on, in the order of discovery.
+std::vector<CellHandle> cells_within(const TetMesh& whole, CellHandle centre, int layers) {
+  std::vector<CellHandle> cells = {centre};
+  std::unordered_set<Index> has = {centre.idx()};
+  std::unordered_set<Index> asked;
+  Star star;
+  std::size_t first = 0;
+  for (int layer = 0; layer < layers; ++layer) {
+    const std::size_t end = cells.size();
+    for (std::size_t i = first; i < end; ++i) {
+      for (VertexHandle v : whole.cell(cells[i]).v) {
+        if (!asked.insert(v.idx()).second || !whole.gather_star(v, star)) continue;
+        for (int k = 0; k < star.size; ++k) {
+          const CellHandle c = star.cells[static_cast<std::size_t>(k)];
+          if (whole.region(c) == whole.region(centre) && has.insert(c.idx()).second) cells.push_back(c);
+        }
+      }
+    }
+    first = end;
+  }
+  return cells;
+}
+
+}  // namespace
+
+Patch::Patch(const TetMesh& whole, CellHandle centre, int layers)
+    : cells_(cells_within(whole, centre, layers)) {
+  std::unordered_map<VertexHandle, Index> local;
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 4>> tets;
+  for (CellHandle c : cells_) {
+    std::array<Index, 4>& tet = tets.emplace_back();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexHandle v = whole.cell(c).v[i];
+      const auto [at, is_new] = local.try_emplace(v, static_cast<Index>(vertices_.size()));
+      if (is_new) {
+        vertices_.push_back(v);
+        points.push_back(whole.point(v));
+      }
+      tet[i] = at->second;
+    }
+  }
+  mesh_ = build(std::move(points), tets);
+  copy_constraints(whole);
+}
+
+/// Fixed and labelled vertices stay what they are; an edge or a face that may not change is a labelled one
+/// here.
+void Patch::copy_constraints(const TetMesh& whole) {
+  Labels& labels = mesh_.labels();
+  if (!whole.labels().vertices.empty()) labels.vertices.resize(vertices_.size());
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    mesh_.set_fixed(VertexHandle(i), whole.is_fixed(vertices_[i]));
+    if (!labels.vertices.empty()) labels.vertices[i] = whole.labels().vertex(vertices_[i]);
+  }
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const auto& there = whole.cell(cells_[i]).v;
+    const auto& here = mesh_.cell(CellHandle(i)).v;  // in the same order: build() turns no positive cell
+    for (const auto& e : kEdgeCorners)
+      if (whole.is_labelled_edge(there[e[0]], there[e[1]]) ||
+          whole.locks().edges.find({there[e[0]], there[e[1]]}))
+        labels.edges.set({here[e[0]], here[e[1]]}, 1);
+    for (int k = 0; k < 4; ++k)
+      if (whole.is_constrained(halfface_of(cells_[i], k)))
+        labels.faces.set(mesh_.halfface_vertices(halfface_of(CellHandle(i), k)), 1);
+  }
+}
+
+void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
+  std::unordered_map<std::array<VertexHandle, 3>, HalfFaceHandle, TupleHash> behind;
+  const std::unordered_set<CellHandle> old(cells_.begin(), cells_.end());
+  for (CellHandle c : cells_) {
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(c, k);
+      const HalfFaceHandle m = whole.opposite_halfface(h);
+      if (!m.is_valid() || !old.contains(cell_of(m))) behind[AnyOrder::key(whole.halfface_vertices(h))] = m;
+    }
+  }
+  std::vector<VertexHandle> vertices = vertices_;
+  for (std::size_t i = 0; i < changed.n_vertices(); ++i) {
+    const VertexHandle local(i);
+    if (i < vertices_.size()) {
+      if (changed.is_deleted(local))
+        whole.mark_deleted(vertices[i]);
+      else
+        whole.set_point(vertices[i], changed.point(local));
+      continue;
+    }
+    vertices.push_back(VertexHandle());
+    if (changed.is_deleted(local)) continue;
+    const auto distance = [&](VertexHandle v) { return norm2(whole.point(v) - changed.point(local)); };
+    const VertexHandle nearest =
+        *std::min_element(vertices_.begin(), vertices_.end(),
+                          [&](VertexHandle a, VertexHandle b) { return distance(a) < distance(b); });
+    vertices.back() = whole.add_vertex(changed.point(local));
+    whole.copy_vertex_data(nearest, vertices.back());
+  }
+  // Slots: those of the cells that go, then free ones, then new ones.
+  std::vector<CellHandle> slots(changed.n_cells());
+  std::vector<CellHandle>& free = whole.free_cells();
+  std::size_t n_used = 0;
+  for (std::size_t i = 0; i < changed.n_cells(); ++i) {
+    if (changed.is_deleted(CellHandle(i))) continue;
+    if (n_used < cells_.size()) {
+      slots[i] = cells_[n_used++];
+      continue;
+    }
+    if (free.empty()) {
+      whole.resize_cells(whole.n_cells() + 1);
+      free.push_back(CellHandle(whole.n_cells() - 1));
+    }
+    slots[i] = free.back();
+    free.pop_back();
+    whole.copy_cell_data(cells_[0], slots[i]);
+  }
+  for (std::size_t i = n_used; i < cells_.size(); ++i) {
+    whole.mark_deleted(cells_[i]);
+    free.push_back(cells_[i]);
+  }
+  for (std::size_t i = 0; i < changed.n_cells(); ++i) {
+    const CellHandle local(i);
+    if (changed.is_deleted(local)) continue;
+    Cell& cell = whole.mutable_cell(slots[i]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      cell.v[k] = vertices[changed.cell(local).v[k].idx()];
+      whole.set_hook(cell.v[k], slots[i]);
+    }
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(slots[i], k);
+      const HalfFaceHandle m = changed.opposite_halfface(halfface_of(local, k));
+      if (m.is_valid()) {
+        whole.set_mate(h, halfface_of(slots[cell_of(m).idx()], static_cast<int>(m.idx() % 4)));
+        continue;
+      }
+      const HalfFaceHandle outside = behind.at(AnyOrder::key(whole.halfface_vertices(h)));
+      whole.set_mate(h, outside);
+      if (outside.is_valid()) whole.set_mate(outside, h);
+    }
+  }
+}
+
+}  // namespace hfr

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_PATCH_HH
+#define HFR_REMESH_PATCH_HH
+
+#include <span>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+/// Some cells of a mesh as a mesh of their own, to be tried on and put back if that has helped. Whatever
+/// faces the rest of the mesh, another region or the outside is its boundary, so that a run with a frozen
+/// surface leaves a patch that fits. Handles of vertices and cells follow the order in which vertices() and
+/// cells() name the whole's.
+class Patch {
+ public:
+  /// The cells within `layers` of cell `centre`, which comes first: those of its region that share a vertex
+  /// with it, those that share one with them, and so on. All of them must be positive.
+  Patch(const TetMesh& whole, CellHandle centre, int layers);
+
+  const TetMesh& mesh() const { return mesh_; }
+  const std::vector<CellHandle>& cells() const { return cells_; }
+  const std::vector<VertexHandle>& vertices() const { return vertices_; }
+
+  /// Writes `changed`, which became of mesh() without collection of garbage, in place of the cells. The whole
+  /// must not have changed there meanwhile; `work` must be attached again before it is used.
+  void put_back(TetMesh& whole, const TetMesh& changed) const;
+
+ private:
+  void copy_constraints(const TetMesh& whole);
+
+  std::vector<CellHandle> cells_;
+  std::vector<VertexHandle> vertices_;
+  TetMesh mesh_;
+};
+
+}  // namespace hfr
+
+#endif
