@@ -129,6 +129,48 @@ TEST(VertexInsertion, SliverAmongFrozenVerticesIsMended) {
   EXPECT_GT(worst_quality(mesh, MinSine2{}), 10 * before);
 }
 
+TEST(VertexInsertion, NeedlesOfTheSurfaceGetAnApexOfTheirOwn) {
+  // A needle whose apex stands over its middle; its best one is near the short side.
+  TetMesh mesh = build({{0, 0, 0}, {5, -0.15, 0}, {5, 0.15, 0}, {2.5, 0, 3}, {2.5, -3, 1}, {2.5, 3, 1}},
+                       std::vector<Corners>{{0, 1, 2, 3}, {0, 1, 3, 4}, {0, 2, 3, 5}});
+  ASSERT_EQ(check(mesh), Ok);
+  const auto quality = qualities(mesh, MinSine2{});
+  const auto plan = VertexInsertion<MinSine2>{{}, quality}.evaluate(mesh, Seed<MinSine2>(C(0)));
+  ASSERT_TRUE(plan);
+  EXPECT_GT(plan->new_worst, 2 * plan->old_worst);
+}
+
+TEST(VertexInsertion, FollowsUpTheSitesThatItIsToldAndMayLose) {
+  int lost = 0;
+  int differ = 0;
+  for (std::uint64_t s = 1; s <= 3; ++s) {
+    const TetMesh mesh = jittered(4, 0.2, s);
+    const auto quality = qualities(mesh, MinSine2{});
+    for (std::size_t i = 0; i < mesh.n_cells(); i += 17) {
+      VertexInsertion<MinSine2> op{{}, quality, 0.05};
+      double best = 0;
+      for (int site = 0; site < static_cast<int>(op.kMaxSites); ++site) {
+        op.only_site = site;
+        const auto plan = op.evaluate(mesh, Seed<MinSine2>(C(i)));
+        if (!plan) continue;
+        EXPECT_GT(plan->new_worst, 0.05 * plan->old_worst);
+        lost += plan->new_worst < plan->old_worst ? 1 : 0;
+        differ += best > 0 && plan->new_worst != best ? 1 : 0;
+        best = std::max(best, plan->new_worst);
+      }
+      op.only_site = -1;
+      const auto all = op.evaluate(mesh, Seed<MinSine2>(C(i)));
+      ASSERT_EQ(all.has_value(), best > 0);
+      if (all) EXPECT_EQ(all->new_worst, best);
+      op.max_sites = 1;
+      const auto first = op.evaluate(mesh, Seed<MinSine2>(C(i)));
+      if (first) EXPECT_LE(first->new_worst, best);
+    }
+  }
+  EXPECT_GT(lost, 50);
+  EXPECT_GT(differ, 50);
+}
+
 TEST(VertexInsertion, InterfacesAreNotDugThrough) {
   int accepted = 0;
   for (std::uint64_t s = 1; s <= 4; ++s) {

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Patch.hh"
+
+#include <gtest/gtest.h>
+
+#include "Operators/Metrics.hh"
+#include "Operators/Replace.hh"
+#include "Operators/VertexInsertion.hh"
+#include "Operators/VertexRemoval.hh"
+#include "Remesh/Meshes.hh"
+#include "Remesh/Pipeline.hh"
+
+namespace hfr::test {
+namespace {
+
+/// Places of the corners of every cell, which do not depend on handles.
+std::multiset<std::set<Place>> cells_by_place(const TetMesh& mesh) {
+  std::multiset<std::set<Place>> all;
+  for (CellHandle c : mesh.cells()) {
+    std::set<Place> corners;
+    for (VertexHandle v : mesh.cell(c).v) corners.insert(place_of(mesh, v));
+    all.insert(corners);
+  }
+  return all;
+}
+
+std::map<int, double> region_volumes(const TetMesh& mesh) {
+  std::map<int, double> volumes;
+  for (CellHandle c : mesh.cells()) {
+    const auto& v = mesh.cell(c).v;
+    const Vec3 o = mesh.point(v[0]);
+    volumes[mesh.region(c)] +=
+        dot(mesh.point(v[1]) - o, cross(mesh.point(v[2]) - o, mesh.point(v[3]) - o)) / 6;
+  }
+  return volumes;
+}
+
+TEST(Patch, HoldsTheCellsAroundAndTheirPoints) {
+  const TetMesh mesh = jittered(6, 0.2, 1);
+  const CellHandle centre = C(mesh.n_cells() / 2);
+  const Patch none(mesh, centre, 0);
+  ASSERT_EQ(none.cells(), std::vector<CellHandle>{centre});
+  const Patch patch(mesh, centre, 1);
+  std::set<VertexHandle> corners(mesh.cell(centre).v.begin(), mesh.cell(centre).v.end());
+  std::size_t n = 0;
+  for (CellHandle c : mesh.cells()) {
+    const auto& v = mesh.cell(c).v;
+    n += std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return corners.contains(u); }) ? 1 : 0;
+  }
+  EXPECT_EQ(patch.cells().size(), n);
+  EXPECT_EQ(check(patch.mesh()), Ok);
+  ASSERT_EQ(patch.mesh().n_cells(), n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_EQ(patch.vertices()[patch.mesh().cell(C(i)).v[k].idx()], mesh.cell(patch.cells()[i]).v[k]);
+}
+
+TEST(Patch, PutBackUnchangedIsTheSameMesh) {
+  TetMesh mesh = jittered(5, 0.2, 3);
+  const auto before = cells_by_place(mesh);
+  for (std::size_t i = 0; i < mesh.n_cells(); i += 101) {
+    const Patch patch(mesh, C(i), 2);
+    patch.put_back(mesh, patch.mesh());
+    ASSERT_EQ(check(mesh), Ok);
+  }
+  EXPECT_TRUE(cells_by_place(mesh) == before);
+}
+
+TEST(Patch, WhatCameWentAndMovedArrives) {
+  int came = 0;
+  int went = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = labelled_box(6, 0.2, s);
+    const double all = volume(mesh);
+    const auto boundary = boundary_of(mesh);
+    const auto faces = places_of(mesh, mesh.labels().faces);
+    const auto edges = places_of(mesh, mesh.labels().edges);
+    const auto volumes = region_volumes(mesh);
+    Engine engine(s);
+    for (int turn = 0; turn < 6; ++turn) {
+      CellHandle centre;
+      do centre = C(engine() % mesh.n_cells());
+      while (mesh.is_deleted(centre));
+      const Patch patch(mesh, centre, 2);
+      TetMesh changed = patch.mesh();
+      for (std::size_t i = 0; i < 40; ++i) {
+        const auto quality = qualities(changed, MinSine2{});
+        const auto frozen = frozen_vertices(changed);
+        const VertexHandle v = V(engine() % changed.n_vertices());
+        const CellHandle c = C(engine() % changed.n_cells());
+        if (!changed.is_deleted(v) && !frozen[v.idx()])
+          went += apply(VertexRemoval<MinSine2>{{}, quality, frozen}, changed, v) ? 1 : 0;
+        else if (!changed.is_deleted(c))
+          came += apply(VertexInsertion<MinSine2>{{}, quality}, changed, VertexInsertion<MinSine2>::Seed(c));
+      }
+      const std::size_t n_vertices = mesh.n_logical_vertices();
+      const std::size_t n_cells = mesh.n_logical_cells();
+      patch.put_back(mesh, changed);
+      EXPECT_EQ(mesh.n_logical_vertices() - n_vertices,
+                changed.n_logical_vertices() - patch.mesh().n_logical_vertices());
+      EXPECT_EQ(mesh.n_logical_cells() - n_cells, changed.n_logical_cells() - patch.cells().size());
+      ASSERT_EQ(check(mesh), Ok);
+    }
+    EXPECT_NEAR(volume(mesh), all, 1e-12);
+    for (const auto& [region, size] : region_volumes(mesh)) EXPECT_NEAR(size, volumes.at(region), 1e-12);
+    EXPECT_TRUE(boundary_of(mesh) == boundary);
+    mesh.collect_garbage();
+    EXPECT_EQ(check(mesh), Ok);
+    EXPECT_EQ(places_of(mesh, mesh.labels().faces), faces);
+    EXPECT_EQ(places_of(mesh, mesh.labels().edges), edges);
+  }
+  EXPECT_GT(came, 20);
+  EXPECT_GT(went, 20);
+}
+
+/// A box that went as far as the cheap operators take it.
+TetMesh poor_box(std::uint64_t seed) {
+  TetMesh mesh = jittered(5, 0.28, seed);
+  ImproveOptions options = serial();
+  options.ops = Ops::kEdge | Ops::kFace | Ops::kSmooth;
+  improve(mesh, options);
+  return mesh;
+}
+
+TEST(SearchPatches, RaisesTheWorstAndIsTheSameForAllThreads) {
+  int raised = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    const TetMesh first = poor_box(s);
+    const double before = smallest_dihedral(first, {});
+    ASSERT_GT(before, 0);
+    std::optional<TetMesh> alone;
+    for (const int threads : {1, 2, 3, 7}) {
+      TetMesh mesh = first;
+      ImproveOptions options;
+      options.policy = {threads, 1};
+      RunControl control(options);
+      Workspace work;
+      work.attach(mesh, {});
+      const bool changed = search_patches(mesh, work, options, control, 40, kLittleEffort);
+      EXPECT_EQ(check(mesh), Ok);
+      EXPECT_NEAR(volume(mesh), volume(first), 1e-12);
+      EXPECT_TRUE(boundary_of(mesh) == boundary_of(first));
+      ASSERT_EQ(control.passes().size(), 1U);
+      EXPECT_EQ(control.passes()[0].winners > 0, changed);
+      EXPECT_EQ(identical(mesh, first), !changed);
+      EXPECT_GE(smallest_dihedral(mesh, {}), before);
+      if (threads == 1) raised += smallest_dihedral(mesh, {}) > before ? 1 : 0;
+      if (!alone) alone = mesh;
+      EXPECT_TRUE(identical(mesh, *alone)) << threads << " threads";
+    }
+  }
+  EXPECT_GT(raised, 1);
+}
+
+TEST(SearchPatches, KeepsToTheBoundOnCellsAndSaysSo) {
+  int held = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    TetMesh mesh = poor_box(s);
+    ImproveOptions options = serial();
+    options.max_cells = mesh.n_logical_cells();
+    RunControl control(options);
+    Workspace work;
+    work.attach(mesh, {});
+    search_patches(mesh, work, options, control, 40, kLittleEffort);
+    EXPECT_LE(mesh.n_logical_cells(), options.max_cells);
+    held += control.met_cell_bound() ? 1 : 0;
+  }
+  EXPECT_GT(held, 0);
+}
+
+TEST(SearchPatches, LeavesAMeshWithInvalidCellsAlone) {
+  TetMesh mesh = small_cavity();
+  const TetMesh first = mesh;
+  ImproveOptions options = serial();
+  RunControl control(options);
+  Workspace work;
+  work.attach(mesh, {});
+  EXPECT_FALSE(search_patches(mesh, work, options, control, 40, kLittleEffort));
+  EXPECT_TRUE(identical(mesh, first));
+}
+
+}  // namespace
+}  // namespace hfr::test
