@@ -8,14 +8,11 @@
 namespace hfr {
 
 FeatureLabels label_features(TetMesh& mesh, SurfaceOptions options, par::Policy policy) {
-  constexpr double kDetail = 0.1;  // of the mean edge, as in SurfaceMesh
   if (options.mode == SurfaceMode::kFrozen) options.mode = SurfaceMode::kFree;
   surface::Features found;
   {
     const surface::Arrays arrays = surface::gather(mesh, options, policy);
-    double detail = kDetail * surface::mean_edge(arrays);
-    if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
-    found = surface::find_features(arrays, options, options.mode == SurfaceMode::kFree ? detail : 0);
+    found = surface::find_features(arrays, options, surface::allowed_distance(arrays, options));
   }
   FeatureLabels labels{.edge_label = 1, .corner_label = 1};
   Labels& all = mesh.labels();

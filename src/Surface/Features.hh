@@ -45,8 +45,11 @@ struct Features {
   std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
   std::vector<Freedom> freedom;      ///< per vertex of the volume
 };
-/// `detail`: what lies within a few times that length is too small to be a feature.
-Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail);
+/// `distance`: how far the surface may go in free mode; what turns only within a few times that is too small
+/// to be a feature.
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance);
+/// Largest distance from the input that the options allow; 0 but in free mode.
+double allowed_distance(const Arrays& arrays, const SurfaceOptions& options);
 /// Mean length of the triangles' edges; 0 without any.
 double mean_edge(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.

@@ -42,8 +42,8 @@ using OmFace = Om::FaceHandle;
 Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Of the mean edge length of the surface: how far it may go in free mode unless told otherwise.
-constexpr double kHausdorff = 0.1;
+/// Of the mean edge length of the surface: normals of triangles no larger say little.
+constexpr double kDetail = 0.1;
 /// How far apart the points of a triangle are by which its distance is judged, of the mean edge; and into how
 /// many pieces its edges are cut at least and at most.
 constexpr double kSpacing = 0.3;
@@ -352,11 +352,10 @@ void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted
   if (!flat()) {
     const double edge = surface::mean_edge(arrays);
     spacing = kSpacing * edge;
-    detail = kHausdorff * edge;
-    hausdorff = wanted.hausdorff.value_or(detail);
-    detail = std::min(detail, hausdorff);
+    hausdorff = surface::allowed_distance(arrays, wanted);
+    detail = std::min(kDetail * edge, hausdorff);
   }
-  surface::Features features = surface::find_features(arrays, options, detail);
+  surface::Features features = surface::find_features(arrays, options, hausdorff);
   build(arrays, features);
   if (!flat()) take_shape(arrays, features);
   freedom = std::move(features.freedom);
@@ -397,8 +396,7 @@ SurfaceMesh::~SurfaceMesh() = default;
 
 double SurfaceMesh::allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
   if (options.mode != SurfaceMode::kFree) return 0;
-  if (options.hausdorff) return *options.hausdorff;
-  return kHausdorff * surface::mean_edge(surface::gather(mesh, options, policy));
+  return surface::allowed_distance(surface::gather(mesh, options, policy), options);
 }
 
 const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }

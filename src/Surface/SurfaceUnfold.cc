@@ -185,7 +185,6 @@ std::vector<Triangle> triangles(const Arrays& arrays, std::span<const Vec3> poin
 /// The new points of the vertices, or nothing.
 std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptions& options,
                                         par::Policy policy, Unfolding& done) {
-  constexpr double kDefault = 0.1;  // of the mean edge, as in SurfaceMesh
   constexpr double kSpacing = 0.25;
   constexpr double kCoplanar = 1e-12;  // of the mean edge: what flat mode allows
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
@@ -212,7 +211,7 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
   const double edge = surface::mean_edge(arrays);
   const double bound = options.mode == SurfaceMode::kFlat
                            ? kCoplanar * edge
-                           : kShare * options.hausdorff.value_or(kDefault * edge);
+                           : kShare * surface::allowed_distance(arrays, options);
   const SurfaceDistance moved = surface_distance(before, triangles(arrays, best), kSpacing * edge, policy);
   if (!(moved.hausdorff() <= bound)) {
     done.n_left = done.n_folded;
