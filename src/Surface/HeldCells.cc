@@ -20,28 +20,41 @@ class View {
   View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy) {
     options.mode = mode;
     arrays_ = surface::gather(mesh, options, policy);
-    double detail = surface::default_distance(arrays_);
-    if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
-    features_ = surface::find_features(arrays_, options, mode == SurfaceMode::kFree ? detail : 0);
+    features_ = surface::find_features(arrays_, options, surface::allowed_distance(arrays_, options));
   }
 
   /// True when something of the cell's surface may change, and nothing that stays is too narrow for it.
   bool lets_change(const TetMesh& mesh, CellHandle c, double degrees) const {
+    return !has_narrow_feature(mesh, c, degrees) && may_change(mesh, c);
+  }
+  bool holds(const TetMesh& mesh, CellHandle c, double degrees) const {
     const auto& v = mesh.cell(c).v;
-    bool may_change = std::any_of(v.begin(), v.end(), [&](VertexHandle w) {
-      const SurfaceKind kind = features_.freedom[w.idx()].kind;
-      return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
+    const bool all_outside = std::all_of(v.begin(), v.end(), [&](VertexHandle w) {
+      return features_.freedom[w.idx()].kind != SurfaceKind::kInside;
     });
-    for (const auto& [i, j] : kEdgeCorners) {
-      const surface::Edge* e = edge(v[i], v[j]);
-      if (!e || !e->manifold) continue;
-      if (e->feature && angle_inside(*e) < degrees) return false;
-      may_change = may_change || (!e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]]);
-    }
-    return may_change;
+    return has_narrow_feature(mesh, c, degrees) || (all_outside && !may_change(mesh, c));
   }
 
  private:
+  bool may_change(const TetMesh& mesh, CellHandle c) const {
+    const auto& v = mesh.cell(c).v;
+    return std::any_of(v.begin(), v.end(),
+                       [&](VertexHandle w) {
+                         const SurfaceKind kind = features_.freedom[w.idx()].kind;
+                         return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
+                       }) ||
+           std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
+             const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
+             return e && e->manifold && !e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]];
+           });
+  }
+  bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees) const {
+    const auto& v = mesh.cell(c).v;
+    return std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
+      const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
+      return e && e->manifold && e->feature && angle_inside(*e) < degrees;
+    });
+  }
   const surface::Edge* edge(VertexHandle a, VertexHandle b) const {
     if (b < a) std::swap(a, b);
     const auto& edges = features_.edges;
@@ -81,6 +94,16 @@ std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> c
                     : free.lets_change(mesh, c, degrees) ? FreedBy::kFree
                                                          : FreedBy::kShape);
   return found;
+}
+
+std::vector<std::uint8_t> held_by_features(const TetMesh& mesh, std::span<const CellHandle> cells,
+                                           double degrees, const SurfaceOptions& options,
+                                           par::Policy policy) {
+  std::vector<std::uint8_t> held(cells.size(), 0);
+  if (cells.empty() || options.mode == SurfaceMode::kFrozen) return held;
+  const View view(mesh, options, options.mode, policy);
+  for (std::size_t i = 0; i < cells.size(); ++i) held[i] = view.holds(mesh, cells[i], degrees) ? 1 : 0;
+  return held;
 }
 
 }  // namespace hfr
