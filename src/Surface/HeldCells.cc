@@ -52,7 +52,9 @@ class View {
     const auto& v = mesh.cell(c).v;
     return std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
       const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
-      return e && e->manifold && e->feature && angle_inside(*e) < degrees;
+      if (!e || !e->manifold || !e->feature) return false;
+      const double inside = angle_inside(*e);
+      return (is_inside(mesh, c, *e) ? inside : 360 - inside) < degrees;
     });
   }
   const surface::Edge* edge(VertexHandle a, VertexHandle b) const {
@@ -64,6 +66,10 @@ class View {
                            return std::pair(e.a, e.b) < w;
                          });
     return at != edges.end() && at->a == a && at->b == b ? &*at : nullptr;
+  }
+  /// False for the cells of the larger region at an edge of an interface.
+  bool is_inside(const TetMesh& mesh, CellHandle c, const surface::Edge& e) const {
+    return !arrays_.interface[e.f[0]] || mesh.region(c) == arrays_.regions[e.f[0]][0];
   }
   /// Degrees between the two faces, through the inside: below 180 where the surface is convex.
   double angle_inside(const surface::Edge& e) const {
