@@ -3,7 +3,7 @@
 # Builds the tool, checks that the device gives the bits of the processor, and measures both: all in one call,
 # without a network where the packages are there. Prints Markdown; exit 1 where an output differs.
 # Usage: bench/device.sh [--device NAME] [--build FOLDER | --tool FILE] [--mesh FILE]... [--size N]...
-#                        [--cavity N] [--repeat N] [--out FILE]
+#                        [--cavity N] [--repeat N] [--with OPTION]... [--out FILE]
 #   --device NAME   as the tool's own; default opencl
 #   --build FOLDER  where to build; default build/device in the checkout
 #   --tool FILE     measure this one, and build nothing
@@ -11,6 +11,7 @@
 #   --size N        a generated box of 6*N*N*N cells; may be given more than once
 #   --cavity N      the paper's cavity with about N thousand cells
 #   --repeat N      runs of each kind, of which the quickest counts; default 3
+#   --with OPTION   an option of the tool for every run, such as --bulk-nodes; may be given more than once
 #   --out FILE      the tables go there as well
 # With no mesh named: on a GPU the cavity of 607,200 cells and boxes of 2 and 10 million (--cavity 607
 # --size 70 --size 119); on a CPU a tenth of that (--cavity 63 --size 32).
@@ -18,7 +19,7 @@
 # ICD file, the loader is given one that names libnvidia-opencl.so.1, in a folder of this script.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-device=opencl build=$root/build/device tool='' repeat=3 out=/dev/null cavity='' meshes=() sizes=()
+device=opencl build=$root/build/device tool='' repeat=3 out=/dev/null cavity='' meshes=() sizes=() options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --device) device=$2 ;;
@@ -28,8 +29,9 @@ while [ $# -gt 0 ]; do
     --size) sizes+=("$2") ;;
     --cavity) cavity=$2 ;;
     --repeat) repeat=$2 ;;
+    --with) options+=("$2") ;;
     --out) out=$2 ;;
-    *) sed -n '3,18s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    *) sed -n '3,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
   shift 2
 done
@@ -91,7 +93,7 @@ run() {
   shift 4
   for _ in $(seq "$n"); do
     code=0
-    "$tool" "$mesh" -o "$output" -q --json "$work/try.json" "$@" || code=$?
+    "$tool" "$mesh" -o "$output" -q --json "$work/try.json" "${options[@]}" "$@" || code=$?
     [ $code -le 4 ] || exit $code
     time=$("$root/bench/device_table.py" --microseconds "$work/try.json")
     if [ -z "$best" ] || [ "$time" -lt "$best" ]; then

@@ -14,6 +14,7 @@ import json
 import sys
 
 RING, STAR = 5, 23          # mean cells of an edge and of a vertex
+LINK = STAR // 2 + 2        # vertices of its link
 CELL, POINT, QUALITY = 32, 24, 8  # bytes
 DECISION = 72               # operations of one volume-length
 
@@ -42,15 +43,21 @@ def work(run):
     edges, faces = items(run, "edge", "seeds"), items(run, "face", "seeds")
     removed, swapped = items(run, "edge", "winners"), items(run, "face", "winners")
     vertices = items(run, "smooth", "seeds")
+    stars, collapsed = items(run, "node", "seeds"), items(run, "node", "winners")
     triangles = RING * (RING - 1) * (RING - 2) // 6
     born = 2 * (RING - 2)
     newton = 3 * STAR * (60 + 2 * 25) + STAR * (40 + DECISION)
     smooth = (vertices, STAR * (4 + CELL + 3 * POINT + QUALITY) + STAR * (QUALITY + 1 + 4 * 4),
               newton)
+    # Most apexes are refused by the second cell.
+    star = (stars, STAR * (CELL + QUALITY) + LINK * POINT, 2 * LINK * DECISION)
     return {
         "search_edges": (edges, RING * (CELL + QUALITY) + (RING + 2) * POINT,
                          triangles * 1.5 * DECISION),
         "search_faces": (faces, 2 * (CELL + QUALITY) + 5 * POINT, 1.3 * DECISION),
+        "search_all_stars": star,
+        "search_small_stars": star,
+        "commit_stars": (collapsed, 2 * STAR * CELL + 4 * 4 * STAR + 2 * 4 * STAR, 0),
         "smooth_all_stars": smooth,
         "smooth_small_stars": smooth,
         "list_cells": (None, QUALITY + 1 + 1, 2),

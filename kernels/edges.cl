@@ -70,104 +70,91 @@ static void append_edge(uint seed, uint n, const uint* ring, const uint* scope, 
   }
 }
 
-static uint in_one_region(const uint* scope, uint n, __global const uint* origin,
-                          __global const int* regions) {
-  uint one = 1;
-  for (uint k = 1; k < n; ++k) one &= regions[origin[scope[k]]] == regions[origin[scope[0]]];
-  return one;
+// Cells and vertices of the ring of an edge (6*cell + edge), as far as there is room for them, and the worst
+// of these cells. Returns the size of the ring; 0 when it is open, or when a smaller listed cell names the
+// edge.
+static uint walk_ring(uint seed, uint room, __global const cell_t* cells, __global const double* quality,
+                      __global const uchar* listed, uint* ring, uint* scope, double* old_worst) {
+  const uint c = seed / 6;
+  uint at = c;
+  uint corner_p = kEdgeOpposite[seed % 6][0];
+  uint corner_q = kEdgeOpposite[seed % 6][1];
+  uint n = 0;
+  *old_worst = HFR_INFINITY;
+  do {
+    if (at < c && listed[at]) return 0;
+    if (n < room) {
+      scope[n] = at;
+      ring[n] = cells[at].v[corner_p];
+      *old_worst = hfr_lesser(*old_worst, quality[at]);
+    }
+    ++n;
+    step_in_ring(cells, &at, &corner_p, &corner_q);
+  } while (at != INVALID && at != c);
+  return at == c ? n : 0;
+}
+
+// Appends the best triangulation of a ring, if it beats what is there. The arrays best and apex have
+// stride*stride items, p and triangles `stride`.
+static void search_ring(uint seed, uint n, const uint* ring, const uint* scope, double old_worst, int stride,
+                        double* best, uchar* apex, hfr_real3* p, uchar* triangles,
+                        __global const cell_t* cells, __global const double* points,
+                        __global const uint* origin, __global const int* regions, uint has_regions,
+                        ulong salt, SEARCH_ARGUMENTS) {
+  for (uint k = 0; k < n; ++k) p[k] = point_of(points, ring[k]);
+  const uint a = cells[seed / 6].v[kEdgeCorners[seed % 6][0]];
+  const uint b = cells[seed / 6].v[kEdgeCorners[seed % 6][1]];
+  const hfr_real3 point_a = point_of(points, a);
+  const hfr_real3 point_b = point_of(points, b);
+  double new_worst;
+  HFR_KLINCSEK((int)n, stride, best, apex, old_worst, TRIANGLE_WORST, new_worst);
+  if (!(new_worst > old_worst)) return;
+  if (has_regions && !in_one_region(scope, n, origin, regions)) return;
+  write_preorder((int)n, stride, apex, triangles);
+  append_edge(seed, n, ring, scope, a, b, triangles, old_worst, salt, SEARCH_VALUES);
 }
 
 // Inner edges of the listed cells, each from the smallest listed cell of its ring. Small rings are searched
-// at once, the others are noted for search_large_rings.
+// at once, the others are noted for search_large_rings, whose arrays would not fit the registers of a device.
 KERNEL void search_edges(__global const cell_t* cells, __global const double* points,
                          __global const double* quality, __global const uchar* listed,
                          __global const uint* list, __global const uint* origin, __global const int* regions,
                          uint has_regions, ulong salt, __global uint* large, SEARCH_ARGUMENTS) {
+  uint ring[HFR_SMALL_RING], scope[HFR_SMALL_RING];
+  double best[HFR_SMALL_RING * HFR_SMALL_RING];
+  uchar apex[HFR_SMALL_RING * HFR_SMALL_RING], triangles[HFR_SMALL_RING];
+  hfr_real3 p[HFR_SMALL_RING];
   uint n_seeds = 0;
   const uint n_items = 6 * counters[HFR_LISTED];
   FOR_EACH(item, n_items) {
-    const uint c = list[item / 6];
-    const uint edge = item % 6;
-    uint ring[HFR_SMALL_RING], scope[HFR_SMALL_RING];
-    uint at = c;
-    uint corner_p = kEdgeOpposite[edge][0];
-    uint corner_q = kEdgeOpposite[edge][1];
-    uint n = 0;
-    double old_worst = HFR_INFINITY;
-    do {
-      if (at < c && listed[at]) break;  // that cell names the edge
-      if (n < HFR_SMALL_RING) {
-        scope[n] = at;
-        ring[n] = cells[at].v[corner_p];
-        old_worst = hfr_lesser(old_worst, quality[at]);
-      }
-      ++n;
-      step_in_ring(cells, &at, &corner_p, &corner_q);
-    } while (at != INVALID && at != c);
-    if (at != c || n == 0) continue;
-    ++n_seeds;
-    if (n < 3) continue;
-    const uint seed = 6 * c + edge;
-    if (n > HFR_SMALL_RING) {
+    const uint seed = 6 * list[item / 6] + item % 6;
+    double old_worst;
+    const uint n = walk_ring(seed, HFR_SMALL_RING, cells, quality, listed, ring, scope, &old_worst);
+    n_seeds += n > 0;
+    if (n > HFR_SMALL_RING)
       large[atomic_inc(&counters[HFR_LARGE])] = seed;
-      continue;
-    }
-    double best[HFR_SMALL_RING * HFR_SMALL_RING];
-    uchar apex[HFR_SMALL_RING * HFR_SMALL_RING];
-    hfr_real3 p[HFR_SMALL_RING];
-    for (uint k = 0; k < n; ++k) p[k] = point_of(points, ring[k]);
-    const uint a = cells[c].v[kEdgeCorners[edge][0]];
-    const uint b = cells[c].v[kEdgeCorners[edge][1]];
-    const hfr_real3 point_a = point_of(points, a);
-    const hfr_real3 point_b = point_of(points, b);
-    double new_worst;
-    HFR_KLINCSEK((int)n, HFR_SMALL_RING, best, apex, old_worst, TRIANGLE_WORST, new_worst);
-    if (!(new_worst > old_worst)) continue;
-    if (has_regions && !in_one_region(scope, n, origin, regions)) continue;
-    uchar triangles[HFR_SMALL_RING];
-    write_preorder((int)n, HFR_SMALL_RING, apex, triangles);
-    append_edge(seed, n, ring, scope, a, b, triangles, old_worst, salt, SEARCH_VALUES);
+    else if (n >= 3)
+      search_ring(seed, n, ring, scope, old_worst, HFR_SMALL_RING, best, apex, p, triangles, cells, points,
+                  origin, regions, has_regions, salt, SEARCH_VALUES);
   }
   if (n_seeds) atomic_add(&counters[HFR_SEEDS], n_seeds);
 }
 
 KERNEL void search_large_rings(__global const cell_t* cells, __global const double* points,
-                               __global const double* quality, __global const uint* origin,
-                               __global const int* regions, uint has_regions, ulong salt,
-                               __global const uint* large, SEARCH_ARGUMENTS) {
+                               __global const double* quality, __global const uchar* listed,
+                               __global const uint* origin, __global const int* regions, uint has_regions,
+                               ulong salt, __global const uint* large, SEARCH_ARGUMENTS) {
+  uint ring[HFR_MAX_RING], scope[HFR_MAX_RING];
+  double best[HFR_MAX_RING * HFR_MAX_RING];
+  uchar apex[HFR_MAX_RING * HFR_MAX_RING], triangles[HFR_MAX_RING];
+  hfr_real3 p[HFR_MAX_RING];
   FOR_EACH(item, counters[HFR_LARGE]) {
     const uint seed = large[item];
-    const uint c = seed / 6;
-    const uint edge = seed % 6;
-    uint ring[HFR_MAX_RING], scope[HFR_MAX_RING];
-    uint at = c;
-    uint corner_p = kEdgeOpposite[edge][0];
-    uint corner_q = kEdgeOpposite[edge][1];
-    uint n = 0;
-    double old_worst = HFR_INFINITY;
-    do {
-      if (n == HFR_MAX_RING) break;
-      scope[n] = at;
-      ring[n++] = cells[at].v[corner_p];
-      old_worst = hfr_lesser(old_worst, quality[at]);
-      step_in_ring(cells, &at, &corner_p, &corner_q);
-    } while (at != c);
-    if (at != c) continue;  // larger still
-    double best[HFR_MAX_RING * HFR_MAX_RING];
-    uchar apex[HFR_MAX_RING * HFR_MAX_RING];
-    hfr_real3 p[HFR_MAX_RING];
-    for (uint k = 0; k < n; ++k) p[k] = point_of(points, ring[k]);
-    const uint a = cells[c].v[kEdgeCorners[edge][0]];
-    const uint b = cells[c].v[kEdgeCorners[edge][1]];
-    const hfr_real3 point_a = point_of(points, a);
-    const hfr_real3 point_b = point_of(points, b);
-    double new_worst;
-    HFR_KLINCSEK((int)n, HFR_MAX_RING, best, apex, old_worst, TRIANGLE_WORST, new_worst);
-    if (!(new_worst > old_worst)) continue;
-    if (has_regions && !in_one_region(scope, n, origin, regions)) continue;
-    uchar triangles[HFR_MAX_RING];
-    write_preorder((int)n, HFR_MAX_RING, apex, triangles);
-    append_edge(seed, n, ring, scope, a, b, triangles, old_worst, salt, SEARCH_VALUES);
+    double old_worst;
+    const uint n = walk_ring(seed, HFR_MAX_RING, cells, quality, listed, ring, scope, &old_worst);
+    if (n <= HFR_MAX_RING)
+      search_ring(seed, n, ring, scope, old_worst, HFR_MAX_RING, best, apex, p, triangles, cells, points,
+                  origin, regions, has_regions, salt, SEARCH_VALUES);
   }
 }
 

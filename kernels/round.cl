@@ -5,7 +5,7 @@
 #include "common.cl"
 
 // Vertices that name the seed of a candidate, ascending, and INVALID for those that it has not: two of an
-// edge (6*cell + edge), three of a face (4*cell + corner).
+// edge, three of a face, one of a vertex.
 typedef struct {
   uint v[3];
 } identity_t;
@@ -31,8 +31,18 @@ static identity_t face_identity(__global const cell_t* cells, uint seed) {
   return id;
 }
 
-static identity_t identity_of(__global const cell_t* cells, uint seed, uint is_face) {
-  return is_face ? face_identity(cells, seed) : edge_identity(cells, seed);
+static identity_t vertex_identity(uint seed) {
+  identity_t id;
+  id.v[0] = seed;
+  id.v[1] = INVALID;
+  id.v[2] = INVALID;
+  return id;
+}
+
+static identity_t identity_of(__global const cell_t* cells, uint seed, uint kind) {
+  return kind == HFR_OF_EDGE   ? edge_identity(cells, seed)
+         : kind == HFR_OF_FACE ? face_identity(cells, seed)
+                               : vertex_identity(seed);
 }
 
 static ulong key_of(identity_t id, double old_worst, ulong salt) {
@@ -54,10 +64,10 @@ KERNEL void rank_scatter(__global const ulong* keys, __global const uint* counte
 }
 
 static int ranks_before(__global const cell_t* cells, __global const ulong* keys, __global const uint* seeds,
-                        uint is_face, uint i, uint j) {
+                        uint kind, uint i, uint j) {
   if (keys[i] != keys[j]) return keys[i] < keys[j];
-  const identity_t a = identity_of(cells, seeds[i], is_face);
-  const identity_t b = identity_of(cells, seeds[j], is_face);
+  const identity_t a = identity_of(cells, seeds[i], kind);
+  const identity_t b = identity_of(cells, seeds[j], kind);
   if (a.v[0] != b.v[0]) return a.v[0] < b.v[0];
   if (a.v[1] != b.v[1]) return a.v[1] < b.v[1];
   return a.v[2] < b.v[2];
@@ -65,14 +75,14 @@ static int ranks_before(__global const cell_t* cells, __global const ulong* keys
 
 // Sorts every bin by key, equal keys by identity: rank r belongs to candidate order[r].
 KERNEL void rank_sort(__global const cell_t* cells, __global const ulong* keys, __global const uint* seeds,
-                      uint is_face, uint n_bins, __global const uint* bins, __global uint* order) {
+                      uint kind, uint n_bins, __global const uint* bins, __global uint* order) {
   FOR_EACH(b, n_bins) {
     const uint begin = b == 0 ? 0 : bins[b - 1];
     const uint end = bins[b];
     for (uint i = begin + 1; i < end; ++i) {
       const uint moving = order[i];
       uint at = i;
-      for (; at > begin && ranks_before(cells, keys, seeds, is_face, moving, order[at - 1]); --at)
+      for (; at > begin && ranks_before(cells, keys, seeds, kind, moving, order[at - 1]); --at)
         order[at] = order[at - 1];
       order[at] = moving;
     }
@@ -172,6 +182,14 @@ static uint append_candidate(uint seed, identity_t id, double old_worst, ulong s
   return fits ? at : INVALID;
 }
 
+// Cells of different regions do not become one cluster.
+static uint in_one_region(const uint* scope, uint n, __global const uint* origin,
+                          __global const int* regions) {
+  uint one = 1;
+  for (uint k = 1; k < n; ++k) one &= regions[origin[scope[k]]] == regions[origin[scope[0]]];
+  return one;
+}
+
 static uint n_dead_of(uint size) { return size & 0xffff; }
 static uint n_born_of(uint size) { return size >> 16; }
 
@@ -220,6 +238,30 @@ KERNEL void slot_numbers(__global const uint* counters, uint capacity, __global 
     const uint before_freed = scan_tile(tile, less, &total);
     if (valid) freed_at[r] = freed + before_freed;
     freed += total;
+  }
+}
+
+// Gives up winners that would free more cells than `may_lose`, the last in rank order first, and their
+// claims: whoever does not fit any more. By one work-item: it is seldom that there are too many.
+KERNEL void give_up_winners(__global const uint* counters, uint capacity, __global const uint* order,
+                            __global const uint* offsets, __global const uint* sizes,
+                            __global const uint* arena, uint may_lose, __global uchar* won,
+                            __global uint* claim) {
+  if (get_global_id(0) != 0) return;
+  const uint n = min(counters[HFR_CANDIDATES], capacity);
+  uint left = may_lose;
+  for (uint r = 0; r < n; ++r) {
+    if (!won[r]) continue;
+    const uint i = order[r];
+    const uint n_dead = n_dead_of(sizes[i]);
+    const uint n_born = n_born_of(sizes[i]);
+    const uint loss = n_dead > n_born ? n_dead - n_born : 0;
+    if (loss <= left) {
+      left -= loss;
+      continue;
+    }
+    won[r] = 0;
+    for (uint k = 0; k < n_dead; ++k) claim[arena[offsets[i] + k]] = UNCLAIMED;
   }
 }
 

@@ -41,9 +41,9 @@ box() {
   "$tool" generate box "$@" -o "$work/$name.mesh" -q
 }
 box box --n 4 4 4 --jitter 0.25
-run box --iterations 1 --ops edge,face,smooth
+run box --iterations 1 --ops edge,face,node,smooth --bulk-nodes --min-cells 1
 box groups --n 3 3 3 --jitter 0.25 --regions 2
-run groups --iterations 1 --ops edge,face,smooth --work-group 32
+run groups --iterations 1 --ops edge,face,node,smooth --bulk-nodes --min-cells 1 --work-group 32
 box paper --n 3 3 3 --jitter 0.3
 run paper --compat jpdc2013 --iterations 1 --ops smooth
 # An edge in a ring of twelve cells, close to one of them, so that removing it pays.
@@ -58,3 +58,21 @@ awk 'BEGIN {
   print "End"
 }' > "$work/ring.mesh"
 run ring --iterations 1 --ops edge
+# A vertex with 34 cells, close to one of its neighbours, so that removing it pays; and where it would cost too
+# many cells.
+awk 'BEGIN {
+  n = 17; turn = 2 * atan2(0, -1) / n
+  print "MeshVersionFormatted 2\nDimension 3\nVertices\n" n + 3
+  for (i = 0; i < n; ++i) print cos(turn * i), sin(turn * i), 0, 0
+  print "0 0 -1 0\n0 0 1 0\n0 0 0.99 0"
+  print "Tetrahedra\n" 2 * n
+  for (i = 0; i < n; ++i) {
+    print n + 3, (i + 1) % n + 1, i + 1, n + 1, 0
+    print n + 3, i + 1, (i + 1) % n + 1, n + 2, 0
+  }
+  print "End"
+}' > "$work/star.mesh"
+for group in 1 32; do
+  run star --iterations 1 --ops node --bulk-nodes --work-group $group
+  run star --iterations 1 --ops node --bulk-nodes --work-group $group --min-cells 1
+done

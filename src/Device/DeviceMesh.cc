@@ -74,6 +74,7 @@ struct DeviceMesh::Impl {
   void rank(Kind kind);
   void repeat_selection(unsigned first, unsigned end);
   void number_slots();
+  Counters give_up_winners(cl_uint may_lose);
   void commit(Kind kind, std::uint32_t clock);
   void list_vertices();
   void gather_stars();
@@ -289,7 +290,12 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
     }
   }
   std::copy(points.begin(), points.end(), mesh.point_data());
-  for (std::size_t v = 0; v < m.n_vertices; ++v) mesh.set_hook(VertexHandle(v), CellHandle(hooks[v]));
+  for (std::size_t v = 0; v < m.n_vertices; ++v) {
+    if (hooks[v] == kNone && mesh.hook(VertexHandle(v)).is_valid())
+      mesh.mark_deleted(VertexHandle(v));  // only a vertex that was removed loses its cells
+    else
+      mesh.set_hook(VertexHandle(v), CellHandle(hooks[v]));
+  }
   mesh.free_cells().clear();
   for (cl_uint c : free_cells) mesh.free_cells().push_back(CellHandle(c));
   work.quality = std::move(quality);
@@ -316,10 +322,23 @@ void DeviceMesh::Impl::search(Kind kind, cl_ulong salt) {
                  counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
     return;
   }
+  if (kind == Kind::kVertex) {
+    const auto search_stars = [&](const char* kernel) {
+      queue.launch(kernel, cells, points, quality, hooks, star_size, vertices, origin, regions, regional,
+                   salt, counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
+    };
+    if (queue.is_cpu_style()) {
+      search_stars("search_all_stars");
+    } else {
+      search_stars("search_small_stars");
+      search_stars("search_large_stars");
+    }
+    return;
+  }
   queue.launch("search_edges", cells, points, quality, listed, cell_list, origin, regions, regional, salt,
                moved, counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
-  queue.launch("search_large_rings", cells, points, quality, origin, regions, regional, salt, moved, counters,
-               capacity(), arena_room, keys, seeds, offsets, sizes, arena);
+  queue.launch("search_large_rings", cells, points, quality, listed, origin, regions, regional, salt, moved,
+               counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
 }
 
 void DeviceMesh::Impl::rank(Kind kind) {
@@ -333,7 +352,10 @@ void DeviceMesh::Impl::rank(Kind kind) {
   queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_WINNERS});
   queue.launch("scan_parts", bins, n_bins, sums);
   queue.launch("rank_scatter", keys, counters, capacity(), shift, bins, order);
-  queue.launch("rank_sort", cells, keys, seeds, cl_uint{kind == Kind::kFace ? 1U : 0U}, n_bins, bins, order);
+  const cl_uint seed_kind = kind == Kind::kEdge   ? HFR_OF_EDGE
+                            : kind == Kind::kFace ? HFR_OF_FACE
+                                                  : HFR_OF_VERTEX;
+  queue.launch("rank_sort", cells, keys, seeds, seed_kind, n_bins, bins, order);
 }
 
 void DeviceMesh::Impl::repeat_selection(unsigned first, unsigned end) {
@@ -351,10 +373,21 @@ void DeviceMesh::Impl::number_slots() {
   queue.launch("slot_numbers", counters, capacity(), order, sizes, won, sums, extra_at, freed_at);
 }
 
+/// Keeps a round's loss of cells within bounds, as Round::keep_number_of_cells() does.
+DeviceMesh::Impl::Counters DeviceMesh::Impl::give_up_winners(cl_uint may_lose) {
+  queue.launch("give_up_winners", counters, capacity(), order, offsets, sizes, arena, may_lose, won, claim);
+  number_slots();
+  return read_counters();
+}
+
 void DeviceMesh::Impl::commit(Kind kind, std::uint32_t clock) {
-  queue.launch(kind == Kind::kEdge ? "commit_edges" : "commit_faces", counters, capacity(), order, offsets,
-               sizes, arena, won, extra_at, free_cells, free_count(), cell_count(), cells, moved, hooks,
-               star_size, origin, cl_uint{has_data ? 1U : 0U});
+  if (kind == Kind::kVertex)
+    queue.launch("commit_stars", counters, capacity(), order, offsets, sizes, arena, won, cells, moved, hooks,
+                 star_size);
+  else
+    queue.launch(kind == Kind::kEdge ? "commit_edges" : "commit_faces", counters, capacity(), order, offsets,
+                 sizes, arena, won, extra_at, free_cells, free_count(), cell_count(), cells, moved, hooks,
+                 star_size, origin, cl_uint{has_data ? 1U : 0U});
   queue.launch("commit_mates", counters, capacity(), order, offsets, sizes, arena, won, extra_at, free_cells,
                free_count(), cell_count(), claim, moved, points, cl_uint{clock}, cells, quality, pending,
                changed, hooks);
@@ -362,11 +395,15 @@ void DeviceMesh::Impl::commit(Kind kind, std::uint32_t clock) {
                claim, quality, free_cells);
 }
 
-RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t seed, std::uint32_t clock) {
+std::size_t DeviceMesh::n_logical_cells() const { return impl_->n_cells - impl_->n_free; }
+
+RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t seed, std::uint32_t clock,
+                              std::size_t may_lose) {
   Impl& m = *impl_;
   RoundCounts counts;
   const auto start = Clock::now();
   m.list(look);
+  if (kind == Kind::kVertex) m.list_vertices();
   unsigned launched = m.repetitions;
   Impl::Counters block{};
   for (;;) {
@@ -385,6 +422,7 @@ RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t s
     m.queue.fill(m.claim, kNone, 0, m.claim.room);
     Impl::Counters again{};
     again[HFR_LISTED] = block[HFR_LISTED];
+    again[HFR_VERTICES] = block[HFR_VERTICES];
     m.queue.write(m.counters, again.data(), again.size());
   }
   if (block[HFR_LISTED] == 0) return counts;
@@ -399,6 +437,11 @@ RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t s
   counts.rounds = 1;
   counts.seeds = block[HFR_SEEDS];
   counts.candidates = block[HFR_CANDIDATES];
+  if (kind == Kind::kVertex && block[HFR_FREED] > may_lose) {
+    counts.held_back = block[HFR_WINNERS];
+    block = m.give_up_winners(static_cast<cl_uint>(may_lose));
+    counts.held_back -= block[HFR_WINNERS];
+  }
   counts.winners = block[HFR_WINNERS];
   while (block[HFR_UNDECIDED + counts.sub_rounds] > 0) ++counts.sub_rounds;
   m.repetitions = std::max(kFewRepetitions, static_cast<unsigned>(counts.sub_rounds));

@@ -3,6 +3,7 @@
 #define HFR_DEVICE_DEVICE_MESH_HH
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -64,11 +65,16 @@ class DeviceMesh {
   /// Writes back everything that passes have changed.
   void download(TetMesh& mesh, Workspace& work);
 
-  enum class Kind { kEdge, kFace };  ///< edge removal, 2-3 swap
+  /// Cells that are not deleted.
+  std::size_t n_logical_cells() const;
+
+  enum class Kind { kEdge, kFace, kVertex };  ///< edge removal, 2-3 swap, vertex removal
   /// One round over the cells of `look`; `clock` as the workspace has it before the round. counts.rounds is
   /// 0, and nothing has happened, when there was no cell to look at. All cells are positive, and the mesh has
-  /// no labels of faces, edges or vertices.
-  RoundCounts round(Kind kind, const DeviceLook& look, std::uint64_t seed, std::uint32_t clock);
+  /// no labels of faces, edges or vertices. `may_lose`: cells that vertex removal may take away, as
+  /// RoundOptions has it.
+  RoundCounts round(Kind kind, const DeviceLook& look, std::uint64_t seed, std::uint32_t clock,
+                    std::size_t may_lose = std::numeric_limits<std::size_t>::max());
 
   /// Smooths the vertices of the cells of `look` once: by Newton's method (stars with an inverted cell by
   /// candidates) or by candidates alone. Nothing, with the mesh as it was, when the device cannot: a star of

@@ -24,7 +24,10 @@ std::uint64_t DeviceMesh::bytes_needed(std::size_t, std::size_t) { refuse(); }
 void DeviceMesh::require_room(std::size_t, std::size_t) const { refuse(); }
 void DeviceMesh::upload(const TetMesh&, const Workspace&) { refuse(); }
 void DeviceMesh::download(TetMesh&, Workspace&) { refuse(); }
-RoundCounts DeviceMesh::round(Kind, const DeviceLook&, std::uint64_t, std::uint32_t) { refuse(); }
+std::size_t DeviceMesh::n_logical_cells() const { refuse(); }
+RoundCounts DeviceMesh::round(Kind, const DeviceLook&, std::uint64_t, std::uint32_t, std::size_t) {
+  refuse();
+}
 std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook&, bool, std::uint32_t) { refuse(); }
 DeviceMesh::Tally DeviceMesh::tally() { refuse(); }
 double DeviceMesh::smallest_dihedral() { refuse(); }

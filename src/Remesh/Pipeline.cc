@@ -224,7 +224,7 @@ void improve_bulk(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
     Stage<decltype(metric)> stage(mesh, work, options, control, metric, "bulk");
     const Focus focus{options.metric == Metric::kVolumeLength ? kBulkFocus : Focus{}.below};
     for (int i = 1; i <= limit && !control.stopped(); ++i) {
-      if (stage.iterate(i, focus, false) == 0) break;
+      if (stage.iterate(i, focus, options.bulk_nodes) == 0) break;
       control.set_fraction(0.1 + 0.4 * i / limit);
     }
     stage.to_host();

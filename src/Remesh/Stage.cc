@@ -85,7 +85,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     RoundOptions round_options{options_.policy, n_invalid_ > 0, options_.seed,
                                options_.compat == Compat::kJpdc2013};
     const std::size_t n_cells = mesh_.n_logical_cells();
-    if (options_.min_cells > 0) round_options.may_lose = n_cells - std::min(n_cells, options_.min_cells);
+    round_options.may_lose = may_lose(n_cells);
     if (options_.max_cells > 0)
       round_options.may_gain = options_.max_cells - std::min(n_cells, options_.max_cells);
     Round<Op> round(mesh_, work_, round_options);
@@ -142,6 +142,8 @@ std::vector<VertexHandle> Stage<Metric>::removable(const Worklist& list) const {
 
 template <class Metric>
 std::size_t Stage<Metric>::node_pass(int iteration, Focus focus) {
+  if (on_device(kNode))
+    if (const auto changes = device_rounds(kNode, iteration, focus)) return *changes;
   return rounds(
       kNode, iteration, focus,
       [&] {

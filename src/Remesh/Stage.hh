@@ -152,6 +152,11 @@ class Stage {
   /// Whether iterations put several kinds into one selection.
   bool is_mixed() const;
 
+  /// Cells that a round may take away from a mesh of n_cells; see RoundOptions::may_lose.
+  std::size_t may_lose(std::size_t n_cells) const {
+    return options_.min_cells > 0 ? n_cells - std::min(n_cells, options_.min_cells) : RoundOptions{}.may_lose;
+  }
+
   /// Vertices of the listed cells that an operator may take out.
   std::vector<VertexHandle> removable(const Worklist& list) const;
 

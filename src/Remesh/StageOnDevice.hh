@@ -76,6 +76,8 @@ void Stage<Metric>::lose_device(const std::string& why) {
       edge_pass(0, pass.focus);
     else if (pass.kind == kFace)
       face_pass(0, pass.focus);
+    else if (pass.kind == kNode)
+      node_pass(0, pass.focus);
     else
       smooth_pass(0, pass.focus);
   }
@@ -87,15 +89,19 @@ void Stage<Metric>::lose_device(const std::string& why) {
 template <class Metric>
 std::optional<std::size_t> Stage<Metric>::device_rounds(Kind kind, int iteration, Focus focus) {
   const double start = control_.seconds();
-  const auto which = kind == kEdge ? DeviceMesh::Kind::kEdge : DeviceMesh::Kind::kFace;
+  const auto which = kind == kEdge   ? DeviceMesh::Kind::kEdge
+                     : kind == kFace ? DeviceMesh::Kind::kFace
+                                     : DeviceMesh::Kind::kVertex;
   RoundCounts total;
   std::size_t first = 0;
   done_there_.push_back({kind, focus, 0});
   try {
     for (int r = 0; r < kMaxRounds && !control_.stopped(); ++r) {
-      const RoundCounts counts =
-          control_.device()->round(which, device_look(kind, focus), options_.seed, work_.clock);
+      DeviceMesh& there = *control_.device();
+      const RoundCounts counts = there.round(which, device_look(kind, focus), options_.seed, work_.clock,
+                                             may_lose(there.n_logical_cells()));
       if (counts.rounds == 0) break;
+      if (counts.held_back > 0) control_.note_cell_bound();
       ++work_.clock;
       ++done_there_.back().rounds;
       total += counts;

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "Device/Scratch.hh"
 #include "HalfFace/Check.hh"
@@ -17,6 +19,7 @@
 #include "Operators/FaceSwap.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothNewton.hh"
+#include "Operators/VertexRemoval.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/Seeds.hh"
 #include "Scheduler/SmoothPass.hh"
@@ -52,11 +55,19 @@ class OnDevice : public testing::TestWithParam<DeviceTuning> {
     }
   }
 
-  RoundCounts round_on_host(Stand& stand, DeviceMesh::Kind kind, double below) {
+  static RoundCounts round_on_host(Stand& stand, DeviceMesh::Kind kind, double below,
+                                   std::size_t may_lose = RoundOptions{}.may_lose) {
     const Worklist list(stand.mesh, kSerial,
                         [&](CellHandle c) { return stand.work.quality[c.idx()] < below; });
     if (list.cells().empty()) return {};
-    const RoundOptions options{kSerial, /*check_links=*/false, /*seed=*/5};
+    RoundOptions options{kSerial, /*check_links=*/false, /*seed=*/5};
+    options.may_lose = may_lose;
+    if (kind == DeviceMesh::Kind::kVertex) {
+      std::vector<VertexHandle> vertices = vertex_seeds(stand.mesh, list, stand.work.frozen, kSerial);
+      drop_pinched(stand.mesh, stand.work.star_size, vertices, kSerial);
+      Round<VertexRemoval<VolumeLength>> round(stand.mesh, stand.work, options);
+      return round.run({{}, stand.work.quality, stand.work.frozen}, vertices);
+    }
     if (kind == DeviceMesh::Kind::kEdge) {
       Round<EdgeRemoval<VolumeLength>> round(stand.mesh, stand.work, options);
       return round.run({{}, stand.work.quality}, edge_seeds(stand.mesh, list, kSerial));
@@ -73,8 +84,10 @@ class OnDevice : public testing::TestWithParam<DeviceTuning> {
     }
     for (std::size_t v = 0; v < host.mesh.n_vertices(); ++v) {
       ASSERT_EQ(host.mesh.hook(VertexHandle(v)), device.mesh.hook(VertexHandle(v))) << v;
+      ASSERT_EQ(host.mesh.is_deleted(VertexHandle(v)), device.mesh.is_deleted(VertexHandle(v))) << v;
       ASSERT_EQ(host.mesh.point(VertexHandle(v)), device.mesh.point(VertexHandle(v))) << v;
     }
+    EXPECT_EQ(host.mesh.n_logical_vertices(), device.mesh.n_logical_vertices());
     EXPECT_EQ(host.mesh.free_cells(), device.mesh.free_cells());
     EXPECT_EQ(host.work.quality, device.work.quality);
     EXPECT_EQ(host.work.star_size, device.work.star_size);
@@ -150,6 +163,150 @@ TEST_P(OnDevice, EdgeInALargeRingIsRemovedAsOnTheHost) {
   device_->upload(there.mesh, there.work);
   ASSERT_EQ(round_on_host(host, DeviceMesh::Kind::kEdge, 1).winners, 1U);
   EXPECT_EQ(device_->round(DeviceMesh::Kind::kEdge, {1, 0, 0}, 5, there.work.clock).winners, 1U);
+  device_->download(there.mesh, there.work);
+  expect_same(host, there);
+}
+
+TEST_P(OnDevice, VerticesAreRemovedAsOnTheHost) {
+  Stand host(jittered_box(10, 0.27, 21));
+  Stand there = host;
+  ASSERT_GT(*std::min_element(host.work.quality.begin(), host.work.quality.end()), 0);
+  device_->upload(there.mesh, there.work);
+  constexpr std::array kKinds = {DeviceMesh::Kind::kVertex, DeviceMesh::Kind::kVertex,
+                                 DeviceMesh::Kind::kEdge, DeviceMesh::Kind::kFace};
+  std::size_t n_removed = 0;
+  for (std::size_t r = 0; r < 8; ++r) {
+    const auto kind = kKinds[r % kKinds.size()];
+    const double below = r < 4 ? 0.3 : 0.9;
+    const RoundCounts expected = round_on_host(host, kind, below);
+    const RoundCounts counts = device_->round(kind, {below, 0, 0}, 5, there.work.clock);
+    ++there.work.clock;
+    EXPECT_EQ(counts.rounds, expected.rounds);
+    EXPECT_EQ(counts.seeds, expected.seeds);
+    EXPECT_EQ(counts.candidates, expected.candidates);
+    EXPECT_EQ(counts.winners, expected.winners);
+    EXPECT_EQ(counts.held_back, 0U);
+    EXPECT_EQ(device_->n_logical_cells(), host.mesh.n_logical_cells());
+    if (kind == DeviceMesh::Kind::kVertex) n_removed += counts.winners;
+    // From round to round on the device, and by way of the host, too.
+    if (r % 3 == 0) continue;
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    ASSERT_FALSE(HasFatalFailure()) << "round " << r;
+    EXPECT_EQ(check(there.mesh), Ok);
+    if (r % 3 == 2) device_->upload(there.mesh, there.work);
+  }
+  EXPECT_GT(n_removed, 50U);
+  EXPECT_EQ(there.mesh.n_logical_vertices(), there.mesh.n_vertices() - n_removed);
+}
+
+TEST_P(OnDevice, SmoothingAfterARemovalIsThatOfTheHost) {
+  Stand host(jittered_box(8, 0.27, 22));
+  Stand there = host;
+  device_->upload(there.mesh, there.work);
+  ASSERT_GT(round_on_host(host, DeviceMesh::Kind::kVertex, 0.3).winners, 10U);
+  device_->round(DeviceMesh::Kind::kVertex, {0.3, 0, 0}, 5, there.work.clock++);
+  const Worklist list(host.mesh, kSerial, [](CellHandle) { return true; });
+  const auto vertices = vertex_seeds(host.mesh, list, host.work.frozen, kSerial);
+  smooth_pass(host.mesh, host.work, NewtonSearch{}, VolumeLength{}, vertices, kSerial);
+  ASSERT_TRUE(device_->smooth({2, 0, 0}, true, there.work.clock++));
+  device_->download(there.mesh, there.work);
+  expect_same(host, there);
+}
+
+TEST_P(OnDevice, VertexIsRemovedFromAStarOfUpTo256CellsAsOnTheHost) {
+  // Below the upper end of a double cone of 2n cells, so that going up there pays.
+  for (const Index n : {3, 16, 17, 128, 129}) {
+    generate::Arrays arrays;
+    const double turn = 2 * std::numbers::pi / n;
+    for (Index i = 0; i < n; ++i) arrays.points.push_back({std::cos(turn * i), std::sin(turn * i), 0});
+    arrays.points.push_back({0, 0, -1});
+    arrays.points.push_back({0, 0, 1});
+    arrays.points.push_back({0, 0, 0.99});
+    for (Index i = 0; i < n; ++i) {
+      arrays.cells.push_back({n + 2, (i + 1) % n, i, n});
+      arrays.cells.push_back({n + 2, i, (i + 1) % n, n + 1});
+    }
+    Stand host(built(arrays));
+    Stand there = host;
+    ASSERT_GT(*std::min_element(host.work.quality.begin(), host.work.quality.end()), 0);
+    device_->upload(there.mesh, there.work);
+    const RoundCounts expected = round_on_host(host, DeviceMesh::Kind::kVertex, 1);
+    const RoundCounts counts = device_->round(DeviceMesh::Kind::kVertex, {1, 0, 0}, 5, there.work.clock);
+    EXPECT_EQ(expected.winners, n <= 128 ? 1U : 0U) << n;
+    EXPECT_EQ(counts.seeds, expected.seeds) << n;
+    EXPECT_EQ(counts.winners, expected.winners) << n;
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    EXPECT_EQ(check(there.mesh), Ok);
+  }
+}
+
+TEST_P(OnDevice, OfEquallyGoodPlacesTheVertexGoesToThatOfTheHost) {
+  // Inside an octahedron, close to its surface: each corner as the apex makes four cells of the same shape.
+  const std::array<Vec3, 7> points = {Vec3{0, 0, 1},  Vec3{1, 0, 0}, Vec3{0.5, 0.25, 0.125}, Vec3{0, -1, 0},
+                                      Vec3{0, 0, -1}, Vec3{0, 1, 0}, Vec3{-1, 0, 0}};
+  constexpr std::array<std::array<Index, 3>, 8> kFaces = {
+      {{1, 5, 0}, {5, 6, 0}, {6, 3, 0}, {3, 1, 0}, {5, 1, 4}, {6, 5, 4}, {3, 6, 4}, {1, 3, 4}}};
+  for (std::size_t first = 0; first < kFaces.size(); ++first) {  // stars that begin with different cells
+    generate::Arrays arrays;
+    arrays.points.assign(points.begin(), points.end());
+    for (std::size_t i = 0; i < kFaces.size(); ++i) {
+      const auto& f = kFaces[(first + i) % kFaces.size()];
+      arrays.cells.push_back({f[0], f[2], f[1], 2});
+    }
+    Stand host(built(arrays));
+    Stand there = host;
+    ASSERT_GT(*std::min_element(host.work.quality.begin(), host.work.quality.end()), 0);
+    device_->upload(there.mesh, there.work);
+    ASSERT_EQ(round_on_host(host, DeviceMesh::Kind::kVertex, 1).winners, 1U);
+    device_->round(DeviceMesh::Kind::kVertex, {1, 0, 0}, 5, there.work.clock);
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    ASSERT_FALSE(HasFatalFailure()) << first;
+    EXPECT_EQ(host.mesh.cell(host.mesh.hook(VertexHandle(0))).v[3], VertexHandle(0));
+  }
+}
+
+TEST_P(OnDevice, RemovalsBeyondTheBoundOnCellsAreGivenUpAsOnTheHost) {
+  Stand host(jittered_box(10, 0.27, 23));
+  Stand there = host;
+  for (const std::size_t may_lose : {std::size_t{0}, std::size_t{9}, std::size_t{100}}) {
+    device_->upload(there.mesh, there.work);
+    const std::size_t n_before = host.mesh.n_logical_cells();
+    const RoundCounts expected = round_on_host(host, DeviceMesh::Kind::kVertex, 0.5, may_lose);
+    const RoundCounts counts =
+        device_->round(DeviceMesh::Kind::kVertex, {0.5, 0, 0}, 5, there.work.clock++, may_lose);
+    EXPECT_EQ(counts.winners, expected.winners);
+    EXPECT_EQ(counts.held_back, expected.held_back);
+    EXPECT_GT(counts.held_back, 10U);
+    EXPECT_EQ(counts.winners > 0, may_lose > 0);
+    EXPECT_GE(device_->n_logical_cells() + may_lose, n_before);
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+    ASSERT_FALSE(HasFatalFailure()) << may_lose;
+  }
+}
+
+TEST_P(OnDevice, VerticesOfOneRegionGoAndThoseOfTwoStay) {
+  generate::Arrays arrays = generate::jittered_box({8, 8, 8}, 0.27, 24);
+  arrays.regions = generate::two_region_box({8, 8, 8}).regions;
+  const auto regions = std::exchange(arrays.regions, {});
+  Stand undivided(built(arrays));
+  arrays.regions = regions;
+  Stand host(built(arrays));
+  // As if vertices of the interface were free: only the regions hold them.
+  std::fill(host.work.frozen.begin(), host.work.frozen.end(), 0);
+  for (HalfFaceHandle h : host.mesh.halffaces())
+    if (host.mesh.is_boundary(h))
+      for (VertexHandle v : host.mesh.halfface_vertices(h)) host.work.frozen[v.idx()] = 1;
+  Stand there = host;
+  device_->upload(there.mesh, there.work);
+  const RoundCounts expected = round_on_host(host, DeviceMesh::Kind::kVertex, 0.5);
+  const RoundCounts counts = device_->round(DeviceMesh::Kind::kVertex, {0.5, 0, 0}, 5, there.work.clock);
+  EXPECT_EQ(counts.candidates, expected.candidates);
+  EXPECT_LT(counts.candidates, round_on_host(undivided, DeviceMesh::Kind::kVertex, 0.5).candidates);
+  EXPECT_GT(counts.winners, 10U);
   device_->download(there.mesh, there.work);
   expect_same(host, there);
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An OpenCL loader that fails where the environment says so; everything else is the real one's, which it is
-// linked with. Tests name it in HFR_OPENCL_LIBRARY.
+// linked with. Tests name it in HFR_OPENCL_LIBRARY. It counts from the newest context on.
 //   HFR_FAIL_ENQUEUE=N   the N-th launch of a kernel and all later calls on queues: the device is lost
 //   HFR_FAIL_BUFFER=N    the N-th buffer and all later ones: out of memory
+//   HFR_FAIL_GROWTH=N    the same, of the buffers that are made once a round has begun
 //   HFR_FAIL_BUILD=1     no program compiles
 //   HFR_FAIL_ROUNDING=1  a product and a sum are fused, against what the source says
 //   HFR_FAIL_FP64=1      no device has 64-bit floating point
 //   HFR_FAIL_MEMORY=N    every device has N bytes of memory
+//   HFR_PRETEND_GPU=1    every device says that it is a GPU, so that --device auto takes it
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <dlfcn.h>
@@ -28,7 +30,8 @@ F real(F, const char* name) {
   return reinterpret_cast<F>(dlsym(RTLD_NEXT, name));
 }
 
-std::atomic<long> n_launches{0}, n_buffers{0};
+std::atomic<long> n_launches{0}, n_buffers{0}, n_growths{0};
+std::atomic<bool> round_has_begun{false};
 
 bool is_lost() {
   const long limit = setting("HFR_FAIL_ENQUEUE");
@@ -41,11 +44,22 @@ bool is_lost() {
 
 extern "C" {
 
+cl_context clCreateContext(const cl_context_properties* properties, cl_uint n, const cl_device_id* devices,
+                           void (*notify)(const char*, const void*, size_t, void*), void* user,
+                           cl_int* error) {
+  n_launches = n_buffers = n_growths = 0;
+  round_has_begun = false;
+  return REAL(clCreateContext)(properties, n, devices, notify, user, error);
+}
+
 cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
                               const size_t* offset, const size_t* global, const size_t* local, cl_uint n_wait,
                               const cl_event* wait, cl_event* event) {
   ++n_launches;
   if (is_lost()) return CL_OUT_OF_RESOURCES;
+  char name[64] = "";
+  REAL(clGetKernelInfo)(kernel, CL_KERNEL_FUNCTION_NAME, sizeof name, name, nullptr);
+  if (std::strcmp(name, "list_cells") == 0) round_has_begun = true;
   return REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, n_wait, wait, event);
 }
 
@@ -57,7 +71,8 @@ cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocki
 
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
   const long limit = setting("HFR_FAIL_BUFFER");
-  if (limit > 0 && ++n_buffers >= limit) {
+  const long growth_limit = round_has_begun ? setting("HFR_FAIL_GROWTH") : 0;
+  if ((limit > 0 && ++n_buffers >= limit) || (growth_limit > 0 && ++n_growths >= growth_limit)) {
     if (error) *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
     return nullptr;
   }
@@ -89,6 +104,10 @@ cl_int clGetDeviceInfo(cl_device_id device, cl_device_info name, size_t room, vo
   const cl_int error = REAL(clGetDeviceInfo)(device, name, room, value, size);
   if (!value || error != CL_SUCCESS) return error;
   if (name == CL_DEVICE_DOUBLE_FP_CONFIG && setting("HFR_FAIL_FP64") > 0) std::memset(value, 0, room);
+  if (name == CL_DEVICE_TYPE && setting("HFR_PRETEND_GPU") > 0) {
+    const cl_device_type gpu = CL_DEVICE_TYPE_GPU;
+    std::memcpy(value, &gpu, sizeof gpu);
+  }
   if (name == CL_DEVICE_GLOBAL_MEM_SIZE && setting("HFR_FAIL_MEMORY") > 0) {
     const cl_ulong bytes = static_cast<cl_ulong>(setting("HFR_FAIL_MEMORY"));
     std::memcpy(value, &bytes, sizeof bytes);

@@ -130,6 +130,7 @@ TEST_P(DeviceOutput, IsTheFileOfTheProcessor) {
 INSTANTIATE_TEST_SUITE_P(
     All, DeviceOutput,
     testing::Values(DeviceCase{"cavity --n 8 8 8", "", true, 0},
+                    DeviceCase{"cavity --n 8 8 8", "--bulk-nodes", true, 0},
                     DeviceCase{"cavity --n 6 7 8 --jitter 0.25", "--compat jpdc2013", false, 0},
                     DeviceCase{"box --n 9 9 9 --jitter 0.3", "--smoother candidates", true, 0},
                     DeviceCase{"box --n 2 30 12 --jitter 0.3", "--iterations 5", true, 0},
@@ -174,6 +175,42 @@ TEST_F(Devices, OutOfMemoryKeepsTheMeshAndEndsWithSix) {
   EXPECT_EQ(outcome.code, 6);
   EXPECT_THAT(outcome.err, HasSubstr("clCreateBuffer failed with CL_MEM_OBJECT_ALLOCATION_FAILURE"));
   EXPECT_EQ(tool_.run("check out.mesh -q").code, 0);
+}
+
+/// Cells so long that more of a round's candidates improve something than there is room for at first, and
+/// enough of them for --device auto.
+constexpr const char* kGrowing = "generate box --n 21 21 21 --high 1 1 20 --jitter 0.2 -o long.mesh -q";
+
+TEST_F(Devices, NoMemoryToGrowKeepsTheMeshAndEndsWithSix) {
+  if (!has_device()) GTEST_SKIP() << "there is no OpenCL device";
+  ASSERT_EQ(tool_.run(kGrowing).code, 0);
+  const Outcome outcome =
+      tool_.shell(failing("HFR_FAIL_GROWTH=3") + "$TOOL long.mesh -o out.mesh -q --device opencl");
+  EXPECT_EQ(outcome.code, 6);
+  EXPECT_THAT(outcome.err, HasSubstr("clCreateBuffer failed with CL_MEM_OBJECT_ALLOCATION_FAILURE"));
+  EXPECT_THAT(outcome.err, HasSubstr("the mesh is that of the last finished round"));
+  EXPECT_EQ(tool_.run("check out.mesh -q").code, 0);
+}
+
+TEST_F(Devices, ProcessorTakesOverFromADeviceThatFailsInTheMiddle) {
+  if (!has_device()) GTEST_SKIP() << "there is no OpenCL device";
+  ASSERT_EQ(tool_.run(kGrowing).code, 0);
+  const std::string options = "long.mesh --iterations 1 --bulk-nodes ";
+  const int code = tool_.run(options + "-o cpu.mesh").code;
+  const std::string expected = tool_.content("cpu.mesh");
+  std::set<std::string> done_there;
+  for (const char* failure : {"HFR_FAIL_GROWTH=3", "HFR_FAIL_ENQUEUE=300", "HFR_FAIL_ENQUEUE=850"}) {
+    const Outcome outcome =
+        tool_.shell(failing("HFR_PRETEND_GPU=1 " + std::string(failure)) +
+                    "$TOOL -o out.mesh --device auto --json out.json --work-group 1 " + options);
+    EXPECT_EQ(outcome.code, code) << failure << outcome.err;
+    EXPECT_TRUE(tool_.content("out.mesh") == expected) << failure;
+    EXPECT_THAT(outcome.err, HasSubstr("note: no device, or not to the end: ")) << failure;
+    const json report = json::parse(tool_.content("out.json"));
+    for (const json& pass : report["passes"])
+      if (pass["on_device"] == true) done_there.insert(pass["op"]);
+  }
+  EXPECT_TRUE(done_there.contains("node")) << "no removed vertices were there when the device failed";
 }
 
 TEST_F(Devices, DeviceLostAnywhereKeepsTheMeshOfTheLastFinishedRound) {
