@@ -100,6 +100,20 @@ class TupleMap {
     return true;
   }
 
+  /// Forgets one entry, whose place in the order the last one takes: O(1). False when there was none.
+  bool erase_unordered(const std::array<VertexHandle, N>& vertices) {
+    const auto found = position_.find(Order::key(vertices));
+    if (found == position_.end()) return false;
+    const std::size_t gone = found->second;
+    position_.erase(found);
+    if (gone + 1 < entries_.size()) {
+      entries_[gone] = std::move(entries_.back());
+      position_[Order::key(entries_[gone].vertices)] = gone;
+    }
+    entries_.pop_back();
+    return true;
+  }
+
   void clear() {
     entries_.clear();
     position_.clear();

@@ -231,6 +231,8 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, bool met_cell_b
                              options.policy);
   if (options.surface.mode == SurfaceMode::kFrozen)
     result.held = held_cells(mesh, result.stuck, result.stuck_below, options);
+  else
+    blame_features(mesh, result.stuck, result.stuck_below, options);
 }
 
 /// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were

@@ -16,12 +16,14 @@ enum class Limit {
   kFoldedSurface,   ///< an inverted or flat cell that touches a boundary face which lies on another one
   kSurfaceCeiling,  ///< two boundary faces leave too narrow a wedge, or one that the cell has to fill alone
   kInputFeature,    ///< the same where an interface between regions or a labelled face inside takes part
+  kSurfaceFeature,  ///< with a surface that may change: see held_by_features()
   kFrozenVertices,  ///< all four vertices may not move; other cells on them were not found
   kBudget,          ///< time, iterations or the number of cells ran out
   kSearch,          ///< none of these: the operators found nothing better
 };
-inline constexpr std::array<const char*, 6> kLimitNames = {
-    "folded surface", "surface ceiling", "input feature", "frozen vertices", "budget", "search"};
+inline constexpr std::array<const char*, 7> kLimitNames = {
+    "folded surface",  "surface ceiling", "input feature", "surface feature",
+    "frozen vertices", "budget",          "search"};
 
 struct StuckCell {
   CellHandle cell;

@@ -22,9 +22,14 @@ constexpr int kMaxPolishIterations = 60;
 /// idle.
 constexpr double kPolishGain = 1.01;
 constexpr int kMaxIdle = 2;
+/// Where the shape of the surface may change there is always something that gets better by little. An
+/// iteration on more than so many poor cells is idle there unless it mends one in so many.
+constexpr std::size_t kManyPoor = 200;
+constexpr std::size_t kLeastFewer = 10;
 // Cells that the polish may insert vertices for: at most so many, or one in so many.
 constexpr std::size_t kFewPoor = 50;
 constexpr std::size_t kPoorShare = 48;
+constexpr std::size_t kPoorShareCurved = 32;    // where the shape of the surface may change
 constexpr std::size_t kPoorShareAtAnyCost = 4;  // where the worst angle is to be raised as far as it goes
 /// Cells whose surroundings are searched at most where nobody asked for an angle.
 constexpr std::size_t kFewToSearch = 100;
@@ -89,6 +94,7 @@ template <class Metric>
 bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& control, double goal,
                const Few& few) {
   const int limit = options.iterations > 0 ? options.iterations : kMaxPolishIterations;
+  const bool curved = control.surface() && options.surface.mode == SurfaceMode::kFree;
   std::size_t n_poor = stage.n_below(goal);
   double worst = stage.worst();
   int idle = 0;
@@ -99,7 +105,9 @@ bool polish_in(Stage<Metric>& stage, const ImproveOptions& options, RunControl& 
     const std::size_t changes = stage.iterate(i, Focus{goal}, true);
     const std::size_t n_poor_now = stage.n_below(goal);
     const double enough = worst > 0 ? worst * kPolishGain : worst;
-    idle = n_poor_now < n_poor || stage.worst() > enough ? 0 : idle + 1;
+    const std::size_t at_least = curved && n_poor > kManyPoor ? n_poor / kLeastFewer : 0;
+    const bool fewer = n_poor_now + at_least < n_poor;
+    idle = fewer || stage.worst() > enough ? 0 : idle + 1;
     n_poor = n_poor_now;
     worst = stage.worst();
     if (n_poor == 0 || (changes > 0 && idle < kMaxIdle)) continue;
@@ -304,7 +312,9 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share) {
   const double decision = dihedral_decision(goal);
-  const std::size_t share = options.raise_min_dihedral ? kPoorShareAtAnyCost : kPoorShare;
+  const std::size_t share = options.raise_min_dihedral                   ? kPoorShareAtAnyCost
+                            : options.surface.mode == SurfaceMode::kFree ? kPoorShareCurved
+                                                                         : kPoorShare;
   Few few;
   few.to_dig = std::max(kFewPoor, mesh.n_logical_cells() / share);
   few.to_search = options.min_dihedral || options.raise_min_dihedral ? few.to_dig : kFewToSearch;

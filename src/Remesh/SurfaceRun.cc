@@ -152,4 +152,23 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
   return held;
 }
 
+void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                    const ImproveOptions& options) {
+#ifdef HFR_HAS_SURFACE
+  std::vector<CellHandle> cells;
+  for (const StuckCell& cell : stuck) cells.push_back(cell.cell);
+  const auto held = held_by_features(mesh, cells, degrees, options.surface, options.policy);
+  for (std::size_t i = 0; i < stuck.size(); ++i) {
+    Limit& limit = stuck[i].limit;
+    if (limit == Limit::kFoldedSurface || limit == Limit::kBudget) continue;
+    if (held[i])
+      limit = limit == Limit::kInputFeature ? limit : Limit::kSurfaceFeature;
+    else if (limit == Limit::kSurfaceCeiling || limit == Limit::kFrozenVertices)
+      limit = Limit::kSearch;
+  }
+#else
+  static_cast<void>(mesh), static_cast<void>(stuck), static_cast<void>(degrees), static_cast<void>(options);
+#endif
+}
+
 }  // namespace hfr

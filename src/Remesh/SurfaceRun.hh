@@ -33,6 +33,11 @@ class SurfaceRun {
 HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
                      const ImproveOptions& options);
 
+/// With a surface that may change: what hangs on its features is said to, and nothing else is held by
+/// vertices or faces that are frozen.
+void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                    const ImproveOptions& options);
+
 /// Labels on the feature edges and corners of the surface as it is now: see Surface/FeatureLabels.hh. Throws
 /// InvalidInput in a build without OpenMesh.
 void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);

@@ -23,6 +23,11 @@ namespace {
 
 enum Looked : std::size_t { kSwaps, kCollapses, kMoves, kSplits };
 
+// Where so many vertices of a curved surface are looked at, the worst cell of a star has to rise by this
+// factor for its vertex to move: moves cost far more there than inside, and each calls for others.
+constexpr std::size_t kManyMoves = 300;
+constexpr double kMoveGain = 1.05;
+
 /// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
 std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
                                         const Worklist& list) {
@@ -187,7 +192,9 @@ std::size_t Stage<Metric>::surface_moves(int iteration, const Worklist& list) {
   RoundCounts counts;
   if (!bound.empty()) counts = periodic_moves(bound);
   if (!vertices.empty()) {
-    counts += hfr::smooth_pass(mesh_, work_, SurfaceSearch{&surface}, metric_, vertices, options_.policy);
+    SurfaceSearch search{&surface};
+    if (surface.options().mode == SurfaceMode::kFree && vertices.size() > kManyMoves) search.gain = kMoveGain;
+    counts += hfr::smooth_pass(mesh_, work_, search, metric_, vertices, options_.policy);
     surface.moved(mesh_, vertices);
   }
   report("surface smooth", iteration, counts, control_.seconds() - start);

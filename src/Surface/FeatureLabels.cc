@@ -12,9 +12,7 @@ FeatureLabels label_features(TetMesh& mesh, SurfaceOptions options, par::Policy 
   surface::Features found;
   {
     const surface::Arrays arrays = surface::gather(mesh, options, policy);
-    double detail = surface::default_distance(arrays);
-    if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
-    found = surface::find_features(arrays, options, options.mode == SurfaceMode::kFree ? detail : 0);
+    found = surface::find_features(arrays, options, surface::allowed_distance(arrays, options));
   }
   FeatureLabels labels{.edge_label = 1, .corner_label = 1};
   Labels& all = mesh.labels();

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <set>
 
+#include "Surface/InputSurface.hh"
+
 namespace hfr::surface {
 namespace {
 
@@ -105,10 +107,10 @@ std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<E
   return facet;
 }
 
-/// Edges that only turn, in connected sets that fit into a box of a few times the length that is taken for
-/// noise, are noise of the input and no features.
+/// Edges that only turn, in connected sets that fit into a box of a few times the distance that is allowed,
+/// are noise of the input and no features.
 void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
-                const std::vector<std::uint8_t>& only_turns, double detail) {
+                const std::vector<std::uint8_t>& only_turns, double distance) {
   constexpr double kSmall = 3;
   struct Set {
     Vec3 low, high;
@@ -145,9 +147,81 @@ void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
   for (Edge& e : edges) {
     if (!e.feature) continue;
     const Set& set = sets.at(root(e.a.idx()));
-    if (!set.keeps && norm(set.high - set.low) < kSmall * detail) e.feature = false;
+    if (!set.keeps && norm(set.high - set.low) < kSmall * distance) e.feature = false;
   }
 }
+
+/// Edges that only turn, and across which the surface turns by less when what lies within `reach` is taken
+/// together, are noise as well: on each side the faces are followed as far as that, across no other feature.
+/// A sharp edge keeps its two sides apart; one of a bumpy surface has the same surface on both sides.
+class Regions {
+ public:
+  Regions(const Arrays& arrays, std::vector<Edge>& edges, const std::vector<std::uint8_t>& only_turns,
+          double reach, double cosine)
+      : arrays_(arrays),
+        edges_(edges),
+        only_turns_(only_turns),
+        reach_(reach),
+        cosine_(cosine),
+        edge_of_(arrays.faces.size(), {kNone, kNone, kNone}),
+        seen_(arrays.faces.size(), 0) {
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+      if (!edges[i].manifold) continue;
+      for (std::size_t k = 0; k < 2; ++k) edge_of_[edges[i].f[k]][edges[i].k[k]] = i;
+    }
+  }
+  void drop_noise() {
+    constexpr int kPasses = 4;  // a feature that is gone lets through to others
+    for (int pass = 0; pass < kPasses; ++pass) {
+      std::vector<std::uint32_t> noise;
+      for (std::uint32_t i = 0; i < edges_.size(); ++i)
+        if (edges_[i].feature && only_turns_[i] && is_noise(edges_[i])) noise.push_back(i);
+      for (std::uint32_t i : noise) edges_[i].feature = false;
+      if (noise.empty()) return;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0U;
+
+  bool is_noise(const Edge& e) {
+    const Vec3 middle = 0.5 * (arrays_.points[e.a.idx()] + arrays_.points[e.b.idx()]);
+    return dot(normal(e.f[0], middle), normal(e.f[1], middle)) >= cosine_;
+  }
+  /// Of the faces within reach of x that can be come to from f; a large one counts only for its part there.
+  Vec3 normal(std::uint32_t f, Vec3 x) {
+    ++mark_;
+    Vec3 sum;
+    front_.assign(1, f);
+    seen_[f] = mark_;
+    while (!front_.empty()) {
+      const std::uint32_t g = front_.back();
+      front_.pop_back();
+      const Triangle t = corners(arrays_.points, arrays_.faces[g]);
+      const Vec3 n = scaled_normal(t);
+      const double twice_area = norm(n);
+      const double most = reach_ * reach_;
+      sum = sum + (twice_area > most ? most / twice_area : 1.0) * n;
+      for (std::uint32_t i : edge_of_[g]) {
+        if (i == kNone || edges_[i].feature) continue;
+        const std::uint32_t next = edges_[i].f[0] == g ? edges_[i].f[1] : edges_[i].f[0];
+        if (seen_[next] == mark_) continue;
+        seen_[next] = mark_;
+        const Triangle there = corners(arrays_.points, arrays_.faces[next]);
+        if (norm2(nearest_point(there, x) - x) <= reach_ * reach_) front_.push_back(next);
+      }
+    }
+    return unit(sum);
+  }
+
+  const Arrays& arrays_;
+  std::vector<Edge>& edges_;
+  const std::vector<std::uint8_t>& only_turns_;
+  double reach_, cosine_;
+  std::vector<std::array<std::uint32_t, 3>> edge_of_;
+  std::vector<std::uint32_t> seen_, front_;
+  std::uint32_t mark_ = 0;
+};
 
 struct Incidence {
   std::uint32_t n_features = 0;
@@ -309,11 +383,14 @@ double mean_edge(const Arrays& arrays) {
   return arrays.faces.empty() ? 0 : sum / (3.0 * static_cast<double>(arrays.faces.size()));
 }
 
-double default_distance(const Arrays& arrays) {
-  return std::min(0.1 * mean_edge(arrays), 0.005 * diagonal(arrays));
+double allowed_distance(const Arrays& arrays, const SurfaceOptions& options) {
+  constexpr double kOfEdge = 0.3, kOfDiagonal = 0.005;
+  if (options.mode != SurfaceMode::kFree) return 0;
+  if (options.hausdorff) return *options.hausdorff;
+  return std::min(kOfEdge * mean_edge(arrays), kOfDiagonal * diagonal(arrays));
 }
 
-Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail) {
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance) {
   const bool flat = options.mode != SurfaceMode::kFree;
   const double tolerance = kCoplanar * diagonal(arrays);
   const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
@@ -344,7 +421,11 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
     e.feature = turns || other;
     only_turns.push_back(other ? 0 : 1);
   }
-  if (!flat) drop_small(arrays.points, found.edges, only_turns, detail);
+  if (!flat && distance > 0) {
+    constexpr double kReach = 3;
+    Regions(arrays, found.edges, only_turns, kReach * distance, cosine).drop_noise();
+    drop_small(arrays.points, found.edges, only_turns, distance);
+  }
   for (const Edge& e : found.edges) {
     if (!e.feature) continue;
     const std::array<VertexHandle, 2> ends = {e.a, e.b};

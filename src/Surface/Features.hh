@@ -47,13 +47,14 @@ struct Features {
   std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
   std::vector<Freedom> freedom;      ///< per vertex of the volume
 };
-/// `detail`: what lies within a few times that length is too small to be a feature.
-Features find_features(const Arrays& arrays, const SurfaceOptions& options, double detail);
+/// `distance`: how far the surface may go in free mode; what turns only within a few times that is too small
+/// to be a feature.
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance);
+/// Largest distance from the input that the options allow; 0 but in free mode. Unless they say it, three
+/// tenths of the mean edge, but no more than 0.005 of the diagonal of the bounding box.
+double allowed_distance(const Arrays& arrays, const SurfaceOptions& options);
 /// Mean length of the triangles' edges; 0 without any.
 double mean_edge(const Arrays& arrays);
-/// How far the surface may go in free mode unless told otherwise: a tenth of the mean edge, but no more than
-/// 0.5 % of the diagonal of the bounding box.
-double default_distance(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.
 inline double six_volume(const Triangle& t, Vec3 from) {
   return dot(t[0] - from, cross(t[1] - from, t[2] - from));

@@ -20,28 +20,43 @@ class View {
   View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy) {
     options.mode = mode;
     arrays_ = surface::gather(mesh, options, policy);
-    double detail = surface::default_distance(arrays_);
-    if (options.hausdorff) detail = std::min(detail, *options.hausdorff);
-    features_ = surface::find_features(arrays_, options, mode == SurfaceMode::kFree ? detail : 0);
+    features_ = surface::find_features(arrays_, options, surface::allowed_distance(arrays_, options));
   }
 
   /// True when something of the cell's surface may change, and nothing that stays is too narrow for it.
   bool lets_change(const TetMesh& mesh, CellHandle c, double degrees) const {
+    return !has_narrow_feature(mesh, c, degrees) && may_change(mesh, c);
+  }
+  bool holds(const TetMesh& mesh, CellHandle c, double degrees) const {
     const auto& v = mesh.cell(c).v;
-    bool may_change = std::any_of(v.begin(), v.end(), [&](VertexHandle w) {
-      const SurfaceKind kind = features_.freedom[w.idx()].kind;
-      return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
+    const bool all_outside = std::all_of(v.begin(), v.end(), [&](VertexHandle w) {
+      return features_.freedom[w.idx()].kind != SurfaceKind::kInside;
     });
-    for (const auto& [i, j] : kEdgeCorners) {
-      const surface::Edge* e = edge(v[i], v[j]);
-      if (!e || !e->manifold) continue;
-      if (e->feature && angle_inside(*e) < degrees) return false;
-      may_change = may_change || (!e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]]);
-    }
-    return may_change;
+    return has_narrow_feature(mesh, c, degrees) || (all_outside && !may_change(mesh, c));
   }
 
  private:
+  bool may_change(const TetMesh& mesh, CellHandle c) const {
+    const auto& v = mesh.cell(c).v;
+    return std::any_of(v.begin(), v.end(),
+                       [&](VertexHandle w) {
+                         const SurfaceKind kind = features_.freedom[w.idx()].kind;
+                         return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
+                       }) ||
+           std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
+             const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
+             return e && e->manifold && !e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]];
+           });
+  }
+  bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees) const {
+    const auto& v = mesh.cell(c).v;
+    return std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
+      const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
+      if (!e || !e->manifold || !e->feature) return false;
+      const double inside = angle_inside(*e);
+      return (is_inside(mesh, c, *e) ? inside : 360 - inside) < degrees;
+    });
+  }
   const surface::Edge* edge(VertexHandle a, VertexHandle b) const {
     if (b < a) std::swap(a, b);
     const auto& edges = features_.edges;
@@ -51,6 +66,10 @@ class View {
                            return std::pair(e.a, e.b) < w;
                          });
     return at != edges.end() && at->a == a && at->b == b ? &*at : nullptr;
+  }
+  /// False for the cells of the larger region at an edge of an interface.
+  bool is_inside(const TetMesh& mesh, CellHandle c, const surface::Edge& e) const {
+    return !arrays_.interface[e.f[0]] || mesh.region(c) == arrays_.regions[e.f[0]][0];
   }
   /// Degrees between the two faces, through the inside: below 180 where the surface is convex.
   double angle_inside(const surface::Edge& e) const {
@@ -81,6 +100,16 @@ std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> c
                     : free.lets_change(mesh, c, degrees) ? FreedBy::kFree
                                                          : FreedBy::kShape);
   return found;
+}
+
+std::vector<std::uint8_t> held_by_features(const TetMesh& mesh, std::span<const CellHandle> cells,
+                                           double degrees, const SurfaceOptions& options,
+                                           par::Policy policy) {
+  std::vector<std::uint8_t> held(cells.size(), 0);
+  if (cells.empty() || options.mode == SurfaceMode::kFrozen) return held;
+  const View view(mesh, options, options.mode, policy);
+  for (std::size_t i = 0; i < cells.size(); ++i) held[i] = view.holds(mesh, cells[i], degrees) ? 1 : 0;
+  return held;
 }
 
 }  // namespace hfr

@@ -77,35 +77,71 @@ struct InputSurface::Impl {
     tree.init(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
   }
 
-  struct Search {
-    using Scalar = double;
-    const Impl& surface;
-    Vec3 x;
-    Eigen::Vector3d place;
-    const Vec3* side;  // of the normals that count, or null
-    double limit2;     // boxes further away are left out
-    Hit hit{{}, std::numeric_limits<double>::infinity(), 0};
+  double distance2(Vec3 x, std::size_t i) const {
+    return norm2((segments.empty() ? nearest_point(triangles[i], x) : nearest_point(segments[i], x)) - x);
+  }
 
-    double minimumOnVolume(const Box& box) const {  // NOLINT(readability-identifier-naming): Eigen's name
-      const double distance2 = box.squaredExteriorDistance(place);
-      return distance2 > limit2 ? std::numeric_limits<double>::infinity() : distance2;
-    }
-    double minimumOnObject(int item) {  // NOLINT(readability-identifier-naming): Eigen's name
-      const auto i = static_cast<std::size_t>(item);
-      if (side && dot(surface.normals[i], *side) < 0) return std::numeric_limits<double>::infinity();
-      const Vec3 p = surface.segments.empty() ? nearest_point(surface.triangles[i], x)
-                                              : nearest_point(surface.segments[i], x);
-      const double distance2 = norm2(p - x);
-      if (distance2 < hit.distance) hit = {p, distance2, i};
-      return distance2;
-    }
+  /// The state of one search: what is nearest so far, and how near it must be to count.
+  struct Search {
+    Vec3 x;
+    const Vec3* side = nullptr;  // of the normals that count
+    double limit2 = std::numeric_limits<double>::infinity();
+    Hit hit{{}, std::numeric_limits<double>::infinity(), 0};  // distance is squared
   };
 
-  Hit nearest(Vec3 x, const Vec3* side, double limit = std::numeric_limits<double>::infinity()) const {
-    Search search{*this, x, eigen(x), side, limit * limit};
-    Eigen::BVMinimize(tree, search);
+  void look(Search& search, std::size_t i) const {
+    if (search.side && dot(normals[i], *search.side) < 0) return;
+    const Vec3 p =
+        segments.empty() ? nearest_point(triangles[i], search.x) : nearest_point(segments[i], search.x);
+    const double d2 = norm2(p - search.x);
+    if (d2 < search.hit.distance && d2 <= search.limit2) {
+      search.hit = {p, d2, i};
+      search.limit2 = d2;
+    }
+  }
+
+  /// Down the tree, the nearer child first; what is further than the limit is left out, which shrinks to
+  /// what has been found. Ends early once done() says so. (Eigen::BVMinimize keeps a queue on the heap and
+  /// knows no limit: five times slower where the answer is near.)
+  template <class Done>
+  void descend(Search& search, Done&& done) const {
+    struct Place {
+      int index;
+      double distance2;
+    };
+    constexpr std::size_t kDepth = 96;  // the tree halves its items at every level
+    std::array<Place, kDepth> stack;
+    std::size_t n = 0;
+    const Eigen::Vector3d place = eigen(search.x);
+    const auto push = [&](int index) {
+      stack[n++] = {index, tree.getVolume(index).squaredExteriorDistance(place)};
+    };
+    const auto look_at = [&](int index) {
+      Tree::VolumeIterator child = nullptr, last_child = nullptr;
+      Tree::ObjectIterator item = nullptr, last_item = nullptr;
+      tree.getChildren(index, child, last_child, item, last_item);
+      for (; item != last_item; ++item) look(search, static_cast<std::size_t>(*item));
+      const std::size_t first = n;
+      for (; child != last_child; ++child) push(*child);
+      if (n == first + 2 && stack[first].distance2 < stack[first + 1].distance2)
+        std::swap(stack[first], stack[first + 1]);
+    };
+    look_at(tree.getRootIndex());
+    while (n > 0 && !done()) {
+      const Place at = stack[--n];
+      if (at.distance2 <= search.limit2) look_at(at.index);
+    }
+  }
+
+  static Hit result(Search& search) {
     search.hit.distance = std::sqrt(search.hit.distance);
     return search.hit;
+  }
+  Hit nearest(Vec3 x, const Vec3* side, double limit, std::span<const std::uint32_t> guesses) const {
+    Search search{x, side, limit * limit};
+    for (std::uint32_t i : guesses) look(search, i);
+    descend(search, [] { return false; });
+    return result(search);
   }
 };
 
@@ -131,16 +167,34 @@ InputSurface& InputSurface::operator=(InputSurface&&) noexcept = default;
 std::size_t InputSurface::size() const { return impl_->triangles.size() + impl_->segments.size(); }
 Vec3 InputSurface::normal(std::size_t item) const { return impl_->normals[item]; }
 
-InputSurface::Hit InputSurface::nearest(Vec3 x) const { return impl_->nearest(x, nullptr); }
+InputSurface::Hit InputSurface::nearest(Vec3 x) const {
+  return impl_->nearest(x, nullptr, std::numeric_limits<double>::infinity(), {});
+}
+InputSurface::Hit InputSurface::nearest(Vec3 x, std::size_t guess) const {
+  const auto only = static_cast<std::uint32_t>(guess);
+  return impl_->nearest(x, nullptr, std::numeric_limits<double>::infinity(), {&only, 1});
+}
 InputSurface::Hit InputSurface::nearest_within(Vec3 x, double limit) const {
-  Hit hit = impl_->nearest(x, nullptr, limit);
-  if (hit.distance > limit) hit.distance = std::numeric_limits<double>::infinity();
-  return hit;
+  return impl_->nearest(x, nullptr, limit, {});
 }
 InputSurface::Hit InputSurface::nearest_within(Vec3 x, double limit, Vec3 side) const {
-  Hit hit = impl_->nearest(x, &side, limit);
-  if (hit.distance > limit) hit.distance = std::numeric_limits<double>::infinity();
-  return hit;
+  return impl_->nearest(x, &side, limit, {});
 }
+InputSurface::Hit InputSurface::nearest_within(Vec3 x, double limit, Vec3 side,
+                                               std::span<const std::uint32_t> guesses) const {
+  return impl_->nearest(x, &side, limit, guesses);
+}
+
+bool InputSurface::is_within(Vec3 x, double limit, std::span<const std::uint32_t> guesses) const {
+  const double limit2 = limit * limit;
+  for (std::uint32_t i : guesses)
+    if (impl_->distance2(x, i) <= limit2) return true;
+  Impl::Search search{x, nullptr, limit2};
+  const auto found = [&] { return search.hit.distance <= limit2; };
+  impl_->descend(search, found);
+  return found();
+}
+
+double InputSurface::distance(Vec3 x, std::size_t item) const { return std::sqrt(impl_->distance2(x, item)); }
 
 }  // namespace hfr

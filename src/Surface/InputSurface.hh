@@ -35,7 +35,14 @@ class InputSurface {
   /// the limit. With `side`: only triangles whose normal does not point away from it count.
   Hit nearest_within(Vec3 x, double limit) const;
   Hit nearest_within(Vec3 x, double limit, Vec3 side) const;
-  Vec3 normal(std::size_t item) const;  ///< of a triangle, length 1; zero when it has no area
+  /// The same, quick where one of the guessed items is the answer or little further. Of items as near as a
+  /// guess, the guess counts.
+  Hit nearest_within(Vec3 x, double limit, Vec3 side, std::span<const std::uint32_t> guesses) const;
+  Hit nearest(Vec3 x, std::size_t guess) const;
+  /// Is anything no further from x than `limit`? Quick where it is one of the guessed items.
+  bool is_within(Vec3 x, double limit, std::span<const std::uint32_t> guesses) const;
+  double distance(Vec3 x, std::size_t item) const;  ///< of x from one triangle or segment
+  Vec3 normal(std::size_t item) const;              ///< of a triangle, length 1; zero when it has no area
 
  private:
   struct Impl;

@@ -11,25 +11,45 @@ namespace {
 
 constexpr double kMaxCuts = 64;  // of one triangle's edges
 
+/// The largest distance of the points spread over some triangles. A point that is no further from the
+/// triangle nearest to its neighbour than another point is from the whole surface cannot be the one.
+class Furthest {
+ public:
+  Furthest(const InputSurface& to, double spacing) : to_(to), spacing_(spacing) {}
+  void look(const Triangle& t) {
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t[(k + 1) % 3] - t[k]));
+    const double cuts = std::clamp(std::ceil(longest / spacing_), 1.0, kMaxCuts);
+    for (double u = 0; u <= cuts; ++u) {
+      for (double v = 0; u + v <= cuts; ++v) {
+        const Vec3 x = t[0] + (u / cuts) * (t[1] - t[0]) + (v / cuts) * (t[2] - t[0]);
+        if (to_.distance(x, near_) <= largest_) continue;
+        const InputSurface::Hit hit = to_.nearest(x, near_);
+        near_ = hit.item;
+        largest_ = std::max(largest_, hit.distance);
+      }
+    }
+  }
+  double largest() const { return largest_; }
+
+ private:
+  const InputSurface& to_;
+  double spacing_;
+  std::size_t near_ = 0;
+  double largest_ = 0;
+};
+
 double largest_distance(std::span<const Triangle> from, const InputSurface& to, double spacing,
                         par::Policy policy) {
-  return par::reduce(
-      policy, from.size(), 0.0,
-      [&](std::size_t i) {
-        const Triangle& t = from[i];
-        double longest = 0;
-        for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t[(k + 1) % 3] - t[k]));
-        const double cuts = std::clamp(std::ceil(longest / spacing), 1.0, kMaxCuts);
-        double largest = 0;
-        for (double u = 0; u <= cuts; ++u) {
-          for (double v = 0; u + v <= cuts; ++v) {
-            const Vec3 x = t[0] + (u / cuts) * (t[1] - t[0]) + (v / cuts) * (t[2] - t[0]);
-            largest = std::max(largest, to.nearest(x).distance);
-          }
-        }
-        return largest;
-      },
-      [](double a, double b) { return std::max(a, b); });
+  const int n_parts = par::thread_count(policy, from.size());
+  std::vector<double> largest(static_cast<std::size_t>(n_parts));
+  par::parts(n_parts, [&](int part) {
+    Furthest furthest(to, spacing);
+    const std::size_t end = par::part_begin(from.size(), n_parts, part + 1);
+    for (std::size_t i = par::part_begin(from.size(), n_parts, part); i < end; ++i) furthest.look(from[i]);
+    largest[static_cast<std::size_t>(part)] = furthest.largest();
+  });
+  return *std::max_element(largest.begin(), largest.end());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <set>
 #include <unordered_set>
 
+#include "Operators/Cavity.hh"
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
 #include "Surface/Periodic.hh"
@@ -42,9 +43,13 @@ using OmFace = Om::FaceHandle;
 Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Points of a triangle by which its distance is judged, beside its corners and the middles of its edges.
-constexpr std::array<std::array<double, 2>, 4> kInner = {
-    {{1.0 / 3, 1.0 / 3}, {1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}};
+/// Of the mean edge length of the surface: normals of triangles no larger say little.
+constexpr double kDetail = 0.1;
+/// How far apart the points of a triangle are by which its distance is judged, of the mean edge; and into how
+/// many pieces its edges are cut at least and at most.
+constexpr double kSpacing = 0.3;
+constexpr int kLeastCuts = 2;
+constexpr int kMostCuts = 12;
 /// The samples are judged by somewhat less than what is allowed, for what lies between them.
 constexpr double kBetween = 0.7;
 /// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
@@ -64,7 +69,16 @@ struct FaceRecord {
   HalfFaceHandle inside;                 // where it was when last asked for
   std::uint32_t facet = 0;               // flat mode
   std::vector<Vec3> samples;             // of the input, free mode: points that were nearest to this face
+  std::uint32_t beneath = 0;             // free mode: a triangle of the input that lies about there
 };
+
+/// Calls f(u, v) for the points of a triangle, at t0 + u·(t1-t0) + v·(t2-t0), that cut its edges into so many
+/// pieces.
+template <class F>
+void for_lattice(int cuts, F&& f) {
+  for (int i = 0; i <= cuts; ++i)
+    for (int j = 0; i + j <= cuts; ++j) f(i, j);
+}
 
 /// Disjoint sets of corners.
 class Union {
@@ -94,7 +108,8 @@ std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
 struct SurfaceMesh::Impl {
   SurfaceOptions options;
   double hausdorff = 0;
-  double detail = 0;  // what is no larger is noise
+  double detail = 0;   // what is no larger is noise
+  double spacing = 0;  // of points by which distances are judged
   Om om;
   std::vector<VertexHandle> vertex;              // of the volume, per OpenMesh vertex
   std::vector<OmVertex> first;                   // OpenMesh's per vertex of the volume; invalid inside
@@ -172,6 +187,12 @@ struct SurfaceMesh::Impl {
   /// The vertices of each orbit move together; not at all where they are of several kinds.
   void bind(std::vector<std::vector<VertexHandle>> found);
 
+  using Guesses = std::span<std::uint32_t>;
+  bool are_near(std::span<const Triangle> born, std::span<const Triangle> dead, Guesses beneath,
+                double distance) const;
+  bool turn_little(std::span<const Triangle> born, std::span<const Triangle> dead, Guesses beneath,
+                   double distance) const;
+
   OmVertex add_vertex(VertexHandle v, Vec3 p) {
     const OmVertex w = om.add_vertex(eigen(p));
     vertex.resize(static_cast<std::size_t>(w.idx()) + 1);
@@ -222,23 +243,47 @@ struct SurfaceMesh::Impl {
   }
   bool keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_dead, std::span<const Triangle> dead,
                      std::span<const Triangle> born) const;
-  /// Every sample goes to the nearest of these faces.
-  void share_samples(const std::vector<OmFace>& among, std::vector<Vec3> samples) {
+  int cuts_of(const Triangle& t) const {
+    const double longest2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+    return std::clamp(static_cast<int>(std::ceil(std::sqrt(longest2) / spacing)), kLeastCuts, kMostCuts);
+  }
+  /// A sample stays where it is while that face is near enough, and goes to the nearest of these faces
+  /// otherwise; so do those that have no face.
+  void share_samples(const std::vector<OmFace>& among, std::vector<Vec3> homeless) {
+    constexpr double kNearEnough = 0.25;  // of what is allowed
+    const double enough2 = kNearEnough * kNearEnough * hausdorff * hausdorff;
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> beneath;
     for (OmFace f : among) {
-      samples.insert(samples.end(), record(f).samples.begin(), record(f).samples.end());
-      record(f).samples.clear();
+      triangles.push_back(corners(f));
+      beneath.push_back(record(f).beneath);
+      std::erase_if(record(f).samples, [&](Vec3 s) {
+        const bool leaves = norm2(nearest_point(triangles.back(), s) - s) > enough2;
+        if (leaves) homeless.push_back(s);
+        return leaves;
+      });
     }
-    for (Vec3 s : samples) {
-      OmFace nearest;
+    for (Vec3 s : homeless) {
+      std::size_t nearest = 0;
       double least = std::numeric_limits<double>::infinity();
-      for (OmFace f : among) {
-        const double d = norm2(nearest_point(corners(f), s) - s);
+      for (std::size_t i = 0; i < among.size() && least > 0; ++i) {
+        const double d = norm2(nearest_point(triangles[i], s) - s);
         if (d < least) {
           least = d;
-          nearest = f;
+          nearest = i;
         }
       }
-      if (nearest.is_valid()) record(nearest).samples.push_back(s);
+      if (least < std::numeric_limits<double>::infinity()) record(among[nearest]).samples.push_back(s);
+    }
+    for (std::size_t i = 0; i < among.size(); ++i) {
+      const Vec3 middle = (1.0 / 3) * (triangles[i][0] + triangles[i][1] + triangles[i][2]);
+      double least = std::numeric_limits<double>::infinity();
+      for (std::uint32_t item : beneath) {
+        const double d = shape->distance(middle, item);
+        if (!(d < least)) continue;
+        least = d;
+        record(among[i]).beneath = item;
+      }
     }
   }
   std::vector<OmFace> faces_round(OmVertex v) const {
@@ -316,14 +361,16 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
   std::vector<Triangle> triangles;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<std::uint8_t> is_sampled(arrays.points.size(), 0);
-  const auto inside = [](const Triangle& t, double u, double v) {
-    return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
-  };
   if (!arrays.faces.empty()) origin = arrays.points[arrays.faces[0][0].idx()];
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
     const Triangle t = surface::corners(arrays.points, arrays.faces[i]);
     triangles.push_back(t);
-    for (const auto& [u, v] : kInner) faces[i].samples.push_back(inside(t, u, v));
+    faces[i].beneath = static_cast<std::uint32_t>(i);
+    const int cuts = cuts_of(t);
+    for_lattice(cuts, [&](int u, int v) {
+      if (u == 0 || v == 0 || u + v == cuts) return;  // edges and corners are shared
+      faces[i].samples.push_back(t[0] + (1.0 * u / cuts) * (t[1] - t[0]) + (1.0 * v / cuts) * (t[2] - t[0]));
+    });
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint8_t& done = is_sampled[arrays.faces[i][k].idx()];
       if (!done) faces[i].samples.push_back(t[k]);
@@ -338,7 +385,9 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
   }
   for (const surface::Edge& e : features.edges) {
     const std::array<Vec3, 2> ends = {arrays.points[e.a.idx()], arrays.points[e.b.idx()]};
-    faces[e.f[0]].samples.push_back(0.5 * (ends[0] + ends[1]));
+    const int cuts = cuts_of({ends[0], ends[1], ends[1]});
+    for (int i = 1; i < cuts; ++i)
+      faces[e.f[0]].samples.push_back(ends[0] + (1.0 * i / cuts) * (ends[1] - ends[0]));
     if (e.feature) segments.push_back(ends);
   }
   if (!triangles.empty()) shape.emplace(triangles);
@@ -347,11 +396,12 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
 
 void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted) {
   if (!flat()) {
-    detail = surface::default_distance(arrays);
-    hausdorff = wanted.hausdorff.value_or(detail);
-    detail = std::min(detail, hausdorff);
+    const double edge = surface::mean_edge(arrays);
+    spacing = kSpacing * edge;
+    hausdorff = surface::allowed_distance(arrays, wanted);
+    detail = std::min(kDetail * edge, hausdorff);
   }
-  surface::Features features = surface::find_features(arrays, options, detail);
+  surface::Features features = surface::find_features(arrays, options, hausdorff);
   build(arrays, features);
   if (!flat()) take_shape(arrays, features);
   freedom = std::move(features.freedom);
@@ -409,8 +459,7 @@ SurfaceMesh::~SurfaceMesh() = default;
 
 double SurfaceMesh::allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
   if (options.mode != SurfaceMode::kFree) return 0;
-  if (options.hausdorff) return *options.hausdorff;
-  return surface::default_distance(surface::gather(mesh, options, policy));
+  return surface::allowed_distance(surface::gather(mesh, options, policy), options);
 }
 
 const SurfaceOptions& SurfaceMesh::options() const { return impl_->options; }
@@ -551,6 +600,74 @@ Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
   return on_curve ? f.anchor + dot(r, f.axis) * f.axis : x - dot(r, f.axis) * f.axis;
 }
 
+/// Are points spread over the new triangles no further than `distance` from the input? What the new triangles
+/// have in common with the old ones has been looked at before.
+bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const Triangle> dead,
+                                 Guesses beneath, double distance) const {
+  const auto is_near = [&](Vec3 x) {
+    for (std::size_t i = 0; i < beneath.size(); ++i) {
+      if (!(shape->distance(x, beneath[i]) <= distance)) continue;
+      std::swap(beneath[i], beneath[i / 2]);  // the next point is likely to be there, too
+      return true;
+    }
+    return shape->is_within(x, distance, {});
+  };
+  const auto has_edge = [](const Triangle& t, Vec3 p, Vec3 q) {
+    return (t[0] == p && t[1] == q) || (t[1] == p && t[2] == q) || (t[2] == p && t[0] == q);
+  };
+  const auto is_old = [&](Vec3 x) {
+    return std::any_of(dead.begin(), dead.end(),
+                       [&](const Triangle& d) { return d[0] == x || d[1] == x || d[2] == x; });
+  };
+  for (std::size_t i = 0; i < born.size(); ++i) {
+    const Triangle& t = born[i];
+    const int cuts = cuts_of(t);
+    const auto at = [&](int u, int v) {
+      return t[0] + (1.0 * u / cuts) * (t[1] - t[0]) + (1.0 * v / cuts) * (t[2] - t[0]);
+    };
+    for (int u = 1; u < cuts; ++u)
+      for (int v = 1; u + v < cuts; ++v)
+        if (!is_near(at(u, v))) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = t[k];
+      const Vec3 q = t[(k + 1) % 3];
+      if (!is_old(p) && !is_near(p)) return false;
+      const bool seen =
+          std::any_of(born.begin(), born.begin() + static_cast<std::ptrdiff_t>(i),
+                      [&](const Triangle& other) { return has_edge(other, q, p); }) ||
+          std::any_of(dead.begin(), dead.end(), [&](const Triangle& old) { return has_edge(old, p, q); });
+      for (int j = 1; j < cuts && !seen; ++j)
+        if (!is_near(p + (1.0 * j / cuts) * (q - p))) return false;
+    }
+  }
+  return true;
+}
+
+/// Are the normals of the new triangles near those of the input no further than `distance` beneath them? The
+/// normals of triangles no larger than noise say little, but they must not turn back. What is worse already
+/// must not get worse still: a surface that folds over has to be mended somehow.
+bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> born, std::span<const Triangle> dead,
+                                    Guesses beneath, double distance) const {
+  const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
+    const Vec3 n = unit(scaled_normal(t));
+    const Vec3 middle = t[0] + (1.0 / 3) * (t[1] - t[0]) + (1.0 / 3) * (t[2] - t[0]);
+    const InputSurface::Hit hit = shape->nearest_within(middle, distance, n, beneath);
+    return hit.distance <= distance ? dot(n, shape->normal(hit.item)) : -1.0;
+  };
+  const double bound = std::cos(options.normal_angle * kDegree);
+  double worst_dead = 2;  // not known yet
+  for (const Triangle& t : born) {
+    const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+    const bool small = size2 < 4 * detail * detail;
+    const double now = turned(t);
+    if (now >= (small ? kNotBack : bound)) continue;
+    if (worst_dead == 2)
+      for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
+    if (now < worst_dead) return false;
+  }
+  return true;
+}
+
 bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_dead,
                               std::span<const Triangle> dead, std::span<const Triangle> born) const {
   constexpr double kSameSide = 0.5;
@@ -567,48 +684,26 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
 
   if (!impl_->keeps_regions(faces_dead, dead, born)) return false;
 
-  const InputSurface& shape = *impl_->shape;
+  // What was beneath the old triangles is likely to be beneath the new ones.
+  FixedVector<std::uint32_t, 64> beneath;
   const double h = kBetween * impl_->hausdorff;
-  const auto inside = [](const Triangle& t, double u, double v) {
-    return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
-  };
-  for (const auto& f : faces_dead) {
-    const OmFace face = impl_->find(f);
+  std::size_t last = 0;  // the triangle that was near
+  for (std::size_t i = 0; i < faces_dead.size(); ++i) {
+    const OmFace face = impl_->find(faces_dead[i]);
     if (!face.is_valid()) return false;
-    for (Vec3 s : impl_->record(face).samples) {
-      const bool near = std::any_of(born.begin(), born.end(), [&](const Triangle& t) {
-        return norm2(nearest_point(t, s) - s) <= h * h;
-      });
-      if (!near) return false;
+    const FaceRecord& record = impl_->record(face);
+    if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
+      beneath.push_back(record.beneath);
+    if (born.size() == faces_dead.size()) last = i;
+    for (Vec3 s : record.samples) {
+      const auto is_near = [&](const Triangle& t) { return norm2(nearest_point(t, s) - s) <= h * h; };
+      if (is_near(born[last])) continue;
+      const auto at = std::find_if(born.begin(), born.end(), is_near);
+      if (at == born.end()) return false;
+      last = static_cast<std::size_t>(at - born.begin());
     }
   }
-  for (const Triangle& t : born) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!(shape.nearest_within(0.5 * (t[k] + t[(k + 1) % 3]), h).distance <= h)) return false;
-      if (!(shape.nearest_within(t[k], h).distance <= h)) return false;
-    }
-    for (const auto& [u, v] : kInner)
-      if (!(shape.nearest_within(inside(t, u, v), h).distance <= h)) return false;
-  }
-  // The normals of triangles no larger than noise say little, but they must not turn back. What is worse
-  // already must not get worse still: a surface that folds over has to be mended somehow.
-  const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
-    const Vec3 n = unit(scaled_normal(t));
-    const InputSurface::Hit hit = shape.nearest_within(inside(t, 1.0 / 3, 1.0 / 3), 2 * h, n);
-    return hit.distance <= 2 * h ? dot(n, shape.normal(hit.item)) : -1.0;
-  };
-  const double bound = std::cos(impl_->options.normal_angle * kDegree);
-  double worst_dead = 2;  // not known yet
-  for (const Triangle& t : born) {
-    const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
-    const bool small = size2 < 4 * impl_->detail * impl_->detail;
-    const double now = turned(t);
-    if (now >= (small ? kNotBack : bound)) continue;
-    if (worst_dead == 2)
-      for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
-    if (now < worst_dead) return false;
-  }
-  return true;
+  return impl_->are_near(born, dead, beneath, h) && impl_->turn_little(born, dead, beneath, 2 * h);
 }
 
 /// Dead and born triangles correspond one to one where they bound different regions.
@@ -783,10 +878,7 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
 void SurfaceMesh::write_labels(TetMesh& mesh) {
   if (impl_->gone.empty() && impl_->fresh.empty()) return;
   auto& labels = mesh.labels().faces;
-  std::set<std::array<VertexHandle, 3>> gone;
-  for (const auto& f : impl_->gone) gone.insert(sorted(f));
-  labels.rename_vertices([](VertexHandle v) { return v; },
-                         [&](const auto& f) { return !gone.contains(sorted(f)); });
+  for (const auto& f : impl_->gone) labels.erase_unordered(f);
   for (int i : impl_->fresh) {
     const OmFace f(i);
     if (impl_->om.status(f).deleted()) continue;

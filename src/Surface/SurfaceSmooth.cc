@@ -91,7 +91,8 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
 
   Move move;
   move.old_worst = worst_of(link, quality);
-  double worst_now = move.old_worst;
+  const double floor = move.old_worst > 0 ? gain * move.old_worst : move.old_worst;
+  double worst_now = floor;
   Vec3 place = origin;
   const auto consider = [&](Vec3 x) {
     const Vec3 candidate = surface->project(v, x + lift);
@@ -135,8 +136,8 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
   }
   // Where the shape forbids the place, one nearer by may do.
   for (int i = 0; i < 3 && place != origin; ++i) {
-    const double worst = worst_with(mesh, v, link, place, metric, move.old_worst);
-    if (worst > move.old_worst && patch.keeps_shape(*surface, place)) {
+    const double worst = worst_with(mesh, v, link, place, metric, floor);
+    if (worst > floor && patch.keeps_shape(*surface, place)) {
       move.target = place;
       move.new_worst = worst;
       return move;

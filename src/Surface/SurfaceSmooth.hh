@@ -19,6 +19,8 @@ struct SurfaceSearch {
   const SurfaceMesh* surface = nullptr;
   int halvings = 4;
   int iterations = 20;
+  /// By what factor the worst decision value of a star without inverted cells must rise.
+  double gain = 1;
 
   template <class Metric>
   std::optional<Move> operator()(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link,

@@ -211,7 +211,7 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
   const double edge = surface::mean_edge(arrays);
   const double bound = options.mode == SurfaceMode::kFlat
                            ? kCoplanar * edge
-                           : kShare * options.hausdorff.value_or(surface::default_distance(arrays));
+                           : kShare * surface::allowed_distance(arrays, options);
   const SurfaceDistance moved = surface_distance(before, triangles(arrays, best), kSpacing * edge, policy);
   if (!(moved.hausdorff() <= bound)) {
     done.n_left = done.n_folded;

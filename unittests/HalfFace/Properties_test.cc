@@ -101,6 +101,22 @@ TEST(Property, RemovedKeepsItsValuesForWhoHoldsThem) {
   EXPECT_NO_THROW(mesh.request_cell_property<double>("p"));
 }
 
+TEST(TupleMap, ErasedEntryGivesItsPlaceToTheLastOne) {
+  const auto edge = [](Index a, Index b) { return std::array{VertexHandle(a), VertexHandle(b)}; };
+  TupleMap<2, int> map;
+  for (Index i = 0; i < 4; ++i) map.set(edge(i, i + 1), static_cast<int>(i));
+  EXPECT_TRUE(map.erase_unordered(edge(2, 1)));
+  EXPECT_FALSE(map.erase_unordered(edge(1, 2)));
+  ASSERT_EQ(map.size(), 3U);
+  EXPECT_EQ(map.entries()[1].value, 3);
+  EXPECT_EQ(*map.find(edge(3, 4)), 3);
+  EXPECT_TRUE(map.erase_unordered(edge(2, 3)));  // the last one
+  EXPECT_EQ(*map.find(edge(0, 1)), 0);
+  EXPECT_EQ(*map.find(edge(3, 4)), 3);
+  EXPECT_EQ(map.find(edge(2, 3)), nullptr);
+  EXPECT_EQ(map.size(), 2U);
+}
+
 TEST(TupleProperties, OrderCountsOnlyForDirectedThings) {
   TetMesh mesh = test::single_cell();
   const auto v = mesh.halfface_vertices(HalfFaceHandle(0));

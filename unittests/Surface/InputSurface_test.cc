@@ -73,6 +73,29 @@ TEST(InputSurface, FindsWhatASearchOfAllTrianglesFinds) {
   EXPECT_LT(n_within, 180U) << "the limit is always met";
 }
 
+TEST(InputSurface, GuessesChangeNoAnswer) {
+  Engine engine(4);
+  const auto triangles = random_triangles(200, engine);
+  const InputSurface surface(triangles);
+  std::size_t n_within = 0;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const Vec3 x = random_point(engine, -1.5, 1.5);
+    const Vec3 side = random_point(engine, -1, 1);
+    const std::vector<std::uint32_t> guesses = {i, (i * 7) % 200};
+    const double least = surface.nearest(x).distance;
+    EXPECT_EQ(surface.nearest(x, i).distance, least);
+    EXPECT_EQ(surface.nearest_within(x, 0.5, side, guesses).distance,
+              surface.nearest_within(x, 0.5, side).distance);
+    constexpr double kLimit = 0.3;
+    n_within += least <= kLimit;
+    EXPECT_EQ(surface.is_within(x, kLimit, {}), least <= kLimit);
+    EXPECT_EQ(surface.is_within(x, kLimit, guesses), least <= kLimit);
+    EXPECT_EQ(surface.distance(x, i), norm(nearest_point(triangles[i], x) - x));
+  }
+  EXPECT_GT(n_within, 20U) << "the limit is never met";
+  EXPECT_LT(n_within, 180U) << "the limit is always met";
+}
+
 TEST(InputSurface, OfOneTriangleOrOneSegmentAnswersToo) {
   const std::vector<std::array<Vec3, 3>> triangle = {{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}};
   EXPECT_DOUBLE_EQ(InputSurface(triangle).nearest({0.2, 0.2, 3}).distance, 3);

@@ -2,13 +2,16 @@
 // Interfaces between regions: both sides change in one step, and keep their regions, labels and volumes.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "HalfFace/Check.hh"
 #include "IO/Hash.hh"
 #include "Operators/Metrics.hh"
 #include "Remesh/Meshes.hh"
+#include "Surface/HeldCells.hh"
 #include "Surface/InterfaceSwap.hh"
 #include "Surface/SurfaceCollapse.hh"
 #include "Surface/SurfaceMesh.hh"
@@ -221,6 +224,30 @@ TEST(Interfaces, EveryNumberOfThreadsGivesTheSameBits) {
       if (!first) first = hash;
       EXPECT_EQ(hash, *first) << threads << " threads";
     }
+  }
+}
+
+TEST(Interfaces, NarrowEdgeHoldsTheCellsOnItsOwnSideOnly) {
+  // Four cells round an edge; the first has 10 degrees there.
+  const double half = 5 * std::numbers::pi / 180;
+  for (const bool first_is_smaller : {true, false}) {
+    TetMesh mesh = build({{-1, 0, 0},
+                          {1, 0, 0},
+                          {0, std::sin(half), std::cos(half)},
+                          {0, -std::sin(half), std::cos(half)},
+                          {0, -1, -0.5},
+                          {0, 1, -0.5}},
+                         std::vector<Corners>{{0, 1, 2, 3}, {0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 2}});
+    std::vector<CellHandle> cells;
+    for (CellHandle c : mesh.cells()) {
+      mesh.set_region(c, (c.idx() == 0) == first_is_smaller ? 1 : 2);
+      cells.push_back(c);
+    }
+    SurfaceOptions options;
+    options.mode = SurfaceMode::kFree;
+    options.feature_angle = 160;  // no edge of the boundary turns by that
+    options.hausdorff = 0.01;
+    EXPECT_EQ(held_by_features(mesh, cells, 15, options, {}), (std::vector<std::uint8_t>{1, 0, 0, 0}));
   }
 }
 

@@ -50,6 +50,22 @@ TEST(SurfaceMesh, BoxHasCornersEdgesAndFacets) {
   }
 }
 
+TEST(SurfaceMesh, BumpsWithinReachAreNoFeaturesAndTheRimIs) {
+  TetMesh mesh = built(generate::box({12, 12, 12}));
+  const auto on_rim = [](Vec3 p) { return p.x == 0 || p.x == 1 || p.y == 0 || p.y == 1; };
+  for (VertexHandle v : mesh.boundary_vertices()) {
+    const Vec3 p = mesh.point(v);
+    if (p.z == 1 && !on_rim(p))
+      mesh.set_point(v, {p.x, p.y, 1 + 0.06 * (generate::random_unit(3, v.idx()) - 0.5)});
+  }
+  constexpr std::size_t kSharp = 12 * 12;
+  EXPECT_GT(SurfaceMesh(mesh, free_within(1e-3)).n_feature_edges(), kSharp + 20);
+  const SurfaceMesh surface(mesh, free_within(0.05));
+  EXPECT_EQ(surface.n_feature_edges(), kSharp);
+  for (int i = 0; i < 12; ++i)
+    EXPECT_TRUE(surface.is_feature(at(mesh, {i / 12.0, 0, 1}), at(mesh, {(i + 1) / 12.0, 0, 1})));
+}
+
 TEST(SurfaceMesh, FacesAndHalfFacesAreLinkedBothWays) {
   const TetMesh mesh = jittered(3, 0.2, 1);
   SurfaceMesh surface(mesh, flat());
