@@ -161,10 +161,14 @@ TEST(VertexInsertion, FollowsUpTheSitesThatItIsToldAndMayLose) {
       op.only_site = -1;
       const auto all = op.evaluate(mesh, Seed<MinSine2>(C(i)));
       ASSERT_EQ(all.has_value(), best > 0);
-      if (all) EXPECT_EQ(all->new_worst, best);
+      if (all) {
+        EXPECT_EQ(all->new_worst, best);
+      }
       op.max_sites = 1;
       const auto first = op.evaluate(mesh, Seed<MinSine2>(C(i)));
-      if (first) EXPECT_LE(first->new_worst, best);
+      if (first) {
+        EXPECT_LE(first->new_worst, best);
+      }
     }
   }
   EXPECT_GT(lost, 50);
