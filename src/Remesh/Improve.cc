@@ -30,6 +30,8 @@ constexpr double kFewer = 0.8;
 /// Where more than this share of the cells stays below so many degrees after the bulk stage, vertices are
 /// missing rather than badly connected, and are put in first.
 constexpr double kManyPoor = 0.08;
+/// Where more than this share does, it is the mesh that is poor: vertices would not get it there either.
+constexpr double kAllPoor = 0.6;
 constexpr double kRefineGoal = 30;
 /// What a new vertex must do there for sin² of the worst of its cells; the second where cells may be many.
 constexpr double kRefineGain = 1.6;
@@ -97,9 +99,9 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
     polish(mesh, work, options, control, floor);
     now = smallest();
   }
-  const auto n_poor = static_cast<double>(n_below(mesh, kRefineGoal, options.policy));
-  if (!control.surface() && now < kRefineGoal &&
-      n_poor > kManyPoor * static_cast<double>(mesh.n_logical_cells())) {
+  const double share = static_cast<double>(n_below(mesh, kRefineGoal, options.policy)) /
+                       static_cast<double>(mesh.n_logical_cells());
+  if (!control.surface() && now < kRefineGoal && share > kManyPoor && share < kAllPoor) {
     refine(mesh, work, with_room_left(options), control, kRefineGoal, kRefineGain);
     now = smallest();
   }

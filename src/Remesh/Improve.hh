@@ -66,7 +66,7 @@ struct ImproveOptions {
   /// Goal for the smallest dihedral angle, degrees, in (0, 70.5). With a goal, only cells that miss it are
   /// worked on. Without one, the whole mesh is improved and its worst cells are raised as far as they go.
   std::optional<double> min_dihedral;
-  /// Instead of a goal: raise the smallest dihedral as far as it goes, whatever it costs in time and cells.
+  /// Instead of a goal: raise the smallest dihedral as far as it goes, whatever it costs in time.
   bool raise_min_dihedral = false;
   int iterations = 0;  ///< limit of bulk iterations, or of all with a goal; 0 = until little is gained
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
@@ -75,10 +75,10 @@ struct ImproveOptions {
   /// Vertex removal in the bulk stage as well, on the surface, too, where that may change: fewer cells,
   /// better percentiles on some meshes, and a lower worst angle on most (measured in docs/worst-angles.md).
   bool bulk_nodes = false;
-  /// No vertex is removed where the mesh would come to have fewer cells than min_cells, and none inserted
-  /// where it would come to have more than max_cells. Swaps may still take away or add a few. 0: with
-  /// raise_min_dihedral, compat or a surface that may change no bound; else 81 and 119 of 100 cells of the
-  /// input, which towards min_dihedral count only until nothing else helps.
+  /// No vertex is removed where cells would come to be fewer than min_cells, none inserted where more than
+  /// max_cells; swaps may add or take a few. 0: no bound with compat or a surface that may change; else 81
+  /// and 119 of 100 cells of the input. They hold towards min_dihedral until nothing else helps;
+  /// raise_min_dihedral goes on to 150 of 100 cells of what they leave.
   std::size_t min_cells = 0;
   std::size_t max_cells = 0;
   /// Vertices are removed wherever that makes the worst angle of their cells better: without a goal a stage
