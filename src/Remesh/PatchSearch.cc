@@ -33,8 +33,7 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
   Outcome best;
   best.worst = survey(patch.mesh(), here.policy).worst;
   const double enough = dihedral_decision(goal);
-  const int n_tries = has(options.ops, Ops::kInsert) ? 1 + n_sites : 1;
-  for (int i = 0; i < n_tries && best.worst < enough; ++i) {
+  for (int i = 0; i <= n_sites && best.worst < enough; ++i) {  // the first without a new vertex
     TetMesh mesh = patch.mesh();
     Workspace work;
     work.attach(mesh, here.policy);
@@ -65,7 +64,8 @@ bool fits(const TetMesh& mesh, const Patch& patch, const TetMesh& changed, const
 
 bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
                     double goal, const PatchEffort& effort) {
-  if (control.surface() || options.iterations > 0 || !(survey(mesh, options.policy).worst > 0)) return false;
+  if (!has(options.ops, Ops::kInsert) || control.surface() || options.iterations > 0) return false;
+  if (!(survey(mesh, options.policy).worst > 0)) return false;
   PassReport pass;
   pass.stage = "patches";
   pass.op = "insert";

@@ -60,8 +60,8 @@ constexpr PatchEffort kLittleEffort = {3, 4, 4, 8, 0.6};
 constexpr std::array<PatchEffort, 3> kAllEfforts = {
     {{3, 8, 40, 20, 2}, {4, 8, 40, 20, 0.5}, {2, 8, 40, 20, 3}}};
 /// Tries new vertices for the worst cells below `goal` degrees, each on a copy of its surroundings that is
-/// improved and put back only if its worst cell has got better. For a mesh without invalid cells and with a
-/// frozen surface; does nothing elsewhere. True when the mesh has changed.
+/// improved and put back only if its worst cell has got better. For a mesh without invalid cells, with a
+/// frozen surface, where vertices may be inserted; does nothing elsewhere. True when the mesh has changed.
 bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
                     double goal, const PatchEffort& effort);
 /// Works on the surroundings of the cells below `goal` degrees as if the goal were larger, and then on these
