@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The shape that must be kept: distances from the input and of it, normals, volumes.
+#include <numbers>
+
+#include "Operators/Cavity.hh"
+#include "Surface/SurfaceMeshImpl.hh"
+
+namespace hfr {
+namespace {
+
+using surface::FaceRecord;
+using surface::OmFace;
+using surface::scaled_normal;
+using surface::unit;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+/// The samples are judged by somewhat less than what is allowed, for what lies between them.
+constexpr double kBetween = 0.7;
+/// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
+constexpr double kNotBack = 0.1;
+/// Share of the volume beyond which a change in the same direction is refused.
+constexpr double kVolume = 5e-4;
+/// And of a region's, which no single change may pass, either.
+constexpr double kRegionVolume = 9e-4;
+/// Regions whose volume one change may touch; one that would touch more is refused.
+constexpr std::size_t kMostRegions = 16;
+
+}  // namespace
+
+Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
+  const Freedom& f = freedom(v);
+  const bool on_curve = f.kind == SurfaceKind::kCurve;
+  if (f.kind == SurfaceKind::kInside) return x;
+  if (f.kind == SurfaceKind::kFixed) return f.anchor;
+  if (!impl_->flat()) return on_curve ? impl_->curves->nearest(x).point : x;
+  const Vec3 r = x - f.anchor;
+  return on_curve ? f.anchor + dot(r, f.axis) * f.axis : x - dot(r, f.axis) * f.axis;
+}
+
+/// Are points spread over the new triangles no further than `distance` from the input? What the new triangles
+/// have in common with the old ones has been looked at before.
+bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const Triangle> dead,
+                                 Guesses beneath, double distance) const {
+  const auto is_near = [&](Vec3 x) {
+    for (std::size_t i = 0; i < beneath.size(); ++i) {
+      if (!(shape->distance(x, beneath[i]) <= distance)) continue;
+      std::swap(beneath[i], beneath[i / 2]);  // the next point is likely to be there, too
+      return true;
+    }
+    return shape->is_within(x, distance, {});
+  };
+  const auto has_edge = [](const Triangle& t, Vec3 p, Vec3 q) {
+    return (t[0] == p && t[1] == q) || (t[1] == p && t[2] == q) || (t[2] == p && t[0] == q);
+  };
+  const auto is_old = [&](Vec3 x) {
+    return std::any_of(dead.begin(), dead.end(),
+                       [&](const Triangle& d) { return d[0] == x || d[1] == x || d[2] == x; });
+  };
+  for (std::size_t i = 0; i < born.size(); ++i) {
+    const Triangle& t = born[i];
+    const int cuts = cuts_of(t);
+    if (!surface::all_inner_points(t, cuts, is_near)) return false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = t[k];
+      const Vec3 q = t[(k + 1) % 3];
+      if (!is_old(p) && !is_near(p)) return false;
+      const bool seen =
+          std::any_of(born.begin(), born.begin() + static_cast<std::ptrdiff_t>(i),
+                      [&](const Triangle& other) { return has_edge(other, q, p); }) ||
+          std::any_of(dead.begin(), dead.end(), [&](const Triangle& old) { return has_edge(old, p, q); });
+      for (int j = 1; j < cuts && !seen; ++j)
+        if (!is_near(p + (1.0 * j / cuts) * (q - p))) return false;
+    }
+  }
+  return true;
+}
+
+/// Are the normals of the new triangles near those of the input no further than `distance` beneath them? The
+/// normals of triangles no larger than noise say little, but they must not turn back. What is worse already
+/// must not get worse still: a surface that folds over has to be mended somehow.
+bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> born, std::span<const Triangle> dead,
+                                    Guesses beneath, double distance) const {
+  const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
+    const Vec3 n = unit(scaled_normal(t));
+    const Vec3 middle = t[0] + (1.0 / 3) * (t[1] - t[0]) + (1.0 / 3) * (t[2] - t[0]);
+    const InputSurface::Hit hit = shape->nearest_within(middle, distance, n, beneath);
+    return hit.distance <= distance ? dot(n, shape->normal(hit.item)) : -1.0;
+  };
+  const double bound = std::cos(options.normal_angle * kDegree);
+  double worst_dead = 2;  // not known yet
+  for (const Triangle& t : born) {
+    const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+    const bool small = size2 < 4 * detail * detail;
+    const double now = turned(t);
+    if (now >= (small ? kNotBack : bound)) continue;
+    if (worst_dead == 2)
+      for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
+    if (now < worst_dead) return false;
+  }
+  return true;
+}
+
+bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_dead,
+                              std::span<const Triangle> dead, std::span<const Triangle> born) const {
+  constexpr double kSameSide = 0.5;
+  for (const Triangle& t : born) {
+    const Vec3 n = unit(scaled_normal(t));
+    if (n == Vec3{}) return false;
+    if (!impl_->flat()) continue;
+    const bool found = std::any_of(dead.begin(), dead.end(), [&](const Triangle& d) {
+      return dot(n, unit(scaled_normal(d))) > kSameSide;
+    });
+    if (!found) return false;
+  }
+  if (impl_->flat()) return true;
+
+  if (!impl_->keeps_regions(faces_dead, dead, born)) return false;
+
+  // What was beneath the old triangles is likely to be beneath the new ones.
+  FixedVector<std::uint32_t, 64> beneath;
+  const double h = kBetween * impl_->hausdorff;
+  std::size_t last = 0;  // the triangle that was near
+  for (std::size_t i = 0; i < faces_dead.size(); ++i) {
+    const OmFace face = impl_->find(faces_dead[i]);
+    if (!face.is_valid()) return false;
+    const FaceRecord& record = impl_->record(face);
+    if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
+      beneath.push_back(record.beneath);
+    if (born.size() == faces_dead.size()) last = i;
+    for (Vec3 s : record.samples) {
+      const auto is_near = [&](const Triangle& t) { return norm2(nearest_point(t, s) - s) <= h * h; };
+      if (is_near(born[last])) continue;
+      const auto at = std::find_if(born.begin(), born.end(), is_near);
+      if (at == born.end()) return false;
+      last = static_cast<std::size_t>(at - born.begin());
+    }
+  }
+  return impl_->are_near(born, dead, beneath, h) && impl_->turn_little(born, dead, beneath, 2 * h);
+}
+
+bool SurfaceMesh::Impl::is_too_much(const Region& region, double six_more, double share) {
+  const double enough = share * std::abs(region.six_volume);
+  return std::abs(region.six_gain) > enough && region.six_gain * six_more > 0 &&
+         std::abs(six_more) > 1e-6 * enough;
+}
+
+/// Dead and born triangles correspond one to one where they bound different regions.
+bool SurfaceMesh::Impl::keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_dead,
+                                      std::span<const Triangle> dead, std::span<const Triangle> born) const {
+  if (is_open || dead.empty()) return true;
+  if (regions.size() == 1) {
+    double change = 0;
+    for (const Triangle& t : born) change += surface::six_volume(t, dead[0][0]);
+    for (const Triangle& t : dead) change -= surface::six_volume(t, dead[0][0]);
+    return !is_too_much({six_volume, six_gain}, change, kVolume);
+  }
+  double outer = 0;
+  struct Change {
+    std::uint32_t region;
+    double six_volume;
+  };
+  FixedVector<Change, kMostRegions> changes;
+  bool fits = true;
+  const auto note = [&](std::uint32_t region, double volume) {
+    const auto at =
+        std::find_if(changes.begin(), changes.end(), [&](const Change& c) { return c.region == region; });
+    if (at != changes.end())
+      at->six_volume += volume;
+    else if (changes.full())
+      fits = false;
+    else
+      changes.push_back({region, volume});
+  };
+  const auto add = [&](const Triangle& t, const std::array<VertexHandle, 3>& like, double sign) {
+    const OmFace f = find(like);
+    if (!f.is_valid()) return;
+    const FaceRecord& of_f = record(f);
+    const double volume = sign * surface::six_volume(t, dead[0][0]);
+    note(of_f.sides[0], volume);
+    if (of_f.interface)
+      note(of_f.sides[1], -volume);
+    else
+      outer += volume;
+  };
+  for (std::size_t i = 0; i < dead.size(); ++i) add(dead[i], faces_dead[i], -1);
+  for (std::size_t i = 0; i < born.size(); ++i)
+    add(born[i], faces_dead[born.size() == dead.size() ? i : 0], 1);
+  if (!fits || is_too_much({six_volume, six_gain}, outer, kVolume)) return false;
+  for (const Change& change : changes) {
+    // Of a small region a single change may be a large share.
+    const Region& now = regions[change.region];
+    const Region after{now.six_volume, now.six_gain + change.six_volume};
+    if (is_too_much(now, change.six_volume, kVolume) || is_too_much(after, change.six_volume, kRegionVolume))
+      return false;
+  }
+  return true;
+}
+
+double SurfaceMesh::volume_gain() const {
+  return impl_->six_volume != 0 && !impl_->is_open ? impl_->six_gain / impl_->six_volume : 0.0;
+}
+
+double SurfaceMesh::outward() const {
+  if (!(impl_->area > 0) || impl_->is_open) return 0;
+  const double limit = 0.1 * impl_->hausdorff;
+  return std::clamp(-impl_->six_gain / (6.0 * impl_->area), -limit, limit);
+}
+
+}  // namespace hfr
