@@ -26,9 +26,9 @@ struct EdgeRing {
 bool gather_ring(const TetMesh& mesh, EdgeHandle seed, EdgeRing& ring) {
   const CellHandle c(seed.idx() / 6);
   const int edge = static_cast<int>(seed.idx() % 6);
-  const auto& ends = kEdgeCorners[static_cast<std::size_t>(edge)];
-  ring.a = mesh.cell(c).v[ends[0]];
-  ring.b = mesh.cell(c).v[ends[1]];
+  const auto [a, b] = mesh.edge_vertices(seed);
+  ring.a = a;
+  ring.b = b;
   ring.size = 0;
   return mesh.walk_ring(c, edge, [&](CellHandle cell, VertexHandle p, VertexHandle) {
     if (ring.size == HFR_MAX_RING) return false;
@@ -101,11 +101,7 @@ void EdgeRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& 
 
 template <class Metric>
 Tet EdgeRemoval<Metric>::identity(const TetMesh& mesh, Seed seed) const {
-  const auto& ends = kEdgeCorners[seed.idx() % 6];
-  const Cell& cell = mesh.cell(CellHandle(seed.idx() / 6));
-  const VertexHandle a = cell.v[ends[0]];
-  const VertexHandle b = cell.v[ends[1]];
-  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+  return edge_identity(mesh, seed);
 }
 
 HFR_INSTANTIATE_FOR_METRICS(EdgeRemoval)

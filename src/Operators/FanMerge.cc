@@ -25,11 +25,11 @@ struct Row {
 /// ring.
 template <std::size_t kMaxCells>
 Row<kMaxCells> gather_row(const TetMesh& mesh, CellHandle c, int edge, int n_before, int n_after) {
-  const auto& ends = kEdgeCorners[static_cast<std::size_t>(edge)];
+  const auto [a, b] = mesh.edge_vertices(EdgeHandle(6 * c.idx() + static_cast<Index>(edge)));
   const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(edge)];
   Row<kMaxCells> row;
-  row.a = mesh.cell(c).v[ends[0]];
-  row.b = mesh.cell(c).v[ends[1]];
+  row.a = a;
+  row.b = b;
   RingPlace first{c, opposite[0], opposite[1]};
   const RingPlace start = first;
   for (int i = 0; i < n_before && !mesh.is_constrained(halfface_of(first.cell, first.q)); ++i) {

@@ -2,6 +2,7 @@
 #ifndef HFR_OPERATORS_OPERATOR_HH
 #define HFR_OPERATORS_OPERATOR_HH
 
+#include <algorithm>
 #include <concepts>
 #include <optional>
 #include <span>
@@ -49,6 +50,12 @@ concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
   { plan.seed } -> std::convertible_to<typename Op::Seed>;
   op.metric;
 };
+
+/// What identity() of an operator on an edge gives: its ends in ascending order, then two invalid handles.
+inline Tet edge_identity(const TetMesh& mesh, EdgeHandle edge) {
+  const auto [a, b] = mesh.edge_vertices(edge);
+  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+}
 
 /// About how long a seed takes to evaluate, so that few dear ones are shared among threads as well as many
 /// cheap ones. Operators whose seeds take much longer than the default say so in kSeedNanoseconds.

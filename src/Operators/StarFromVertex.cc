@@ -30,6 +30,11 @@ Surface surface_of(const TetMesh& mesh, std::span<const CellHandle> cells) {
 
 bool has_vertex(const Face& f, VertexHandle v) { return f[0] == v || f[1] == v || f[2] == v; }
 
+template <class Seed>
+EdgeHandle edge_of(const Seed& seed) {
+  return EdgeHandle(6 * seed.cell.idx() + seed.local);
+}
+
 template <Cluster kCluster, class Seed>
 void gather(const TetMesh& mesh, Seed seed, Scope& out) {
   out.clear();
@@ -58,9 +63,8 @@ template <Cluster kCluster, class Seed>
 bool rebuilds([[maybe_unused]] const TetMesh& mesh, [[maybe_unused]] Seed seed,
               [[maybe_unused]] VertexHandle apex) {
   if constexpr (kCluster == Cluster::kEdge) {
-    const auto& ends = kEdgeCorners[seed.local];
-    const auto& v = mesh.cell(seed.cell).v;
-    return v[ends[0]] == apex || v[ends[1]] == apex;
+    const auto [a, b] = mesh.edge_vertices(edge_of(seed));
+    return a == apex || b == apex;
   } else if constexpr (kCluster == Cluster::kFace) {
     return has_vertex(mesh.halfface_vertices(halfface_of(seed.cell, seed.local)), apex);
   } else {
@@ -142,16 +146,14 @@ void StarFromVertex<kCluster, Metric>::commit(const TetMesh& mesh, const Plan& p
 
 template <Cluster kCluster, class Metric>
 Tet StarFromVertex<kCluster, Metric>::identity(const TetMesh& mesh, Seed seed) const {
-  const Cell& cell = mesh.cell(seed.cell);
   Tet names;
   if constexpr (kCluster == Cluster::kEdge) {
-    const auto& ends = kEdgeCorners[seed.local];
-    names = {cell.v[ends[0]], cell.v[ends[1]], VertexHandle(), VertexHandle()};
+    names = edge_identity(mesh, edge_of(seed));
   } else if constexpr (kCluster == Cluster::kFace) {
     const auto f = mesh.halfface_vertices(halfface_of(seed.cell, seed.local));
     names = {f[0], f[1], f[2], VertexHandle()};
   } else {
-    names = {cell.v[seed.local], VertexHandle(), VertexHandle(), VertexHandle()};
+    names = {mesh.cell(seed.cell).v[seed.local], VertexHandle(), VertexHandle(), VertexHandle()};
   }
   std::sort(names.begin(), names.end());
   return names;

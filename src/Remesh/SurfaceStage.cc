@@ -112,7 +112,7 @@ std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
     const Op op{metric_, work_.quality, &surface};
     // The ends of the edges are asked for before the cells that name them are gone.
     std::map<Index, std::array<VertexHandle, 2>> ends;
-    for (const auto& seed : seeds) ends[seed.edge.idx()] = Op::ends(mesh_, seed.edge);
+    for (const auto& seed : seeds) ends[seed.edge.idx()] = mesh_.edge_vertices(seed.edge);
     counts = round.run(op, seeds);
     round.for_committed([&](const auto& plan, VertexHandle middle) {
       const auto [a, b] = ends.at(plan.seed.edge.idx());

@@ -28,8 +28,9 @@ struct TwoSides {
 bool gather_sides(const TetMesh& mesh, EdgeHandle seed, TwoSides& out) {
   const std::size_t local = seed.idx() % 6;
   const CellHandle c(seed.idx() / 6);
-  out.a = mesh.cell(c).v[kEdgeCorners[local][0]];
-  out.b = mesh.cell(c).v[kEdgeCorners[local][1]];
+  const auto [a, b] = mesh.edge_vertices(seed);
+  out.a = a;
+  out.b = b;
   Ring ring;
   if (!mesh.gather_ring({c, kEdgeOpposite[local][0], kEdgeOpposite[local][1]}, ring) || !ring.closed)
     return false;
@@ -138,11 +139,7 @@ void InterfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity
 
 template <class Metric>
 Tet InterfaceSwap<Metric>::identity(const TetMesh& mesh, Seed seed) const {
-  const auto& ends = kEdgeCorners[seed.idx() % 6];
-  const Cell& cell = mesh.cell(CellHandle(seed.idx() / 6));
-  const VertexHandle a = cell.v[ends[0]];
-  const VertexHandle b = cell.v[ends[1]];
-  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+  return edge_identity(mesh, seed);
 }
 
 HFR_INSTANTIATE_FOR_METRICS(InterfaceSwap)

@@ -69,20 +69,13 @@ Site dig(const TetMesh& mesh, const Metric& metric, std::span<const double> qual
 }  // namespace
 
 template <class Metric>
-std::array<VertexHandle, 2> SurfaceSplit<Metric>::ends(const TetMesh& mesh, EdgeHandle edge) {
-  const auto& corners = kEdgeCorners[edge.idx() % 6];
-  const Cell& cell = mesh.cell(CellHandle(edge.idx() / 6));
-  return {cell.v[corners[0]], cell.v[corners[1]]};
-}
-
-template <class Metric>
 void SurfaceSplit<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope& out) const {
   seed.growth.cells(mesh, out);
 }
 
 template <class Metric>
 auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
-  const auto [a, b] = ends(mesh, seed.edge);
+  const auto [a, b] = mesh.edge_vertices(seed.edge);
   const CutFaces cut{a, b};
   const auto& opposite = kEdgeOpposite[seed.edge.idx() % 6];
   Ring ring;
@@ -161,7 +154,7 @@ auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const
 
 template <class Metric>
 void SurfaceSplit<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-  const auto [a, b] = ends(mesh, plan.seed.edge);
+  const auto [a, b] = mesh.edge_vertices(plan.seed.edge);
   const CutFaces cut{a, b};
   Scope cells;
   plan.seed.growth.cells(mesh, cells);
@@ -181,8 +174,7 @@ void SurfaceSplit<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity&
 
 template <class Metric>
 Tet SurfaceSplit<Metric>::identity(const TetMesh& mesh, const Seed& seed) const {
-  const auto [a, b] = ends(mesh, seed.edge);
-  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+  return edge_identity(mesh, seed.edge);
 }
 
 HFR_INSTANTIATE_FOR_METRICS(SurfaceSplit)

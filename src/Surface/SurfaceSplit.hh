@@ -41,8 +41,6 @@ struct SurfaceSplit {
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
   void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, const Seed& seed) const;
-  /// The ends of the edge.
-  static std::array<VertexHandle, 2> ends(const TetMesh& mesh, EdgeHandle edge);
 };
 
 }  // namespace hfr

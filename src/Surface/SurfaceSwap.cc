@@ -25,10 +25,10 @@ struct OpenRing {
 bool gather_open_ring(const TetMesh& mesh, EdgeHandle seed, OpenRing& ring) {
   const CellHandle c(seed.idx() / 6);
   const std::size_t local = seed.idx() % 6;
-  const auto& ends = kEdgeCorners[local];
   const auto& opposite = kEdgeOpposite[local];
-  ring.a = mesh.cell(c).v[ends[0]];
-  ring.b = mesh.cell(c).v[ends[1]];
+  const auto [a, b] = mesh.edge_vertices(seed);
+  ring.a = a;
+  ring.b = b;
   Ring all;
   if (!mesh.gather_ring({c, opposite[0], opposite[1]}, all) || all.closed || all.size > 31) return false;
   ring.n_cells = all.size;
@@ -42,6 +42,7 @@ bool gather_open_ring(const TetMesh& mesh, EdgeHandle seed, OpenRing& ring) {
   if (all.size > 1) return true;
   const RingPlace only = all.places[0];
   Ring round;
+  const auto& ends = kEdgeCorners[local];
   const RingPlace start{only.cell, ends[0], ends[1]};
   // Either order of the ends will do: only the set of cells matters, and gather_ring() begins with `start`.
   if (!mesh.gather_ring(start, round) || !round.closed || round.size > 32) return false;
@@ -124,11 +125,7 @@ void SurfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& 
 
 template <class Metric>
 Tet SurfaceSwap<Metric>::identity(const TetMesh& mesh, Seed seed) const {
-  const auto& ends = kEdgeCorners[seed.idx() % 6];
-  const Cell& cell = mesh.cell(CellHandle(seed.idx() / 6));
-  const VertexHandle a = cell.v[ends[0]];
-  const VertexHandle b = cell.v[ends[1]];
-  return {std::min(a, b), std::max(a, b), VertexHandle(), VertexHandle()};
+  return edge_identity(mesh, seed);
 }
 
 HFR_INSTANTIATE_FOR_METRICS(SurfaceSwap)
