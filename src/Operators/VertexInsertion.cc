@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Klingner & Shewchuk, Aggressive tetrahedral mesh improvement, 2007: their insertion, with a greedy dig in
-// place of their search for the best cavity. A cavity whose outer faces all make positive cells with one
-// point is star-shaped, so it is a ball that these cells fill.
+// Klingner & Shewchuk, Aggressive tetrahedral mesh improvement, 2007: their insertion.
 #include "Operators/VertexInsertion.hh"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "Operators/Dig.hh"
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
 
@@ -17,88 +15,7 @@ namespace hfr {
 namespace {
 
 constexpr int kMaxDigs = 4;                                     // with a move of the new vertex after each
-constexpr int kAscent = 12;                                     // steps of one such move
 constexpr std::array<double, 3> kAlongAxis = {0.15, 0.3, 0.5};  // places over a constrained face
-constexpr std::size_t kPatience = 12;                           // cells dug without finding a better cavity
-
-/// A cavity, the place of the new vertex, and what they would be worth.
-struct Site {
-  Growth growth;
-  Vec3 place;
-  double old_worst = 0;
-  double new_worst = -std::numeric_limits<double>::infinity();
-};
-
-template <class Metric>
-class Digger {
- public:
-  Digger(const TetMesh& mesh, const Metric& metric, std::span<const double> quality, std::size_t max_cells)
-      : mesh_(mesh), metric_(metric), quality_(quality), max_cells_(max_cells) {}
-
-  /// The best cavity on the way of digging behind the worst outer face until that is not possible.
-  /// site.new_worst is not positive unless all its cells are.
-  Site dig(GrownCells cells, Vec3 place) const {
-    Site best;
-    double old_worst = std::numeric_limits<double>::infinity();
-    for (CellHandle c : cells.cells()) old_worst = std::min(old_worst, quality_[c.idx()]);
-    std::size_t n_valued = 0;
-    for (std::size_t idle = 0; idle < kPatience; ++idle) {
-      for (std::size_t i = n_valued; i < cells.outer().size(); ++i)
-        cells.value(i) = value(cells.outer()[i], place);
-      HalfFaceHandle worst_face;
-      double worst = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < cells.outer().size(); ++i) {
-        if (!(cells.value(i) < worst)) continue;
-        worst = cells.value(i);
-        worst_face = cells.outer()[i];
-      }
-      if (worst > best.new_worst) {
-        best = {cells.growth(), place, old_worst, worst};
-        idle = 0;
-      }
-      if (cells.cells().size() >= max_cells_ || !worst_face.is_valid() || !cells.grow(worst_face)) break;
-      n_valued = cells.n_kept();
-      old_worst = std::min(old_worst, quality_[cells.cells()[cells.cells().size() - 1].idx()]);
-    }
-    return best;
-  }
-
-  /// Moves the vertex of what was dug, digs on from there, and so on until it brings no more.
-  Site follow_up(Site best) const {
-    for (int i = 1; i < kMaxDigs && best.new_worst > 0; ++i) {
-      const GrownCells now = replay(best.growth);
-      MaxMinForm form(best.place, MaxMinForm::kAnglesOf<Metric>);
-      for (HalfFaceHandle h : now.outer()) {
-        const auto f = mesh_.halfface_vertices(h);
-        form.add(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]));
-      }
-      const Vec3 moved = form.ascend(best.place, kAscent);
-      if (moved == best.place) break;
-      const Site next = dig(now, moved);
-      if (!(next.new_worst > best.new_worst)) break;
-      best = next;
-    }
-    return best;
-  }
-
- private:
-  double value(HalfFaceHandle h, Vec3 p) const {
-    const auto f = mesh_.halfface_vertices(h);
-    return metric_(mesh_.point(f[0]), mesh_.point(f[1]), mesh_.point(f[2]), p);
-  }
-
-  GrownCells replay(const Growth& growth) const {
-    GrownCells cells(mesh_, growth.first);
-    for (std::size_t i = 0; i < growth.n_steps; ++i)
-      cells.grow(halfface_of(cells.cells()[growth.steps[i] / 4U], growth.steps[i] % 4));
-    return cells;
-  }
-
-  const TetMesh& mesh_;
-  const Metric& metric_;
-  std::span<const double> quality_;
-  std::size_t max_cells_;
-};
 
 /// Places from which the cell on a triangle (corners in the order that a cell on it has) has a good smallest
 /// dihedral: the best one, and some between the shortest side and the corner across. Those are for needles,
@@ -122,7 +39,7 @@ std::array<Vec3, 4> places_above(std::span<const Vec3> points, const std::array<
   const Vec3 up = size > 0 ? (1.0 / size) * normal : normal;
   MaxMinForm form(middle, MaxMinForm::kAnglesOf<Metric>);
   form.add(p[0], p[1], p[2]);
-  std::array<Vec3, 4> places = {form.ascend(middle + (0.8 * side) * up, kAscent)};
+  std::array<Vec3, 4> places = {form.ascend(middle + (0.8 * side) * up, detail::kAscent)};
   for (std::size_t i = 0; i < kAlongAxis.size(); ++i) {
     const double t = kAlongAxis[i];
     places[i + 1] = middle + t * axis + std::sqrt(t * (1 - t) * side * length) * up;
@@ -139,8 +56,8 @@ void VertexInsertion<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope
 
 template <class Metric>
 auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
-  const Digger<Metric> digger(mesh, metric, quality, std::min(max_cells, Growth::kMaxCells));
-  FixedVector<Site, kMaxSites> sites;
+  const detail::Digger<Metric> digger(mesh, metric, quality, max_cells);
+  FixedVector<detail::Site, kMaxSites> sites;
   const auto try_from = [&](const GrownCells& cells, Vec3 place) {
     sites.push_back(digger.dig(cells, place));
   };
@@ -181,45 +98,21 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   std::sort(order.begin(), last, [&](std::uint8_t i, std::uint8_t j) {
     return sites[i].new_worst != sites[j].new_worst ? sites[i].new_worst > sites[j].new_worst : i < j;
   });
-  Site best;
+  detail::Site best;
   for (std::size_t i = 0; i < std::min(max_sites, sites.size()); ++i) {
     if (only_site >= 0 && i != static_cast<std::size_t>(only_site)) continue;
-    const Site site = digger.follow_up(sites[order[i]]);
+    const detail::Site site = digger.follow_up(sites[order[i]], kMaxDigs);
     const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
     if (site.new_worst > best.new_worst && site.new_worst > least) best = site;
   }
   // Smaller inverted cells would look better in some metrics, and be cut again without end.
   if (!(best.new_worst > 0)) return std::nullopt;
-  Plan plan;
-  plan.seed = seed;
-  plan.seed.growth = best.growth;
-  plan.place = best.place;
-  plan.old_worst = best.old_worst;
-  plan.new_worst = best.new_worst;
-  Cavity cavity;
-  commit(mesh, plan, cavity);
-  plan.n_dead = static_cast<std::uint32_t>(cavity.dead.size());
-  plan.n_born = static_cast<std::uint32_t>(cavity.born.size());
-  plan.adds_vertex = true;
-  return plan;
+  return detail::plan_for(*this, mesh, seed, best);
 }
 
 template <class Metric>
 void VertexInsertion<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-  Scope cells;
-  plan.seed.growth.cells(mesh, cells);
-  out.clear();
-  for (CellHandle c : cells) out.dead.push_back(c);
-  for (CellHandle c : cells) {
-    for (int k = 0; k < 4; ++k) {
-      const HalfFaceHandle h = halfface_of(c, k);
-      const HalfFaceHandle m = mesh.opposite_halfface(h);
-      if (m.is_valid() && std::find(cells.begin(), cells.end(), cell_of(m)) != cells.end()) continue;
-      const auto f = mesh.halfface_vertices(h);
-      out.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
-    }
-  }
-  out.new_vertex = plan.place;
+  detail::fill_cavity(mesh, plan.seed.growth, plan.place, out);
 }
 
 template <class Metric>
