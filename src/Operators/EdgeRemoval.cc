@@ -60,18 +60,9 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
     old_worst = std::min(old_worst, quality[ring.cells[i].idx()]);
     p[i] = mesh.point(ring.vertices[i]);
   }
-  const Vec3 a = mesh.point(ring.a);
-  const Vec3 b = mesh.point(ring.b);
-  // Ring triangle (i, k, j) is counter-clockwise about a→b: it is positive with b, and reversed with a.
-  const auto value = [&](int i, int k, int j, double floor) {
-    const Vec3 x = p[static_cast<std::size_t>(i)];
-    const Vec3 y = p[static_cast<std::size_t>(k)];
-    const Vec3 z = p[static_cast<std::size_t>(j)];
-    const double upper = metric(x, y, z, b);
-    return upper > floor ? std::min(upper, metric(y, x, z, a)) : upper;
-  };
   RingTriangulation table(ring.size);
-  const double new_worst = table.solve(old_worst, value);
+  const double new_worst =
+      table.solve(old_worst, ring_value(metric, p, mesh.point(ring.a), mesh.point(ring.b)));
   if (!(new_worst > old_worst)) return std::nullopt;
   Plan plan;
   plan.old_worst = old_worst;
@@ -90,13 +81,7 @@ void EdgeRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& 
   gather_ring(mesh, plan.seed, ring);
   out.clear();
   for (int i = 0; i < ring.size; ++i) out.dead.push_back(ring.cells[static_cast<std::size_t>(i)]);
-  for_triangles(0, ring.size - 1, plan.apex.data(), [&](int i, int k, int j) {
-    const VertexHandle x = ring.vertices[static_cast<std::size_t>(i)];
-    const VertexHandle y = ring.vertices[static_cast<std::size_t>(k)];
-    const VertexHandle z = ring.vertices[static_cast<std::size_t>(j)];
-    out.born.push_back({x, y, z, ring.b});
-    out.born.push_back({y, x, z, ring.a});
-  });
+  append_ring_cells(ring.vertices, ring.a, ring.b, ring.size - 1, plan.apex.data(), out);
 }
 
 template <class Metric>

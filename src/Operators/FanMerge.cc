@@ -75,13 +75,7 @@ auto FanMerge<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> 
   const Vec3 b = mesh.point(row.b);
   const double floor = quality[seed.cell.idx()];
   RingTriangulation table(n);
-  table.solve(floor, [&](int i, int k, int j, double least) {
-    const Vec3 x = p[static_cast<std::size_t>(i)];
-    const Vec3 y = p[static_cast<std::size_t>(k)];
-    const Vec3 z = p[static_cast<std::size_t>(j)];
-    const double upper = metric(x, y, z, b);
-    return upper > least ? std::min(upper, metric(y, x, z, a)) : upper;
-  });
+  table.solve(floor, ring_value(metric, p, a, b));
   double best = floor;
   int first = 0, last = 0;  // outer vertices
   const auto at = static_cast<int>(row.at);
@@ -117,14 +111,10 @@ void FanMerge<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out
   const Seed& seed = plan.seed;
   const auto row = gather_row<kMaxCells>(mesh, seed.cell, seed.edge, seed.n_before, seed.n_after);
   const int last = static_cast<int>(row.cells.size());
-  const auto vertex = [&](int i) { return row.vertices[static_cast<std::size_t>(i)]; };
   out.clear();
   for (CellHandle c : row.cells) out.dead.push_back(c);
-  out.born.push_back({row.a, row.b, vertex(0), vertex(last)});
-  for_triangles(0, last, plan.apex.data(), [&](int i, int k, int j) {
-    out.born.push_back({vertex(i), vertex(k), vertex(j), row.b});
-    out.born.push_back({vertex(k), vertex(i), vertex(j), row.a});
-  });
+  out.born.push_back({row.a, row.b, row.vertices[0], row.vertices[row.cells.size()]});
+  append_ring_cells(row.vertices, row.a, row.b, last, plan.apex.data(), out);
 }
 
 template <class Metric>

@@ -3,9 +3,12 @@
 #ifndef HFR_OPERATORS_KLINCSEK_HH
 #define HFR_OPERATORS_KLINCSEK_HH
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 
+#include "Operators/Cavity.hh"
 #include "kernels/klincsek.h"
 
 namespace hfr {
@@ -26,7 +29,7 @@ class RingTriangulation {
 
   /// After solve(): the largest worst value over the polygon i … j, minus infinity where none beats the
   /// floor.
-  double best(int i, int j) const { return best_[static_cast<std::size_t>(i * 32 + j)]; }
+  double best(int i, int j) const { return best_[static_cast<std::size_t>(i * HFR_MAX_RING + j)]; }
 
   /// Writes the apexes in preorder.
   void preorder(std::uint8_t* out) const { preorder(0, n_ - 1, out); }
@@ -52,6 +55,33 @@ const std::uint8_t* for_triangles(int i, int j, const std::uint8_t* apex, Visit&
   visit(i, k, j);
   apex = for_triangles(i, k, apex, visit);
   return for_triangles(k, j, apex, visit);
+}
+
+/// What solve() asks for where triangle (i, k, j) of the ring makes a cell with a and one with b. The points
+/// of the ring are counter-clockwise about a→b, so that a triangle is positive with b, and reversed with a.
+/// Keeps references to the metric and the points.
+template <class Metric>
+auto ring_value(const Metric& metric, std::span<const Vec3> points, Vec3 a, Vec3 b) {
+  return [&metric, points, a, b](int i, int k, int j, double floor) {
+    const Vec3 x = points[static_cast<std::size_t>(i)];
+    const Vec3 y = points[static_cast<std::size_t>(k)];
+    const Vec3 z = points[static_cast<std::size_t>(j)];
+    const double upper = metric(x, y, z, b);
+    return upper > floor ? std::min(upper, metric(y, x, z, a)) : upper;
+  };
+}
+
+/// Appends these two cells of each triangle to the born ones. `apex`: the triangulation of the polygon
+/// 0 … last in preorder.
+inline void append_ring_cells(std::span<const VertexHandle> ring, VertexHandle a, VertexHandle b, int last,
+                              const std::uint8_t* apex, Cavity& out) {
+  for_triangles(0, last, apex, [&](int i, int k, int j) {
+    const VertexHandle x = ring[static_cast<std::size_t>(i)];
+    const VertexHandle y = ring[static_cast<std::size_t>(k)];
+    const VertexHandle z = ring[static_cast<std::size_t>(j)];
+    out.born.push_back({x, y, z, b});
+    out.born.push_back({y, x, z, a});
+  });
 }
 
 }  // namespace hfr

@@ -11,11 +11,13 @@
 namespace hfr {
 namespace {
 
+static_assert(InterfaceSwap<VolumeLength>::kMaxSide + 1 == HFR_MAX_RING);  // vertices of the polygon
+
 /// The cells of one region round a→b, counter-clockwise: cell i lies between vertices i and i+1.
 struct Side {
   int n_cells = 0;
-  RawArray<CellHandle, 32> cells;
-  RawArray<VertexHandle, 32> vertices;
+  RawArray<CellHandle, HFR_MAX_RING> cells;
+  RawArray<VertexHandle, HFR_MAX_RING> vertices;
 };
 
 struct TwoSides {
@@ -44,7 +46,7 @@ bool gather_sides(const TetMesh& mesh, EdgeHandle seed, TwoSides& out) {
     const int mine = region(at);
     side.n_cells = 0;
     for (; at < first + n && region(at) == mine; ++at) {
-      if (side.n_cells == 31) return false;
+      if (side.n_cells + 1 == HFR_MAX_RING) return false;
       const RingPlace place = ring.places[at % n];
       const auto i = static_cast<std::size_t>(side.n_cells++);
       side.cells[i] = place.cell;
@@ -81,17 +83,11 @@ auto InterfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> st
   const Vec3 b = mesh.point(two.b);
   for (std::size_t s = 0; s < 2; ++s) {
     const Side& side = two.sides[s];
-    RawArray<Vec3, 32> p;
+    RawArray<Vec3, HFR_MAX_RING> p;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(side.n_cells); ++i)
       p[i] = mesh.point(side.vertices[i]);
     RingTriangulation table(side.n_cells + 1);
-    const double worst = table.solve(plan.old_worst, [&](int i, int k, int j, double floor) {
-      const Vec3 x = p[static_cast<std::size_t>(i)];
-      const Vec3 y = p[static_cast<std::size_t>(k)];
-      const Vec3 z = p[static_cast<std::size_t>(j)];
-      const double upper = metric(x, y, z, b);
-      return upper > floor ? std::min(upper, metric(y, x, z, a)) : upper;
-    });
+    const double worst = table.solve(plan.old_worst, ring_value(metric, p, a, b));
     if (!(worst > plan.old_worst)) return std::nullopt;
     table.preorder(plan.apex[s].data());
     plan.new_worst = std::min(plan.new_worst, worst);
@@ -127,13 +123,7 @@ void InterfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity
     const Side& side = two.sides[s];
     for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i)
       out.dead.push_back(side.cells[i]);
-    for_triangles(0, side.n_cells, plan.apex[s].data(), [&](int i, int k, int j) {
-      const VertexHandle x = side.vertices[static_cast<std::size_t>(i)];
-      const VertexHandle y = side.vertices[static_cast<std::size_t>(k)];
-      const VertexHandle z = side.vertices[static_cast<std::size_t>(j)];
-      out.born.push_back({x, y, z, two.b});
-      out.born.push_back({y, x, z, two.a});
-    });
+    append_ring_cells(side.vertices, two.a, two.b, side.n_cells, plan.apex[s].data(), out);
   }
 }
 

@@ -12,13 +12,15 @@
 namespace hfr {
 namespace {
 
+static_assert(SurfaceSwap<VolumeLength>::kMaxRing + 1 == HFR_MAX_RING);  // vertices of the polygon
+
 /// The open ring of a boundary edge: cell i lies between vertices i and i+1, counter-clockwise about a→b.
 struct OpenRing {
   VertexHandle a, b;
   int n_cells = 0;
-  RawArray<CellHandle, 32> cells;
-  RawArray<VertexHandle, 32> vertices;
-  FixedVector<CellHandle, 32> behind;  // for a single cell: the others round its opposite edge
+  RawArray<CellHandle, HFR_MAX_RING> cells;
+  RawArray<VertexHandle, HFR_MAX_RING> vertices;
+  FixedVector<CellHandle, HFR_MAX_RING> behind;  // for a single cell: the others round its opposite edge
 };
 
 /// False when the ring is closed, too large, or a single cell whose opposite edge is on the boundary.
@@ -30,7 +32,8 @@ bool gather_open_ring(const TetMesh& mesh, EdgeHandle seed, OpenRing& ring) {
   ring.a = a;
   ring.b = b;
   Ring all;
-  if (!mesh.gather_ring({c, opposite[0], opposite[1]}, all) || all.closed || all.size > 31) return false;
+  if (!mesh.gather_ring({c, opposite[0], opposite[1]}, all) || all.closed || all.size >= HFR_MAX_RING)
+    return false;
   ring.n_cells = all.size;
   for (std::size_t i = 0; i < static_cast<std::size_t>(all.size); ++i) {
     const RingPlace at = all.places[i];
@@ -45,7 +48,7 @@ bool gather_open_ring(const TetMesh& mesh, EdgeHandle seed, OpenRing& ring) {
   const auto& ends = kEdgeCorners[local];
   const RingPlace start{only.cell, ends[0], ends[1]};
   // Either order of the ends will do: only the set of cells matters, and gather_ring() begins with `start`.
-  if (!mesh.gather_ring(start, round) || !round.closed || round.size > 32) return false;
+  if (!mesh.gather_ring(start, round) || !round.closed || round.size > HFR_MAX_RING) return false;
   for (std::size_t i = 1; i < static_cast<std::size_t>(round.size); ++i)
     ring.behind.push_back(round.places[i].cell);
   return true;
@@ -76,20 +79,14 @@ auto SurfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std:
   for_dead(ring, [&](CellHandle c) { plan.old_worst = std::min(plan.old_worst, quality[c.idx()]); });
   const Vec3 a = mesh.point(ring.a);
   const Vec3 b = mesh.point(ring.b);
-  RawArray<Vec3, 32> p;
+  RawArray<Vec3, HFR_MAX_RING> p;
   for (std::size_t i = 0; i <= n; ++i) p[i] = mesh.point(ring.vertices[i]);
   if (n == 1) {
     plan.new_worst = std::numeric_limits<double>::infinity();
     for (CellHandle c : ring.behind) plan.new_worst = std::min(plan.new_worst, quality[c.idx()]);
   } else {
     RingTriangulation table(ring.n_cells + 1);
-    plan.new_worst = table.solve(plan.old_worst, [&](int i, int k, int j, double floor) {
-      const Vec3 x = p[static_cast<std::size_t>(i)];
-      const Vec3 y = p[static_cast<std::size_t>(k)];
-      const Vec3 z = p[static_cast<std::size_t>(j)];
-      const double upper = metric(x, y, z, b);
-      return upper > floor ? std::min(upper, metric(y, x, z, a)) : upper;
-    });
+    plan.new_worst = table.solve(plan.old_worst, ring_value(metric, p, a, b));
     if (plan.new_worst > plan.old_worst) table.preorder(plan.apex.data());
   }
   if (!(plan.new_worst > plan.old_worst)) return std::nullopt;
@@ -114,13 +111,7 @@ void SurfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& 
   for_dead(ring, [&](CellHandle c) { out.dead.push_back(c); });
   for (CellHandle c : ring.behind) out.born.push_back(mesh.cell(c).v);
   if (ring.n_cells == 1) return;
-  for_triangles(0, ring.n_cells, plan.apex.data(), [&](int i, int k, int j) {
-    const VertexHandle x = ring.vertices[static_cast<std::size_t>(i)];
-    const VertexHandle y = ring.vertices[static_cast<std::size_t>(k)];
-    const VertexHandle z = ring.vertices[static_cast<std::size_t>(j)];
-    out.born.push_back({x, y, z, ring.b});
-    out.born.push_back({y, x, z, ring.a});
-  });
+  append_ring_cells(ring.vertices, ring.a, ring.b, ring.n_cells, plan.apex.data(), out);
 }
 
 template <class Metric>
