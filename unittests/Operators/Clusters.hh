@@ -2,6 +2,8 @@
 #ifndef HFR_UNITTESTS_OPERATORS_CLUSTERS_HH
 #define HFR_UNITTESTS_OPERATORS_CLUSTERS_HH
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -153,6 +155,35 @@ double worst_of_tets(const TetMesh& mesh, const Tets& tets, const Metric& metric
   return worst;
 }
 
+/// What a plan does to the mesh, after a check that it is what the plan claims.
+template <class Op>
+Cavity cavity_of(const Op& op, const TetMesh& mesh, const typename Op::Plan& plan) {
+  Cavity cavity;
+  op.commit(mesh, plan, cavity);
+  Scope scope;
+  op.scope(mesh, plan.seed, scope);
+  EXPECT_TRUE(std::equal(scope.begin(), scope.end(), cavity.dead.begin(), cavity.dead.end()))
+      << "dead cells are the scope, in its order";
+  EXPECT_EQ(plan.n_dead, cavity.dead.size());
+  EXPECT_EQ(plan.n_born, cavity.born.size());
+  EXPECT_EQ(plan.n_dead_first, cavity.n_dead_first);
+  EXPECT_EQ(plan.n_born_first, cavity.n_born_first);
+  EXPECT_EQ(plan.adds_vertex, cavity.new_vertex.has_value());
+  EXPECT_EQ(plan.removes_vertex, cavity.removed.is_valid());
+  double old_worst = std::numeric_limits<double>::infinity();
+  for (CellHandle c : cavity.dead) old_worst = std::min(old_worst, op.quality[c.idx()]);
+  EXPECT_EQ(plan.old_worst, old_worst);
+  const auto at = [&](VertexHandle v) {
+    return v == Cavity::kNewVertex ? *cavity.new_vertex : mesh.point(v);
+  };
+  double new_worst = std::numeric_limits<double>::infinity();
+  for (const Tet& t : cavity.born)
+    new_worst = std::min(new_worst, op.metric(at(t[0]), at(t[1]), at(t[2]), at(t[3])));
+  EXPECT_EQ(plan.new_worst, new_worst) << "the plan is not what it claims";
+  EXPECT_GT(plan.new_worst, plan.old_worst);
+  return cavity;
+}
+
 inline std::size_t n_inverted(const TetMesh& mesh) {
   const auto quality = qualities(mesh, VolumeLength{});
   return static_cast<std::size_t>(
@@ -232,6 +263,34 @@ inline std::size_t ring_size(const TetMesh& mesh, VertexHandle a, VertexHandle b
   std::size_t n = 0;
   for (CellHandle c : mesh.cells()) n += mesh.cell(c).has(a) && mesh.cell(c).has(b) ? 1 : 0;
   return n;
+}
+
+/// Corners of a triangle of a ring, counted round it.
+using RingTriangle = std::array<std::size_t, 3>;
+
+/// All triangulations of the polygon lo … hi (its side lo-hi included).
+inline std::vector<std::vector<RingTriangle>> triangulations(std::size_t lo, std::size_t hi) {
+  if (hi - lo < 2) return {{}};
+  std::vector<std::vector<RingTriangle>> all;
+  for (std::size_t k = lo + 1; k < hi; ++k)
+    for (const auto& left : triangulations(lo, k))
+      for (const auto& right : triangulations(k, hi)) {
+        std::vector<RingTriangle> one = left;
+        one.insert(one.end(), right.begin(), right.end());
+        one.push_back({lo, k, hi});
+        all.push_back(one);
+      }
+  return all;
+}
+
+/// The cells that the triangles of a spindle's ring make with its axis' ends.
+inline std::vector<Tet> cells_on(const std::vector<RingTriangle>& triangulation) {
+  std::vector<Tet> tets;
+  for (const RingTriangle& t : triangulation) {
+    tets.push_back({V(t[0] + 2), V(t[1] + 2), V(t[2] + 2), V(1)});
+    tets.push_back({V(t[1] + 2), V(t[0] + 2), V(t[2] + 2), V(0)});
+  }
+  return tets;
 }
 
 /// The outer triangles of a cluster as their cells see them, found by comparing vertices only.

@@ -96,9 +96,7 @@ TEST(FaceSwap, PlanClaimsTheWorstOfItsThreeCells) {
     ++accepted;
     EXPECT_EQ(plan->old_worst, old_worst);
     EXPECT_NEAR(plan->new_worst, best, 1e-13);
-    Cavity cavity;
-    op.commit(mesh, *plan, cavity);
-    EXPECT_EQ(worst_of_tets(mesh, cavity.born, MinSine2{}), plan->new_worst);
+    cavity_of(op, mesh, *plan);
   }
   EXPECT_GT(accepted, 100) << "the generator no longer makes swappable pairs";
 }

@@ -76,17 +76,7 @@ TYPED_TEST(VertexInsertionMetrics, AcceptedCavitiesKeepVolumeAndRaiseTheWorst) {
       const VertexInsertion<TypeParam> op{metric, quality};
       const auto plan = op.evaluate(mesh, Seed<TypeParam>(C(i)));
       if (!plan) continue;
-      Cavity cavity;
-      op.commit(mesh, *plan, cavity);
-      Scope scope;
-      op.scope(mesh, plan->seed, scope);
-      ASSERT_EQ(cavity.dead.size(), plan->n_dead);
-      ASSERT_EQ(cavity.born.size(), plan->n_born);
-      ASSERT_TRUE(std::equal(scope.begin(), scope.end(), cavity.dead.begin(), cavity.dead.end()));
-      double old_worst = std::numeric_limits<double>::infinity();
-      for (CellHandle c : cavity.dead) old_worst = std::min(old_worst, quality[c.idx()]);
-      EXPECT_EQ(plan->old_worst, old_worst);
-      EXPECT_GT(plan->new_worst, plan->old_worst);
+      const Cavity cavity = cavity_of(op, mesh, *plan);
       const VertexHandle fresh(mesh.n_vertices());
       Star scratch;
       if (!admissible(mesh, cavity, true, scratch)) continue;

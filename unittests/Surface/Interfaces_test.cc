@@ -3,27 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
 #include "HalfFace/Check.hh"
 #include "IO/Hash.hh"
 #include "Operators/Metrics.hh"
-#include "Remesh/Meshes.hh"
 #include "Surface/HeldCells.hh"
 #include "Surface/InterfaceSwap.hh"
+#include "Surface/Meshes.hh"
 #include "Surface/SurfaceCollapse.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
 namespace {
-
-ImproveOptions with(SurfaceMode mode) {
-  ImproveOptions options = serial();
-  options.surface.mode = mode;
-  return options;
-}
 
 /// A box of two regions, jittered, whose interface is the plane x = 0.5 and labelled 7; its vertices are
 /// jittered within the plane.
@@ -59,20 +52,6 @@ TetMesh cored_ball(double slide, std::uint64_t seed) {
   return built(arrays);
 }
 
-std::vector<double> values(const TetMesh& mesh) {
-  std::vector<double> quality(mesh.n_cells(), std::numeric_limits<double>::infinity());
-  for (CellHandle c : mesh.cells()) {
-    const auto& v = mesh.cell(c).v;
-    quality[c.idx()] = VolumeLength{}(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
-  }
-  return quality;
-}
-
-double worst(const TetMesh& mesh) {
-  const auto all = values(mesh);
-  return *std::min_element(all.begin(), all.end());
-}
-
 std::vector<Triangle> interface_of(const TetMesh& mesh) {
   std::vector<Triangle> all;
   for (HalfFaceHandle h : mesh.halffaces()) {
@@ -89,25 +68,6 @@ std::size_t winners(const Result& result, const char* op) {
   for (const PassReport& pass : result.passes)
     if (pass.op == op) n += pass.winners;
   return n;
-}
-
-template <class Op>
-std::optional<typename Op::Plan> try_on(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
-  const auto plan = op.evaluate(mesh, seed);
-  if (!plan) return std::nullopt;
-  Cavity cavity;
-  op.commit(mesh, *plan, cavity);
-  Scope scope;
-  op.scope(mesh, seed, scope);
-  EXPECT_TRUE(std::equal(scope.begin(), scope.end(), cavity.dead.begin(), cavity.dead.end()));
-  EXPECT_EQ(plan->n_dead, cavity.dead.size());
-  EXPECT_EQ(plan->n_born, cavity.born.size());
-  EXPECT_EQ(plan->n_dead_first, cavity.n_dead_first);
-  EXPECT_EQ(plan->n_born_first, cavity.n_born_first);
-  Star scratch;
-  if (!admissible(mesh, cavity, true, scratch)) return std::nullopt;
-  replace(mesh, cavity);
-  return plan;
 }
 
 TEST(InterfacesProperty, SwapsAndCollapsesChangeBothSidesAndKeepTheirVolumes) {

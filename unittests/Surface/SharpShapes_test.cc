@@ -5,8 +5,8 @@
 #include <functional>
 #include <limits>
 
-#include "Remesh/Meshes.hh"
 #include "Surface/InputSurface.hh"
+#include "Surface/Meshes.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
@@ -55,12 +55,6 @@ std::vector<Part> parts() {
   generate::jitter_inner(cylinder, 0.35, 5);
   all.push_back({"cylinder", built(cylinder), {plane("bottom", 2, 0), plane("top", 2, 2)}, 3, 0});
   return all;
-}
-
-ImproveOptions with(SurfaceMode mode) {
-  ImproveOptions options = serial();
-  options.surface.mode = mode;
-  return options;
 }
 
 /// What is sharp about a surface, at the default feature angle.
@@ -116,13 +110,6 @@ double length(const std::vector<Segment>& segments) {
   double sum = 0;
   for (const Segment& s : segments) sum += norm(s[1] - s[0]);
   return sum;
-}
-
-std::size_t surface_changes(const Result& result) {
-  std::size_t n = 0;
-  for (const PassReport& pass : result.passes)
-    if (pass.op.starts_with("surface")) n += pass.winners;
-  return n;
 }
 
 TEST(SharpShapes, KeepCornersSharpEdgesAndPlanes) {

@@ -2,11 +2,9 @@
 // One cluster at a time: the volume's cells and the surface stay in step, the shape and the volume are kept.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "HalfFace/Check.hh"
-#include "Operators/Clusters.hh"
 #include "Operators/Metrics.hh"
+#include "Surface/Meshes.hh"
 #include "Surface/SurfaceCollapse.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceSmooth.hh"
@@ -35,39 +33,6 @@ TetMesh jittered_skin(Index n, double jitter, std::uint64_t seed) {
     mesh.set_point(v, p);
   }
   return mesh;
-}
-
-std::vector<double> values(const TetMesh& mesh) {
-  std::vector<double> quality(mesh.n_cells(), std::numeric_limits<double>::infinity());
-  for (CellHandle c : mesh.cells()) {
-    const auto& v = mesh.cell(c).v;
-    quality[c.idx()] = VolumeLength{}(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
-  }
-  return quality;
-}
-
-double worst(const TetMesh& mesh) {
-  const auto all = values(mesh);
-  return *std::min_element(all.begin(), all.end());
-}
-
-/// Evaluates one seed and commits it where it helps; the plan that was committed.
-template <class Op>
-std::optional<typename Op::Plan> try_on(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
-  const auto plan = op.evaluate(mesh, seed);
-  if (!plan) return std::nullopt;
-  Cavity cavity;
-  op.commit(mesh, *plan, cavity);
-  Scope scope;
-  op.scope(mesh, seed, scope);
-  EXPECT_EQ(scope.size(), cavity.dead.size());
-  EXPECT_EQ(plan->n_dead, cavity.dead.size());
-  EXPECT_EQ(plan->n_born, cavity.born.size());
-  EXPECT_GT(plan->new_worst, plan->old_worst);
-  Star scratch;
-  if (!admissible(mesh, cavity, true, scratch)) return std::nullopt;
-  replace(mesh, cavity);
-  return plan;
 }
 
 /// Any cell with the edge; a surface edge is named by two vertices, since cells come and go.
@@ -219,13 +184,8 @@ TEST(SurfaceSplitProperty, NewVerticesLieWhereTheEdgeWasAndRaiseTheWorst) {
       const auto quality = values(mesh);
       const double worst_before = worst(mesh);
       const SurfaceSplit<VolumeLength> op{{}, quality, &surface};
-      const auto plan = op.evaluate(mesh, SurfaceSplit<VolumeLength>::Seed(e));
+      const auto plan = try_on(op, mesh, SurfaceSplit<VolumeLength>::Seed(e));
       if (!plan) continue;
-      Cavity cavity;
-      op.commit(mesh, *plan, cavity);
-      Star scratch;
-      if (!admissible(mesh, cavity, true, scratch)) continue;
-      replace(mesh, cavity);
       const VertexHandle middle(mesh.n_vertices() - 1);
       surface.was_split(a, b, middle, plan->place);
       ASSERT_EQ(check(mesh), Ok);

@@ -10,24 +10,11 @@
 #include "HalfFace/Errors.hh"
 #include "IO/Hash.hh"
 #include "Quality/Statistics.hh"
-#include "Remesh/Meshes.hh"
+#include "Surface/Meshes.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
 namespace {
-
-ImproveOptions with(SurfaceMode mode) {
-  ImproveOptions options = serial();
-  options.surface.mode = mode;
-  return options;
-}
-
-std::size_t surface_changes(const Result& result) {
-  std::size_t n = 0;
-  for (const PassReport& pass : result.passes)
-    if (pass.op.starts_with("surface")) n += pass.winners;
-  return n;
-}
 
 /// Area per patch label of the boundary.
 std::map<int, double> patch_areas(const TetMesh& mesh) {
