@@ -6,9 +6,11 @@
 // tolerance decides what is active, and u takes the place of a line search. Only + - * / and comparisons.
 #include "Operators/MaxMinForm.hh"
 
-#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+
+#include "Quality/Vectors.hh"
 
 namespace hfr {
 namespace {
@@ -21,168 +23,425 @@ constexpr double kFarAbove = 2;  // functions above this many times the smallest
 constexpr double kFarAboveFloor = 0.05;
 constexpr int kMaxExchanges = 32;  // between weights, for one step
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kBlock = detail::MaxMinBlock::kSize;
+
+}  // namespace
+
+/// Values and gradients of the functions that hold a step back, in the order of the cells. Up to the next
+/// multiple of kBlock, the values are infinite.
+struct detail::MaxMinSlopes {
+  static constexpr std::size_t kCapacity = 384;
+  static_assert(kCapacity % kBlock == 0);
+  using Array = RawArray<double, kCapacity>;
+
+  std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
+  HFR_FN hfr_real3 gradient(std::size_t i) const { return {x[i], y[i], z[i]}; }
+
+  std::size_t size = 0;
+  alignas(64) Array value;
+  Array x, y, z;
+};
+
+namespace {
+
+using Block = detail::MaxMinBlock;
+using Slopes = detail::MaxMinSlopes;
+
+HFR_FN hfr_real3 times(double s, hfr_real3 a) { return {s * a.x, s * a.y, s * a.z}; }
+HFR_FN hfr_real3 plus(hfr_real3 a, hfr_real3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+
+HFR_FN double least_of(const double* v) {
+  static_assert(kBlock == 8);
+  return hfr_min(hfr_min(hfr_min(v[0], v[1]), hfr_min(v[2], v[3])),
+                 hfr_min(hfr_min(v[4], v[5]), hfr_min(v[6], v[7])));
+}
+
+/// The first of the smallest numbers, of those that are neither NaN nor +infinity; where there are none,
+/// +infinity and 0.
+struct Lowest {
+  std::size_t at = 0;
+  double value = kInfinity;
+};
+
+template <class V>
+HFR_FN void load(V& v, const double* from) {
+  std::memcpy(&v, from, sizeof(V));
+}
+
+/// Finds it, for numbers that come in order, a V at a time.
+template <class V>
+struct LowestSearch {
+  static constexpr std::size_t kLanes = sizeof(V) / sizeof(double);
+  V value, at;  // by lane; places are kept as doubles, which are as wide as what is compared
+  V next;       // places that come next
+
+  HFR_FN void begin() {
+    alignas(64) double lanes[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7};
+    load(next, lanes);
+    value = at = V{} + kInfinity;
+  }
+  HFR_FN void take(const V& v) {
+    at = v < value ? next : at;
+    value = v < value ? v : value;
+    next = next + static_cast<double>(kLanes);
+  }
+  HFR_FN Lowest get() const {
+    alignas(64) double v[kBlock];
+    for (std::size_t i = 0; i < kBlock; ++i) v[i] = kInfinity;
+    std::memcpy(v, &value, sizeof(V));
+    const double least = least_of(v);
+    if (!(least < kInfinity)) return {};
+    const V here = value == least ? at : V{} + kInfinity;
+    std::memcpy(v, &here, sizeof(V));
+    return {static_cast<std::size_t>(static_cast<int>(least_of(v))), least};
+  }
+};
+
 /// A step, and the smallest value that the linear models promise after it.
 struct Step {
-  Vec3 d;
-  double promise = 0;
+  hfr_real3 d;
+  double promise;
 };
 
 /// Maximises min(f + g·d) - d²/2u. The dual weights live on the simplex; weight goes from the function whose
 /// model is largest to the one whose model is smallest until all that have weight are level (Mitchell,
 /// Demyanov & Malozemov, 1974).
-template <class Slopes>
-Step proximal_step(const Slopes& f, double u) {
-  std::array<double, 384> weight;
-  std::array<std::uint16_t, kMaxExchanges + 1> support;
-  std::size_t n_support = 1;
-  std::size_t least = 0;
-  for (std::size_t i = 0; i < f.size(); ++i) {
-    weight[i] = 0;
-    if (f[i].value < f[least].value) least = i;
+template <class V>
+HFR_FN void proximal_step(const Slopes* slopes, double u, Step* out) {
+  const Slopes& f = *slopes;
+  const std::size_t n = f.padded();
+  LowestSearch<V> search;
+  search.begin();
+  for (std::size_t i = 0; i < n; i += search.kLanes) {
+    V v;
+    load(v, &f.value[i]);
+    search.take(v);
   }
-  weight[least] = 1;
-  support[0] = static_cast<std::uint16_t>(least);
-  Step step{u * f[least].gradient, 0};
-  const auto model = [&](std::size_t i) { return f[i].value + dot(f[i].gradient, step.d); };
+  const Lowest least = search.get();
+  const double now = least.value;
+  // Those that have or had weight, in the order in which they got it.
+  std::size_t support[kMaxExchanges + 1];
+  double weight[kMaxExchanges + 1];
+  std::size_t n_support = 1;
+  support[0] = least.at;
+  weight[0] = 1;
+  hfr_real3 d = times(u, f.gradient(least.at));
+  alignas(64) double model[Slopes::kCapacity];
   for (int k = 0;; ++k) {
-    std::size_t low = 0;
-    double low_value = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < f.size(); ++i) {
-      const double m = model(i);
-      if (m < low_value) {
-        low_value = m;
-        low = i;
-      }
+    search.begin();
+    for (std::size_t i = 0; i < n; i += search.kLanes) {
+      V v, x, y, z;
+      load(v, &f.value[i]);
+      load(x, &f.x[i]);
+      load(y, &f.y[i]);
+      load(z, &f.z[i]);
+      const V m = v + ((x * d.x + y * d.y) + z * d.z);  // as dot(), for the same bits
+      std::memcpy(&model[i], &m, sizeof(V));
+      search.take(m);
     }
-    step.promise = low_value;
-    std::size_t high = low;
-    double high_value = low_value;
+    const Lowest low = search.get();
+    std::size_t high = 0;  // both are indices into `support`
+    std::size_t low_slot = n_support;
+    double high_value = low.value;
     for (std::size_t s = 0; s < n_support; ++s) {
-      const std::size_t i = support[s];
-      if (!(weight[i] > 0)) continue;
-      const double m = model(i);
-      if (m > high_value) {
+      const double m = model[support[s]];
+      if (support[s] == low.at) low_slot = s;
+      if (weight[s] > 0 && m > high_value) {
         high_value = m;
-        high = i;
+        high = s;
       }
     }
-    const double gap = high_value - low_value;
-    const double now = f[least].value;
-    const double gain = low_value - now;
-    if (k == kMaxExchanges || !(gap > kLevel * gain && gap > kLevel * kEnough * now)) return step;
-    const Vec3 across = f[low].gradient - f[high].gradient;
-    const double curvature = u * norm2(across);
+    const double gap = high_value - low.value;
+    const double gain = low.value - now;
+    if (k == kMaxExchanges || !(gap > kLevel * gain && gap > kLevel * kEnough * now)) {
+      *out = {d, low.value};
+      return;
+    }
+    const hfr_real3 across = hfr_sub3(f.gradient(low.at), f.gradient(support[high]));
+    const double curvature = u * hfr_dot3(across, across);
     const double share = gap < curvature * weight[high] ? gap / curvature : weight[high];
-    if (std::find(support.begin(), support.begin() + static_cast<std::ptrdiff_t>(n_support), low) ==
-        support.begin() + static_cast<std::ptrdiff_t>(n_support))
-      support[n_support++] = static_cast<std::uint16_t>(low);
-    weight[low] += share;
+    if (low_slot == n_support) {
+      support[n_support] = low.at;
+      weight[n_support++] = 0;
+    }
+    weight[low_slot] += share;
     weight[high] -= share;
-    step.d = step.d + (u * share) * across;
+    d = plus(d, times(u * share, across));
   }
 }
+
+HFR_FN hfr_real3 corner(const Block& b, std::size_t k, std::size_t i) {
+  return {b.px[k][i], b.py[k][i], b.pz[k][i]};
+}
+HFR_FN hfr_real3 edge(const Block& b, std::size_t k, std::size_t i) {
+  return {b.ex[k][i], b.ey[k][i], b.ez[k][i]};
+}
+HFR_FN hfr_real3 normal(const Block& b, std::size_t i) {
+  return {b.normal_x[i], b.normal_y[i], b.normal_z[i]};
+}
+
+HFR_FN double length(hfr_real3 a) { return std::sqrt(hfr_dot3(a, a)); }
+
+/// Lengths of the edges of the triangles.
+HFR_FN void measure_block(const Block* b, double (*lengths)[kBlock]) {
+  alignas(64) double row[3][kBlock];
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    row[0][i] = length(hfr_sub3(corner(*b, 1, i), corner(*b, 0, i)));
+    row[1][i] = length(hfr_sub3(corner(*b, 2, i), corner(*b, 1, i)));
+    row[2][i] = length(hfr_sub3(corner(*b, 0, i), corner(*b, 2, i)));
+  }
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < kBlock; ++i) lengths[k][i] = row[k][i];
+}
+
+HFR_FN void put(hfr_real3 a, double& x, double& y, double& z) {
+  x = a.x;
+  y = a.y;
+  z = a.z;
+}
+
+/// Multiplies the corners and makes the rest of them.
+HFR_FN void scale_block(Block* block, double s) {
+  Block b = *block;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const hfr_real3 p0 = times(s, corner(b, 0, i));
+    const hfr_real3 p1 = times(s, corner(b, 1, i));
+    const hfr_real3 p2 = times(s, corner(b, 2, i));
+    const hfr_real3 e0 = hfr_sub3(p1, p0);
+    const hfr_real3 e1 = hfr_sub3(p2, p1);
+    const hfr_real3 e2 = hfr_sub3(p0, p2);
+    const hfr_real3 across = hfr_cross3(e0, hfr_sub3(p2, p0));
+    put(p0, b.px[0][i], b.py[0][i], b.pz[0][i]);
+    put(p1, b.px[1][i], b.py[1][i], b.pz[1][i]);
+    put(p2, b.px[2][i], b.py[2][i], b.pz[2][i]);
+    put(e0, b.ex[0][i], b.ey[0][i], b.ez[0][i]);
+    put(e1, b.ex[1][i], b.ey[1][i], b.ez[1][i]);
+    put(e2, b.ex[2][i], b.ey[2][i], b.ez[2][i]);
+    b.e2[0][i] = hfr_dot3(e0, e0);
+    b.e2[1][i] = hfr_dot3(e1, e1);
+    b.e2[2][i] = hfr_dot3(e2, e2);
+    put(across, b.normal_x[i], b.normal_y[i], b.normal_z[i]);
+    b.q[i] = hfr_dot3(across, across);
+  }
+  *block = b;
+}
+
+/// What all six angles of a cell need: the side face over edge k of the triangle has the normal nk (outward,
+/// length twice the area), whose square is qk; rk leads from corner k to the point.
+struct Sides {
+  hfr_real3 r0, r1, r2, n0, n1, n2;
+  double q0, q1, q2;
+  double det;
+};
+
+HFR_FN Sides sides_of(const Block& b, std::size_t i, hfr_real3 x) {
+  Sides s;
+  s.r0 = hfr_sub3(x, corner(b, 0, i));
+  s.r1 = hfr_sub3(x, corner(b, 1, i));
+  s.r2 = hfr_sub3(x, corner(b, 2, i));
+  s.n0 = hfr_cross3(edge(b, 0, i), s.r0);
+  s.n1 = hfr_cross3(edge(b, 1, i), s.r1);
+  s.n2 = hfr_cross3(edge(b, 2, i), s.r2);
+  s.q0 = hfr_dot3(s.n0, s.n0);
+  s.q1 = hfr_dot3(s.n1, s.n1);
+  s.q2 = hfr_dot3(s.n2, s.n2);
+  s.det = hfr_dot3(normal(b, i), s.r0);
+  return s;
+}
+
+/// sin² at the edges of the triangle, and at those from corner k to the point, which lie between sides k-1
+/// and k; infinite where the angle does not count.
+struct Sines2 {
+  double base0, base1, base2, side0, side1, side2;
+};
+
+template <bool kAll>
+HFR_FN Sines2 sines2_of(const Block& b, std::size_t i, const Sides& s) {
+  const double det2 = s.det * s.det;
+  Sines2 f;
+  f.base0 = b.e2[0][i] * det2 / (b.q[i] * s.q0);
+  f.base1 = b.e2[1][i] * det2 / (b.q[i] * s.q1);
+  f.base2 = b.e2[2][i] * det2 / (b.q[i] * s.q2);
+  f.side0 = hfr_dot3(s.r0, s.r0) * det2 / (s.q2 * s.q0);
+  f.side1 = hfr_dot3(s.r1, s.r1) * det2 / (s.q0 * s.q1);
+  f.side2 = hfr_dot3(s.r2, s.r2) * det2 / (s.q1 * s.q2);
+  if constexpr (!kAll) {
+    const hfr_real3 n = normal(b, i);
+    f.base0 = hfr_dot3(n, s.n0) > 0 ? f.base0 : kInfinity;
+    f.base1 = hfr_dot3(n, s.n1) > 0 ? f.base1 : kInfinity;
+    f.base2 = hfr_dot3(n, s.n2) > 0 ? f.base2 : kInfinity;
+    f.side0 = hfr_dot3(s.n2, s.n0) < 0 ? f.side0 : kInfinity;
+    f.side1 = hfr_dot3(s.n0, s.n1) < 0 ? f.side1 : kInfinity;
+    f.side2 = hfr_dot3(s.n1, s.n2) < 0 ? f.side2 : kInfinity;
+  }
+  return f;
+}
+
+/// Smallest sin² of n blocks of cells, the block *begin first; 0 once it is no better than floor ≥ 0, and
+/// where a cell is not positive. *begin becomes the block that ended the search.
+template <bool kAll>
+HFR_FN double worst_of(const Block* blocks, std::size_t n, const hfr_real3* at, double floor,
+                       std::size_t* begin) {
+  const hfr_real3 x = *at;
+  alignas(64) double worst[kBlock];
+  for (std::size_t i = 0; i < kBlock; ++i) worst[i] = kInfinity;
+  std::size_t at_block = *begin;
+  for (std::size_t asked = 0; asked < n; ++asked) {
+    const Block& b = blocks[at_block];
+    int better = 0;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const Sides s = sides_of(b, i, x);
+      const Sines2 f = sines2_of<kAll>(b, i, s);
+      // Whatever is NaN is passed over.
+      const double side = hfr_min(f.side0, hfr_min(f.side1, hfr_min(f.side2, worst[i])));
+      const double all = hfr_min(f.base0, hfr_min(f.base1, hfr_min(f.base2, side)));
+      worst[i] = s.det > 0 ? all : 0;
+    }
+    for (std::size_t i = 0; i < kBlock; ++i) better += worst[i] > floor ? 1 : 0;
+    if (better < static_cast<int>(kBlock)) {
+      *begin = at_block;
+      return 0;
+    }
+    at_block = at_block + 1 == n ? 0 : at_block + 1;
+  }
+  return least_of(worst);
+}
+
+/// Values and gradients of the angles of a block of cells, rows in the order of the angles: base0, side0,
+/// base1, …
+struct SlopeRows {
+  static constexpr std::size_t kRows = 6;
+  alignas(64) double value[kRows * kBlock];
+  double x[kRows * kBlock], y[kRows * kBlock], z[kRows * kBlock];
+
+  HFR_FN void set(std::size_t row, std::size_t i, double f, hfr_real3 half_relative_gradient) {
+    const hfr_real3 g = times(2.0 * f, half_relative_gradient);
+    value[row * kBlock + i] = f;
+    put(g, x[row * kBlock + i], y[row * kBlock + i], z[row * kBlock + i]);
+  }
+};
+
+/// Half the gradient of q, over q.
+HFR_FN hfr_real3 side_slope(double q, double e2, hfr_real3 e, hfr_real3 r) {
+  return times(1.0 / q, hfr_sub3(times(e2, r), times(hfr_dot3(e, r), e)));
+}
+HFR_FN hfr_real3 side_gradient(hfr_real3 r, hfr_real3 rise, hfr_real3 before, hfr_real3 after) {
+  return hfr_sub3(hfr_sub3(plus(times(1.0 / hfr_dot3(r, r), r), rise), before), after);
+}
+
+template <bool kAll>
+HFR_FN void slopes_of(const Block* blocks, std::size_t n_cells, const hfr_real3* at, double below,
+                      Slopes* out) {
+  const hfr_real3 x = *at;
+  std::size_t n = 0;
+  for (std::size_t first = 0; first < n_cells; first += kBlock) {
+    const Block& b = blocks[first / kBlock];
+    SlopeRows rows;
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const Sides s = sides_of(b, i, x);
+      const Sines2 f = sines2_of<kAll>(b, i, s);
+      const hfr_real3 dq0 = side_slope(s.q0, b.e2[0][i], edge(b, 0, i), s.r0);
+      const hfr_real3 dq1 = side_slope(s.q1, b.e2[1][i], edge(b, 1, i), s.r1);
+      const hfr_real3 dq2 = side_slope(s.q2, b.e2[2][i], edge(b, 2, i), s.r2);
+      const hfr_real3 rise = times(1.0 / s.det, normal(b, i));
+      rows.set(0, i, f.base0, hfr_sub3(rise, dq0));
+      rows.set(1, i, f.side0, side_gradient(s.r0, rise, dq2, dq0));
+      rows.set(2, i, f.base1, hfr_sub3(rise, dq1));
+      rows.set(3, i, f.side1, side_gradient(s.r1, rise, dq0, dq1));
+      rows.set(4, i, f.base2, hfr_sub3(rise, dq2));
+      rows.set(5, i, f.side2, side_gradient(s.r2, rise, dq1, dq2));
+    }
+    const std::size_t end = n_cells - first < kBlock ? n_cells - first : kBlock;
+    std::size_t taken[SlopeRows::kRows * kBlock];
+    std::size_t n_taken = 0;
+    for (std::size_t i = 0; i < end; ++i) {
+      for (std::size_t row = 0; row < SlopeRows::kRows; ++row) {
+        taken[n_taken] = row * kBlock + i;
+        n_taken += rows.value[row * kBlock + i] < below ? 1 : 0;
+      }
+    }
+    if (n_taken > Slopes::kCapacity - n) n_taken = Slopes::kCapacity - n;
+    for (std::size_t t = 0; t < n_taken; ++t) {
+      out->value[n] = rows.value[taken[t]];
+      out->x[n] = rows.x[taken[t]];
+      out->y[n] = rows.y[taken[t]];
+      out->z[n] = rows.z[taken[t]];
+      ++n;
+    }
+  }
+  out->size = n;
+  for (; n < out->padded(); ++n) {
+    out->value[n] = kInfinity;
+    out->x[n] = out->y[n] = out->z[n] = 0;
+  }
+}
+
+/// Leaves the part of all gradients along the axis, or the part across it.
+template <bool kAlong>
+HFR_FN void cut_slopes(Slopes* f, const hfr_real3* axis) {
+  const hfr_real3 a = *axis;
+  for (std::size_t i = 0; i < f->size; ++i) {
+    const hfr_real3 g = f->gradient(i);
+    const hfr_real3 along = times(hfr_dot3(g, a), a);
+    put(kAlong ? along : hfr_sub3(g, along), f->x[i], f->y[i], f->z[i]);
+  }
+}
+
+hfr_real3 to_kernel(Vec3 a) { return {a.x, a.y, a.z}; }
 
 }  // namespace
 
 void MaxMinForm::add(Vec3 a, Vec3 b, Vec3 c) {
-  Link cell;
-  cell.p = {a - origin_, b - origin_, c - origin_};
+  HFR_ASSERT(!full());
+  Block& block = blocks_[size_ / kBlock];
+  const std::size_t i = size_++ % kBlock;
+  put(to_kernel(a - origin_), block.px[0][i], block.py[0][i], block.pz[0][i]);
+  put(to_kernel(b - origin_), block.px[1][i], block.py[1][i], block.pz[1][i]);
+  put(to_kernel(c - origin_), block.px[2][i], block.py[2][i], block.pz[2][i]);
   unit_ = 0;
-  cells_.push_back(cell);
 }
 
 void MaxMinForm::scale() {
-  double sum = 0;
-  for (const Link& cell : cells_)
-    for (std::size_t i = 0; i < 3; ++i) sum += norm(cell.p[(i + 1) % 3] - cell.p[i]);
-  unit_ = sum / (3.0 * static_cast<double>(cells_.size()));
-  const double s = 1.0 / unit_;
-  for (Link& cell : cells_) {
-    for (Vec3& p : cell.p) p = s * p;
-    for (std::size_t i = 0; i < 3; ++i) {
-      cell.e[i] = cell.p[(i + 1) % 3] - cell.p[i];
-      cell.e2[i] = norm2(cell.e[i]);
-    }
-    cell.normal = cross(cell.e[0], cell.p[2] - cell.p[0]);
-    cell.q = norm2(cell.normal);
+  Block& last = blocks_[n_blocks() - 1];
+  for (std::size_t i = size_; i < n_blocks() * kBlock; ++i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      put(corner(last, k, (size_ - 1) % kBlock), last.px[k][i % kBlock], last.py[k][i % kBlock],
+          last.pz[k][i % kBlock]);
   }
+  double sum = 0;
+  double lengths[3][kBlock];
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (i % kBlock == 0) with_widest_vectors<measure_block>(&blocks_[i / kBlock], &lengths[0]);
+    for (std::size_t k = 0; k < 3; ++k) sum += lengths[k][i % kBlock];
+  }
+  unit_ = sum / (3.0 * static_cast<double>(size_));
+  for (std::size_t b = 0; b < n_blocks(); ++b) with_widest_vectors<scale_block>(&blocks_[b], 1.0 / unit_);
 }
 
-namespace {
-
-/// What all six angles of a cell need: the side face over edge i of the triangle has the normal n[i]
-/// (outward, length twice the area), whose square is q[i]; r[i] leads from corner i to the point.
-template <class Link>
-struct Sides {
-  std::array<Vec3, 3> r, n;
-  std::array<double, 3> q;
-  double det;
-
-  Sides(const Link& cell, Vec3 x) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      r[i] = x - cell.p[i];
-      n[i] = cross(cell.e[i], r[i]);
-      q[i] = norm2(n[i]);
-    }
-    det = dot(cell.normal, r[0]);
-  }
-  double base_sin2(const Link& cell, std::size_t i) const {
-    return cell.e2[i] * (det * det) / (cell.q * q[i]);
-  }
-  bool base_is_acute(const Link& cell, std::size_t i) const { return dot(cell.normal, n[i]) > 0; }
-  /// At the edge from corner i to the point, between sides i-1 and i.
-  double side_sin2(std::size_t i) const { return norm2(r[i]) * (det * det) / (q[(i + 2) % 3] * q[i]); }
-  bool side_is_acute(std::size_t i) const { return dot(n[(i + 2) % 3], n[i]) < 0; }
-};
-
-}  // namespace
-
 /// Smallest sin² with the point at x, or anything ≤ floor once it is no better; 0 where a cell is not
-/// positive.
-double MaxMinForm::worst(Vec3 x, double floor) const {
-  double worst = std::numeric_limits<double>::infinity();
-  const bool all = angles_ == Angles::kAll;
-  for (const Link& cell : cells_) {
-    const Sides<Link> sides(cell, x);
-    if (!(sides.det > 0)) return 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (all || sides.base_is_acute(cell, i)) worst = std::min(worst, sides.base_sin2(cell, i));
-      if (all || sides.side_is_acute(i)) worst = std::min(worst, sides.side_sin2(i));
-    }
-    if (!(worst > floor)) return worst;
-  }
-  return worst;
+/// positive. The floor is not negative.
+double MaxMinForm::worst(Vec3 x, double floor) {
+  const hfr_real3 at = to_kernel(x);
+  return angles_ == Angles::kAll
+             ? with_widest_vectors<worst_of<true>>(blocks_.data(), n_blocks(), &at, floor, &asked_first_)
+             : with_widest_vectors<worst_of<false>>(blocks_.data(), n_blocks(), &at, floor, &asked_first_);
 }
 
 /// Value and gradient of each sin² below a bound; the point stands at x, all cells positive.
 void MaxMinForm::slopes(Vec3 x, double below, Slopes& out) const {
-  out.clear();
-  const bool all = angles_ == Angles::kAll;
-  for (const Link& cell : cells_) {
-    const Sides<Link> sides(cell, x);
-    std::array<Vec3, 3> dq;  // half the gradients of q[i], over q[i]
-    for (std::size_t i = 0; i < 3; ++i)
-      dq[i] = (1.0 / sides.q[i]) * (cell.e2[i] * sides.r[i] - dot(cell.e[i], sides.r[i]) * cell.e[i]);
-    const Vec3 rise = (1.0 / sides.det) * cell.normal;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double base = sides.base_sin2(cell, i);
-      if (base < below && (all || sides.base_is_acute(cell, i)) && !out.full())
-        out.push_back({base, (2.0 * base) * (rise - dq[i])});
-      const double side = sides.side_sin2(i);
-      if (side < below && (all || sides.side_is_acute(i)) && !out.full())
-        out.push_back(
-            {side, (2.0 * side) * ((1.0 / norm2(sides.r[i])) * sides.r[i] + rise - dq[(i + 2) % 3] - dq[i])});
-    }
-  }
-  if (room_ == Room::kSpace) return;
-  for (Slope& slope : out) {
-    const Vec3 along = dot(slope.gradient, axis_) * axis_;
-    slope.gradient = room_ == Room::kLine ? along : slope.gradient - along;
-  }
+  const hfr_real3 at = to_kernel(x);
+  if (angles_ == Angles::kAll)
+    with_widest_vectors<slopes_of<true>>(blocks_.data(), size_, &at, below, &out);
+  else
+    with_widest_vectors<slopes_of<false>>(blocks_.data(), size_, &at, below, &out);
+  const hfr_real3 axis = to_kernel(axis_);
+  if (room_ == Room::kPlane) with_widest_vectors<cut_slopes<false>>(&out, &axis);
+  if (room_ == Room::kLine) with_widest_vectors<cut_slopes<true>>(&out, &axis);
 }
 
 Vec3 MaxMinForm::ascend(Vec3 start, int iterations) {
-  if (cells_.empty()) return start;
+  if (size_ == 0) return start;
   if (!(unit_ > 0)) scale();
   if (!hfr_is_normal_positive(unit_)) return start;
   Vec3 x = (1.0 / unit_) * (start - origin_);
@@ -192,10 +451,13 @@ Vec3 MaxMinForm::ascend(Vec3 start, int iterations) {
   double u = kFirstReach;
   Slopes f;
   slopes(x, kFarAbove * now + kFarAboveFloor, f);
-  for (int i = 0; i < iterations && u > kSmallestReach && !f.empty(); ++i) {
-    const Step step = proximal_step(f, u);
+  for (int i = 0; i < iterations && u > kSmallestReach && f.size > 0; ++i) {
+    Step step;
+    const Slopes* const slopes_now = &f;
+    with_widest_lanes<proximal_step<Lanes<8>>, proximal_step<Lanes<4>>, proximal_step<Lanes<2>>>(slopes_now,
+                                                                                                 u, &step);
     const double promise = step.promise - now;
-    const Vec3 next_x = x + step.d;
+    const Vec3 next_x = x + Vec3{step.d.x, step.d.y, step.d.z};
     const double next = worst(next_x, now);
     if (!(next > now)) {
       u *= 0.25;

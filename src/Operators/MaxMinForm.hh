@@ -2,14 +2,34 @@
 #ifndef HFR_OPERATORS_MAX_MIN_FORM_HH
 #define HFR_OPERATORS_MAX_MIN_FORM_HH
 
-#include <array>
+#include <cstddef>
 #include <type_traits>
 
+#include "HalfFace/RawArray.hh"
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
 #include "Quality/Metrics.hh"
 
 namespace hfr {
+
+namespace detail {
+
+/// A few cells of a MaxMinForm, one array a number, so that they are worked on several an instruction (see
+/// with_widest_vectors()). The last block of a form is filled up with its last cell.
+struct MaxMinBlock {
+  static constexpr std::size_t kSize = 8;
+  using Row = double[kSize];
+
+  alignas(64) Row px[3];             // corners of the triangle
+  Row py[3], pz[3];                  // until it is scaled, that is all
+  Row ex[3], ey[3], ez[3];           // e[k] = p[k+1] - p[k]
+  Row e2[3];                         // squared lengths
+  Row normal_x, normal_y, normal_z;  // of the triangle, towards the point; gradient of 6V
+  Row q;                             // normal²
+};
+struct MaxMinSlopes;
+
+}  // namespace detail
 
 /// The dihedral angles of all cells that triangles make with one free point, as functions of where the point
 /// stands. Lengths are in units of the mean edge of the triangles, relative to an origin near the point, so
@@ -34,36 +54,29 @@ class MaxMinForm {
 
   /// Adds the cell (a, b, c, point); positive in this order.
   void add(Vec3 a, Vec3 b, Vec3 c);
-  bool full() const { return cells_.full(); }
+  bool full() const { return size_ == Star::kCapacity; }
 
   /// Place at which the smallest sin² is as large as a non-smooth steepest ascent from `start` takes it;
   /// `start` itself when some cell is not positive there, or nothing is gained.
   Vec3 ascend(Vec3 start, int iterations);
 
  private:
-  struct Link {  // of one cell, before it is known how the form is scaled
-    std::array<Vec3, 3> p;
-    std::array<Vec3, 3> e;     // e[i] = p[i+1] - p[i]
-    std::array<double, 3> e2;  // squared lengths
-    Vec3 normal;               // of the triangle, towards the point; gradient of 6V
-    double q = 0;              // normal²
-  };
-  struct Slope {
-    double value = 0;
-    Vec3 gradient;
-  };
-  using Slopes = FixedVector<Slope, 384>;
-
   void scale();
-  double worst(Vec3 x, double floor) const;
-  void slopes(Vec3 x, double below, Slopes& out) const;
+  double worst(Vec3 x, double floor);
+  void slopes(Vec3 x, double below, detail::MaxMinSlopes& out) const;
+  std::size_t n_blocks() const { return (size_ + Block::kSize - 1) / Block::kSize; }
+
+  using Block = detail::MaxMinBlock;
+  static_assert(Star::kCapacity % Block::kSize == 0);
 
   Vec3 origin_;
   Angles angles_;
   Room room_ = Room::kSpace;
   Vec3 axis_;
   double unit_ = 0;
-  FixedVector<Link, Star::kCapacity> cells_;
+  std::size_t size_ = 0;
+  std::size_t asked_first_ = 0;  // block with which worst() begins: the one that ended it last time
+  RawArray<Block, Star::kCapacity / Block::kSize> blocks_;
 };
 
 }  // namespace hfr

@@ -2,6 +2,8 @@
 #ifndef HFR_QUALITY_VECTORS_HH
 #define HFR_QUALITY_VECTORS_HH
 
+#include <cstddef>
+
 #include "kernels/base.h"
 
 namespace hfr {
@@ -48,6 +50,38 @@ auto with_widest_vectors(Args... args) {
   }
 #endif
   return kBody(args...);
+}
+
+/// kLanes doubles on which + - * / and comparisons work one by one, and `a < b ? x : y` chooses one by one.
+/// For loops with which with_widest_vectors() gets nowhere, such as those that look for a place.
+#ifdef __GNUC__
+template <std::size_t kLanes>
+struct LanesOf {
+  typedef double Type __attribute__((vector_size(kLanes * sizeof(double))));
+};
+#else
+template <std::size_t kLanes>
+struct LanesOf {
+  using Type = double;
+};
+#endif
+template <std::size_t kLanes>
+using Lanes = typename LanesOf<kLanes>::Type;
+
+/// As with_widest_vectors(), of three bodies the one written for as many lanes as an instruction has.
+template <auto kEight, auto kFour, auto kTwo, class... Args>
+auto with_widest_lanes(Args... args) {
+#if defined(__GNUC__) && defined(__x86_64__)
+  switch (widest_vectors()) {
+    case Vectors::kAvx512:
+      return detail::call_avx512<kEight>(args...);
+    case Vectors::kAvx2:
+      return detail::call_avx2<kFour>(args...);
+    case Vectors::kBaseline:
+      break;
+  }
+#endif
+  return kTwo(args...);
 }
 
 }  // namespace hfr

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Operators/SmoothMaxMin.hh"
 
-#include "Operators/MaxMinForm.hh"
 #include "Operators/SmoothStars.hh"
 
 namespace hfr::test {
@@ -100,21 +99,6 @@ TEST(SmoothMaxMin, InvertedStarsAndOtherMetricsGoThroughTheCandidateSearch) {
   const SmoothTally other = smooth_stars(MaxMinSearch{}, VolumeLength{}, 0.25, 4);
   EXPECT_GT(other.moved, 75);
   EXPECT_EQ(other.sum_gain, smooth_stars(CandidateSearch{}, VolumeLength{}, 0.25, 4).sum_gain);
-}
-
-TEST(MaxMinForm, StaysWhereACellIsNotPositive) {
-  MaxMinForm form({});
-  form.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
-  const Vec3 below{0.3, 0.3, -0.5};
-  EXPECT_EQ(form.ascend(below, 20), below);
-}
-
-TEST(MaxMinForm, OneCellBecomesAsGoodAsItsTriangleAllows) {
-  // Over an equilateral triangle the best cell is the regular one.
-  MaxMinForm form({});
-  form.add({0, 0, 0}, {1, 0, 0}, {0.5, std::sqrt(0.75), 0});
-  const Vec3 apex = form.ascend({0.2, 0.1, 0.3}, 60);
-  EXPECT_LT(norm(apex - Vec3{0.5, std::sqrt(0.75) / 3, std::sqrt(2.0 / 3.0)}), 0.05);
 }
 
 }  // namespace
