@@ -63,13 +63,7 @@ class Digger {
     for (std::size_t idle = 0; idle < kPatience; ++idle) {
       for (std::size_t i = n_valued; i < cells.outer().size(); ++i)
         cells.value(i) = value(cells.outer()[i], place);
-      HalfFaceHandle worst_face;
-      double worst = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < cells.outer().size(); ++i) {
-        if (!(cells.value(i) < worst)) continue;
-        worst = cells.value(i);
-        worst_face = cells.outer()[i];
-      }
+      const auto [worst_face, worst] = cells.least();
       if (worst > best.new_worst) {
         best = {cells.growth(), place, old_worst, worst};
         idle = 0;

@@ -8,6 +8,7 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
+#include "Quality/Lowest.hh"
 
 namespace hfr {
 
@@ -36,7 +37,7 @@ class GrownCells {
 
   GrownCells(const TetMesh& mesh, CellHandle first) : mesh_(&mesh) {
     growth_.first = first;
-    cells_.push_back(first);
+    push(first);
     for (int k = 0; k < 4; ++k) outer_.push_back(halfface_of(first, k));
     values_.resize(4);
   }
@@ -46,9 +47,23 @@ class GrownCells {
   const FixedVector<HalfFaceHandle, kMaxFaces>& outer() const { return outer_; }
   /// A number per outer half-face, for the caller's use; grow() takes it along.
   double& value(std::size_t i) { return values_[i]; }
+  /// The outer half-face with the smallest value, the first of equals, and this value; invalid where no value
+  /// is a number below infinity.
+  struct Least {
+    HalfFaceHandle face;
+    double value;
+  };
+  Least least() {
+    std::size_t n = outer_.size();
+    for (; n % kLowestBlock != 0; ++n) values_.begin()[n] = HFR_INFINITY;
+    const Lowest lowest = lowest_of(values_.begin(), n);
+    return {lowest.value < HFR_INFINITY ? outer_[lowest.at] : HalfFaceHandle{}, lowest.value};
+  }
   /// Outer half-faces from this one on came with the last step.
   std::size_t n_kept() const { return n_kept_; }
-  bool has(CellHandle c) const { return std::find(cells_.begin(), cells_.end(), c) != cells_.end(); }
+  bool has(CellHandle c) const {
+    return ((marks_[mark_of(c) / 64] >> (mark_of(c) % 64)) & 1U) != 0 && contains(cells_, c);
+  }
 
   /// Takes in the cell behind an outer half-face. False, with nothing changed, when there is none, the face
   /// may not vanish, there is no room, or a vertex would lie inside with no outer face.
@@ -57,58 +72,69 @@ class GrownCells {
     const HalfFaceHandle m = mesh_->opposite_halfface(h);
     const CellHandle c = cell_of(m);
     FixedVector<HalfFaceHandle, 4> closed;  // outer half-faces that would lie inside
-    FixedVector<HalfFaceHandle, 4> fresh;
+    FixedVector<int, 4> fresh;              // corners of c opposite those that would be outer ones
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle behind = mesh_->opposite_halfface(halfface_of(c, k));
-      if (behind.is_valid() && has(cell_of(behind))) {
+      if (behind == h) {
+        closed.push_back(behind);
+      } else if (behind.is_valid() && has(cell_of(behind))) {
         if (mesh_->is_constrained(behind)) return false;
         closed.push_back(behind);
       } else {
-        fresh.push_back(halfface_of(c, k));
+        fresh.push_back(k);
       }
     }
-    for (VertexHandle v : mesh_->cell(c).v)
-      if (!stays_outside(v, closed, fresh)) return false;
+    for (int k = 0; fresh.size() < 2 && k < 4; ++k) {  // two faces of a cell have all its vertices
+      const bool on_fresh = !fresh.empty() && fresh[0] != k;
+      if (!on_fresh && !stays_outside(mesh_->cell(c).v[static_cast<std::size_t>(k)], closed)) return false;
+    }
     const auto index =
         static_cast<std::size_t>(std::find(cells_.begin(), cells_.end(), cell_of(h)) - cells_.begin());
     growth_.steps[growth_.n_steps++] = static_cast<std::uint8_t>(4 * index + h.idx() % 4);
-    cells_.push_back(c);
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < outer_.size(); ++i) {
-      if (contains(closed, outer_[i])) continue;
-      values_[n] = values_[i];
-      outer_[n++] = outer_[i];
+    push(c);
+    for (HalfFaceHandle gone : closed) {
+      HalfFaceHandle* const at = std::find(outer_.begin(), outer_.end(), gone);
+      HFR_ASSERT(at != outer_.end());
+      double* const value = values_.begin() + (at - outer_.begin());
+      std::copy(at + 1, outer_.end(), at);
+      std::copy(value + 1, values_.end(), value);
+      outer_.resize(outer_.size() - 1);
+      values_.resize(outer_.size());
     }
-    n_kept_ = n;
-    outer_.resize(n);
-    values_.resize(n);
-    for (HalfFaceHandle f : fresh) outer_.push_back(f);
+    n_kept_ = outer_.size();
+    for (int k : fresh) outer_.push_back(halfface_of(c, k));
     values_.resize(outer_.size());
     return true;
   }
 
  private:
-  template <class List>
-  static bool contains(const List& list, HalfFaceHandle h) {
-    return std::find(list.begin(), list.end(), h) != list.end();
+  template <class List, class Item>
+  static bool contains(const List& list, Item item) {
+    return std::find(list.begin(), list.end(), item) != list.end();
+  }
+  /// Cells whose marks differ are not the same.
+  static std::size_t mark_of(CellHandle c) { return c.idx() % kMarks; }
+  void push(CellHandle c) {
+    cells_.push_back(c);
+    marks_[mark_of(c) / 64] |= std::uint64_t{1} << (mark_of(c) % 64);
   }
   bool touches(HalfFaceHandle h, VertexHandle v) const {
     return mesh_->halfface_opposite_vertex(h) != v && mesh_->cell(cell_of(h)).has(v);
   }
-  template <class List>
-  bool stays_outside(VertexHandle v, const List& closed, const List& fresh) const {
-    for (HalfFaceHandle f : fresh)
-      if (touches(f, v)) return true;
+  bool stays_outside(VertexHandle v, const FixedVector<HalfFaceHandle, 4>& closed) const {
     for (HalfFaceHandle o : outer_)
       if (touches(o, v) && !contains(closed, o)) return true;
     return false;
   }
 
+  static constexpr std::size_t kMarks = 512;
+
   const TetMesh* mesh_;
   Growth growth_;
   FixedVector<CellHandle, Growth::kMaxCells> cells_;
+  std::array<std::uint64_t, kMarks / 64> marks_{};  // those of cells_, so that most others need no search
   FixedVector<HalfFaceHandle, kMaxFaces> outer_;
-  FixedVector<double, kMaxFaces> values_;
+  FixedVector<double, kMaxFaces + kLowestBlock> values_;  // with room for least() to fill up
   std::size_t n_kept_ = 0;
 };
 

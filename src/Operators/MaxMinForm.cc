@@ -8,8 +8,8 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 
+#include "Quality/Lowest.hh"
 #include "Quality/Vectors.hh"
 
 namespace hfr {
@@ -23,8 +23,8 @@ constexpr double kFarAbove = 2;  // functions above this many times the smallest
 constexpr double kFarAboveFloor = 0.05;
 constexpr int kMaxExchanges = 32;  // between weights, for one step
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kBlock = detail::MaxMinBlock::kSize;
+static_assert(kBlock == kLowestBlock);
 
 }  // namespace
 
@@ -51,53 +51,6 @@ using Slopes = detail::MaxMinSlopes;
 HFR_FN hfr_real3 times(double s, hfr_real3 a) { return {s * a.x, s * a.y, s * a.z}; }
 HFR_FN hfr_real3 plus(hfr_real3 a, hfr_real3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 
-HFR_FN double least_of(const double* v) {
-  static_assert(kBlock == 8);
-  return hfr_min(hfr_min(hfr_min(v[0], v[1]), hfr_min(v[2], v[3])),
-                 hfr_min(hfr_min(v[4], v[5]), hfr_min(v[6], v[7])));
-}
-
-/// The first of the smallest numbers, of those that are neither NaN nor +infinity; where there are none,
-/// +infinity and 0.
-struct Lowest {
-  std::size_t at = 0;
-  double value = kInfinity;
-};
-
-template <class V>
-HFR_FN void load(V& v, const double* from) {
-  std::memcpy(&v, from, sizeof(V));
-}
-
-/// Finds it, for numbers that come in order, a V at a time.
-template <class V>
-struct LowestSearch {
-  static constexpr std::size_t kLanes = sizeof(V) / sizeof(double);
-  V value, at;  // by lane; places are kept as doubles, which are as wide as what is compared
-  V next;       // places that come next
-
-  HFR_FN void begin() {
-    alignas(64) double lanes[kBlock] = {0, 1, 2, 3, 4, 5, 6, 7};
-    load(next, lanes);
-    value = at = V{} + kInfinity;
-  }
-  HFR_FN void take(const V& v) {
-    at = v < value ? next : at;
-    value = v < value ? v : value;
-    next = next + static_cast<double>(kLanes);
-  }
-  HFR_FN Lowest get() const {
-    alignas(64) double v[kBlock];
-    for (std::size_t i = 0; i < kBlock; ++i) v[i] = kInfinity;
-    std::memcpy(v, &value, sizeof(V));
-    const double least = least_of(v);
-    if (!(least < kInfinity)) return {};
-    const V here = value == least ? at : V{} + kInfinity;
-    std::memcpy(v, &here, sizeof(V));
-    return {static_cast<std::size_t>(static_cast<int>(least_of(v))), least};
-  }
-};
-
 /// A step, and the smallest value that the linear models promise after it.
 struct Step {
   hfr_real3 d;
@@ -111,14 +64,7 @@ template <class V>
 HFR_FN void proximal_step(const Slopes* slopes, double u, Step* out) {
   const Slopes& f = *slopes;
   const std::size_t n = f.padded();
-  LowestSearch<V> search;
-  search.begin();
-  for (std::size_t i = 0; i < n; i += search.kLanes) {
-    V v;
-    load(v, &f.value[i]);
-    search.take(v);
-  }
-  const Lowest least = search.get();
+  const Lowest least = lowest_in<V>(f.value.data(), n);
   const double now = least.value;
   // Those that have or had weight, in the order in which they got it.
   std::size_t support[kMaxExchanges + 1];
@@ -129,6 +75,7 @@ HFR_FN void proximal_step(const Slopes* slopes, double u, Step* out) {
   hfr_real3 d = times(u, f.gradient(least.at));
   alignas(64) double model[Slopes::kCapacity];
   for (int k = 0;; ++k) {
+    LowestSearch<V> search;
     search.begin();
     for (std::size_t i = 0; i < n; i += search.kLanes) {
       V v, x, y, z;
@@ -268,12 +215,12 @@ HFR_FN Sines2 sines2_of(const Block& b, std::size_t i, const Sides& s) {
   f.side2 = hfr_dot3(s.r2, s.r2) * det2 / (s.q1 * s.q2);
   if constexpr (!kAll) {
     const hfr_real3 n = normal(b, i);
-    f.base0 = hfr_dot3(n, s.n0) > 0 ? f.base0 : kInfinity;
-    f.base1 = hfr_dot3(n, s.n1) > 0 ? f.base1 : kInfinity;
-    f.base2 = hfr_dot3(n, s.n2) > 0 ? f.base2 : kInfinity;
-    f.side0 = hfr_dot3(s.n2, s.n0) < 0 ? f.side0 : kInfinity;
-    f.side1 = hfr_dot3(s.n0, s.n1) < 0 ? f.side1 : kInfinity;
-    f.side2 = hfr_dot3(s.n1, s.n2) < 0 ? f.side2 : kInfinity;
+    f.base0 = hfr_dot3(n, s.n0) > 0 ? f.base0 : HFR_INFINITY;
+    f.base1 = hfr_dot3(n, s.n1) > 0 ? f.base1 : HFR_INFINITY;
+    f.base2 = hfr_dot3(n, s.n2) > 0 ? f.base2 : HFR_INFINITY;
+    f.side0 = hfr_dot3(s.n2, s.n0) < 0 ? f.side0 : HFR_INFINITY;
+    f.side1 = hfr_dot3(s.n0, s.n1) < 0 ? f.side1 : HFR_INFINITY;
+    f.side2 = hfr_dot3(s.n1, s.n2) < 0 ? f.side2 : HFR_INFINITY;
   }
   return f;
 }
@@ -285,7 +232,7 @@ HFR_FN double worst_of(const Block* blocks, std::size_t n, const hfr_real3* at, 
                        std::size_t* begin) {
   const hfr_real3 x = *at;
   alignas(64) double worst[kBlock];
-  for (std::size_t i = 0; i < kBlock; ++i) worst[i] = kInfinity;
+  for (std::size_t i = 0; i < kBlock; ++i) worst[i] = HFR_INFINITY;
   std::size_t at_block = *begin;
   for (std::size_t asked = 0; asked < n; ++asked) {
     const Block& b = blocks[at_block];
@@ -305,7 +252,7 @@ HFR_FN double worst_of(const Block* blocks, std::size_t n, const hfr_real3* at, 
     }
     at_block = at_block + 1 == n ? 0 : at_block + 1;
   }
-  return least_of(worst);
+  return least_of_block(worst);
 }
 
 /// Values and gradients of the angles of a block of cells, rows in the order of the angles: base0, side0,
@@ -372,7 +319,7 @@ HFR_FN void slopes_of(const Block* blocks, std::size_t n_cells, const hfr_real3*
   }
   out->size = n;
   for (; n < out->padded(); ++n) {
-    out->value[n] = kInfinity;
+    out->value[n] = HFR_INFINITY;
     out->x[n] = out->y[n] = out->z[n] = 0;
   }
 }
