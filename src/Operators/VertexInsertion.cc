@@ -101,7 +101,9 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   detail::Site best;
   for (std::size_t i = 0; i < std::min(max_sites, sites.size()); ++i) {
     if (only_site >= 0 && i != static_cast<std::size_t>(only_site)) continue;
-    const detail::Site site = digger.follow_up(sites[order[i]], kMaxDigs);
+    const detail::Site& start = sites[order[i]];
+    if (start.new_worst < least_promise * gain * start.old_worst) continue;
+    const detail::Site site = digger.follow_up(start, kMaxDigs);
     const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
     if (site.new_worst > best.new_worst && site.new_worst > least) best = site;
   }

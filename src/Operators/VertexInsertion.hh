@@ -40,8 +40,10 @@ struct VertexInsertion {
   /// much, for callers that go on from there and take it back if nothing comes of it.
   double gain = 1.0;
   std::size_t max_sites = kMaxSites;  ///< first places that are followed up, the most promising ones
-  int only_site = -1;                 ///< not negative: only this one of them, counted by promise from 0
-  std::size_t max_cells = 48;         ///< of the cavity, at most Growth::kMaxCells
+  /// Share of the worst value asked for that a first place must come to by itself to be followed up.
+  double least_promise = 0;
+  int only_site = -1;          ///< not negative: only this one of them, counted by promise from 0
+  std::size_t max_cells = 48;  ///< of the cavity, at most Growth::kMaxCells
 
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;

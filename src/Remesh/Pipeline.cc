@@ -257,7 +257,8 @@ void refine(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCo
   const Focus focus{dihedral_decision(goal)};
   Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "refine");
   std::size_t n_poor = stage.n_below(focus.below);
-  for (int i = 1; i <= kMaxPolishIterations && n_poor > 0 && !control.stopped(); ++i) {
+  const int limit = options.iterations > 0 ? options.iterations : kMaxPolishIterations;
+  for (int i = 1; i <= limit && n_poor > 0 && !control.stopped(); ++i) {
     stage.iterate(i, focus, false);
     const std::size_t n_left = stage.n_below(focus.below);
     const bool helps = static_cast<double>(n_left) < kRefineFewer * static_cast<double>(n_poor);

@@ -20,7 +20,10 @@ constexpr int kMaxInsertRounds = 200;      // of insertion, which takes seeds th
 // three find the same as all on the test meshes, in half the time; for the last ones each place counts.
 constexpr std::size_t kFewSeeds = 64;
 constexpr std::size_t kSitesOfMany = 3;
-constexpr std::size_t kLittle = 200;  // stop when a round commits less than 1/kLittle of the first one
+// With a frozen surface nearly half of them have no place of such promise, and one in twelve of these a plan.
+constexpr double kPromiseOfMany = 0.5;
+constexpr std::size_t kLeastRoom = 4;  // cells that a new vertex takes, about
+constexpr std::size_t kLittle = 200;   // stop when a round commits less than 1/kLittle of the first one
 
 }  // namespace
 
@@ -98,6 +101,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     if (counts.held_back > 0) control_.note_cell_bound();
     if (n_invalid_ > 0) count(focus);
     if (r == 0) first = counts.winners;
+    if (kind == kInsert && counts.winners < counts.held_back) break;  // the room is used up
     if (!replay_ && counts.winners * kLittle <= first && !(kind == kInsert && !waiting_.empty())) break;
   }
   count(focus);
@@ -248,12 +252,21 @@ auto Stage<Metric>::worst_apart(const Worklist& list, Focus focus) -> std::vecto
 }
 
 template <class Metric>
+bool Stage<Metric>::has_room() const {
+  return options_.max_cells == 0 || mesh_.n_logical_cells() + kLeastRoom <= options_.max_cells;
+}
+
+template <class Metric>
 std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus, double gain) {
   using Op = VertexInsertion<Metric>;
   if (gain != insert_gain_) {  // what has been refused may now do
     insert_gain_ = gain;
     looked_[kInsert] = 0;
     waiting_.clear();
+  }
+  if (!has_room()) {
+    control_.note_cell_bound();
+    return 0;
   }
   const std::size_t n_inside = rounds(
       kInsert, iteration, focus,
@@ -263,7 +276,10 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus, double gain) 
       [&](auto& round, Op op, const Worklist& list) {
         std::vector<typename Op::Seed> seeds;
         for (CellHandle c : worst_apart(list, focus)) seeds.emplace_back(c);
-        if (seeds.size() + waiting_.size() > kFewSeeds) op.max_sites = kSitesOfMany;
+        if (seeds.size() + waiting_.size() > kFewSeeds) {
+          op.max_sites = kSitesOfMany;
+          if (!control_.surface()) op.least_promise = kPromiseOfMany;
+        }
         return round.run(op, seeds);
       });
   return n_inside + (control_.surface() ? surface_splits(iteration, focus) : 0);

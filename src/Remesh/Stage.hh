@@ -161,6 +161,9 @@ class Stage {
     return options_.min_cells > 0 ? n_cells - std::min(n_cells, options_.min_cells) : RoundOptions{}.may_lose;
   }
 
+  /// Whether the bound on cells leaves room for a new vertex.
+  bool has_room() const;
+
   /// Vertices of the listed cells that an operator may take out.
   std::vector<VertexHandle> removable(const Worklist& list) const;
 

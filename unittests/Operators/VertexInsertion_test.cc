@@ -165,6 +165,33 @@ TEST(VertexInsertion, FollowsUpTheSitesThatItIsToldAndMayLose) {
   EXPECT_GT(differ, 50);
 }
 
+TEST(VertexInsertion, PlacesWithoutPromiseAreNotFollowedUp) {
+  int same = 0;
+  int given_up = 0;
+  for (std::uint64_t s = 1; s <= 3; ++s) {
+    const TetMesh mesh = jittered(4, 0.3, s);
+    const auto quality = qualities(mesh, MinSine2{});
+    VertexInsertion<MinSine2> op{{}, quality, 1.1};
+    op.max_sites = 1;
+    for (std::size_t i = 0; i < mesh.n_cells(); i += 2) {
+      op.least_promise = 0;
+      const auto any = op.evaluate(mesh, Seed<MinSine2>(C(i)));
+      op.least_promise = 0.9;
+      const auto promising = op.evaluate(mesh, Seed<MinSine2>(C(i)));
+      if (promising) {
+        ASSERT_TRUE(any);
+        EXPECT_EQ(promising->place, any->place);
+        EXPECT_EQ(promising->new_worst, any->new_worst);
+        ++same;
+      } else if (any) {
+        ++given_up;
+      }
+    }
+  }
+  EXPECT_GT(same, 50);
+  EXPECT_GT(given_up, 20);
+}
+
 TEST(VertexInsertion, InterfacesAreNotDugThrough) {
   int accepted = 0;
   for (std::uint64_t s = 1; s <= 4; ++s) {
