@@ -39,8 +39,10 @@ constexpr double kRefineGainAtAnyCost = 1.3;
 /// Cells that raising the worst angle at any cost makes of 100 that the default run leaves, where the options
 /// do not say.
 constexpr std::size_t kMostAtAnyCost = 150;
-/// Of 100 cells that a run may make, those left to it when vertices are put in first.
-constexpr std::size_t kRefineOfHundred = 92;
+/// Of 100 cells that a run may make, those that there may be when vertices are put in first, and once more.
+/// The rest is for the worst cells.
+constexpr std::size_t kFillOfHundred = 92;
+constexpr std::size_t kFillUpOfHundred = 98;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -62,10 +64,10 @@ ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
   return options;
 }
 
-/// The rest is for the worst cells, which come after.
-ImproveOptions with_room_left(ImproveOptions options) {
-  options.max_cells = options.max_cells * kRefineOfHundred / 100;
-  return options;
+/// Share of the cells with a dihedral below so many degrees.
+double share_below(const TetMesh& mesh, double degrees, const ImproveOptions& options) {
+  return static_cast<double>(n_below(mesh, degrees, options.policy)) /
+         static_cast<double>(mesh.n_logical_cells());
 }
 
 /// With a surface that may change, what many cells suffer from can be mended, too.
@@ -89,22 +91,9 @@ void validate(const ImproveOptions& options) {
 }
 
 /// Raises the worst dihedrals rung by rung; one that is missed is no reason to stop, because what holds a
-/// cell below it may give way on the next. `floor` is where it stood before: the bulk stage, which knows only
-/// volume-length, may have lowered it.
-void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor,
-           const PatchEffort& effort) {
-  const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
-  double now = smallest();  // a pass over the mesh: only after what may have changed it
-  if (now < floor) {
-    polish(mesh, work, options, control, floor);
-    now = smallest();
-  }
-  const double share = static_cast<double>(n_below(mesh, kRefineGoal, options.policy)) /
-                       static_cast<double>(mesh.n_logical_cells());
-  if (!control.surface() && now < kRefineGoal && share > kManyPoor && share < kAllPoor) {
-    refine(mesh, work, with_room_left(options), control, kRefineGoal, kRefineGain);
-    now = smallest();
-  }
+/// cell below it may give way on the next.
+void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+  double now = smallest_dihedral(mesh, options.policy);
   double below = 0;  // the last rung that was worked for
   for (double rung : kLadder) {
     if (control.stopped()) return;
@@ -113,20 +102,63 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
     if (rung > kCommonRung && now < below) break;
     below = rung;
     polish(mesh, work, options, control, rung, largest_share(options));
-    now = smallest();
+    now = smallest_dihedral(mesh, options.policy);
   }
-  // The last few cells below the first rung that was missed, and those below the next ones.
+}
+
+/// Mends the last few cells below the first rung that was missed, and those below the next ones. True when
+/// the worst has risen.
+bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+               const PatchEffort& effort) {
+  const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
+  const double at_first = smallest();
+  double now = at_first;
   for (double rung : kLadder) {
-    if ((rung > kReliefRung && !options.coarsen) || control.stopped()) return;
+    if ((rung > kReliefRung && !options.coarsen) || control.stopped()) break;
     if (now >= rung) continue;
+    if (share_below(mesh, rung, options) > largest_share(options)) break;
     for (double before = 0; now < rung && now > kClimbGain * before && !control.stopped();) {
       before = now;
       relieve(mesh, work, options, control, few_below(mesh, rung, options.policy));
       now = smallest();
     }
-    if (now < rung && search_patches(mesh, work, options, control, rung, effort)) now = smallest();
-    if (now < rung) return;
+    const auto search = [&](const PatchEffort& how) {
+      if (now < rung && search_patches(mesh, work, options, control, rung, how)) now = smallest();
+    };
+    if (!control.surface() || rung <= kCommonRung) {  // a free surface has cheaper ways beyond
+      search(effort);
+      for (const PatchEffort& last : kLastEfforts) search(last);
+    }
+    if (now < rung) break;
   }
+  return now > kClimbGain * at_first;
+}
+
+/// Puts vertices in where the mesh lacks them; leaves that many cells of 100 that it may make. True when it
+/// does lack them.
+bool fill_in(TetMesh& mesh, Workspace& work, ImproveOptions options, RunControl& control,
+             std::size_t of_hundred) {
+  if (control.surface() || control.stopped() || smallest_dihedral(mesh, options.policy) >= kRefineGoal)
+    return false;
+  const double share = share_below(mesh, kRefineGoal, options);
+  if (share <= kManyPoor || share >= kAllPoor) return false;
+  options.max_cells = options.max_cells * of_hundred / 100;
+  refine(mesh, work, options, control, kRefineGoal, kRefineGain);
+  return true;
+}
+
+/// Raises the worst dihedrals as far as a limited effort takes them. `floor` is where the worst stood before:
+/// the bulk stage, which knows only volume-length, may have lowered it.
+void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor,
+           const PatchEffort& effort) {
+  if (smallest_dihedral(mesh, options.policy) < floor) polish(mesh, work, options, control, floor);
+  fill_in(mesh, work, options, control, kFillOfHundred);
+  climb_rungs(mesh, work, options, control);
+  // What was put in first is well connected by now, which shows where vertices are still missing.
+  if (options.iterations == 0 && fill_in(mesh, work, options, control, kFillUpOfHundred))
+    climb_rungs(mesh, work, options, control);
+  // Whatever raises the last few takes from their neighbours.
+  if (mend_last(mesh, work, options, control, effort)) climb_rungs(mesh, work, options, control);
 }
 
 /// Works towards a goal: within the bounds on cells first, then within those that were asked for if the
@@ -154,11 +186,11 @@ bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const 
 void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
                           RunControl& control) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
-  const auto mend_last = [&] {
+  const auto search_worst = [&] {
     for (const PatchEffort& effort : kAllEfforts)
       search_patches(mesh, work, options, control, kFullLadder.back(), effort);
   };
-  mend_last();
+  search_worst();
   if (!control.surface() && !options.coarsen && smallest() < kRefineGoal)
     refine(mesh, work, options, control, kRefineGoal, kRefineGainAtAnyCost);
   for (double at_start = 0; smallest() > at_start * kClimbGain && !control.stopped();) {
@@ -176,7 +208,7 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
       n_missed = fewer || smallest() > now * kClimbGain ? 0 : n_missed + 1;
     }
   }
-  mend_last();
+  search_worst();
 }
 
 /// True when every cell is known to meet the goal.

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Insertion "followed by smoothing and topological improvement", kept or rolled back as one step (Klingner &
-// Shewchuk 2007): here on a copy of the surroundings of each of the last few cells.
+// Shewchuk 2007): here on a copy of the surroundings of each of the last few cells, and removal likewise.
 #include <algorithm>
 #include <optional>
 
 #include "Operators/Metrics.hh"
 #include "Operators/Replace.hh"
 #include "Operators/VertexInsertion.hh"
+#include "Operators/VertexRemoval.hh"
 #include "Remesh/Patch.hh"
 #include "Remesh/Pipeline.hh"
 
@@ -14,6 +15,8 @@ namespace hfr {
 namespace {
 
 constexpr double kLoss = 0.02;       // of sin² of the worst cell, that a new vertex may leave at first
+constexpr double kRise = 1.002;      // times sin² of the worst cell of a patch: less is not worth its cells
+constexpr double kFlat = 1e-5;       // sin² of a cell that is all but flat
 constexpr double kAhead = 1.05;      // times the goal, which is worked for
 constexpr double kLargestGoal = 60;  // degrees
 constexpr double kPatchNanoseconds = 1e7;
@@ -23,8 +26,24 @@ struct Outcome {
   double worst = 0;
 };
 
-/// The best of several tries at the patch: none unless its worst cell gets better.
-Outcome search(const Patch& patch, const ImproveOptions& options, double seconds, double goal, int n_sites) {
+/// Changes the mesh for try number i, counted from 0, even at a loss: the first ones put a vertex in for the
+/// first cell, each in another place, the others take one out near that cell. False where that cannot be.
+bool begin(TetMesh& mesh, const Workspace& work, Ops ops, const PatchEffort& effort, int i) {
+  if (i < effort.tries) {
+    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kLoss};
+    insertion.only_site = i;
+    return apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)));
+  }
+  const VertexHandle v(static_cast<std::size_t>(i - effort.tries));  // they are in the order of discovery
+  if (!has(ops, Ops::kNode) || v.idx() >= mesh.n_vertices() || work.frozen[v.idx()] != 0) return false;
+  const std::vector<double> nothing_to_lose(mesh.n_cells(), kFlat);
+  return apply(VertexRemoval<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
+}
+
+/// The best of several tries at the patch: none unless its worst cell gets better. Vertices are taken out
+/// only where none that was put in has helped.
+Outcome search(const Patch& patch, const ImproveOptions& options, double seconds, double goal,
+               const PatchEffort& effort) {
   ImproveOptions here;
   here.ops = options.ops;
   here.seed = options.seed;
@@ -32,22 +51,22 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
   here.raise_min_dihedral = true;  // as many vertices as it takes
   Outcome best;
   best.worst = survey(patch.mesh(), here.policy).worst;
+  const double least = kRise * best.worst;
   const double enough = dihedral_decision(goal);
-  for (int i = 0; i <= n_sites && best.worst < enough; ++i) {  // the first without a new vertex
+  for (int i = -1; i < effort.tries + effort.removals && best.worst < enough; ++i) {  // -1: as it is
+    if (i == effort.tries && best.mesh) break;
     TetMesh mesh = patch.mesh();
     Workspace work;
     work.attach(mesh, here.policy);
-    if (i > 0) {
+    if (i >= 0) {
       work.set_qualities(mesh, MinSine2{}, here.policy);
-      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kLoss};
-      insertion.only_site = i - 1;
-      if (!apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)))) continue;
+      if (!begin(mesh, work, here.ops, effort, i)) continue;
       work.attach(mesh, here.policy);
     }
     RunControl control(here);
     polish(mesh, work, here, control, std::min(kAhead * goal, kLargestGoal));
     const double worst = survey(mesh, here.policy).worst;
-    if (!(worst > best.worst)) continue;
+    if (!(worst > std::max(best.worst, least))) continue;
     best.worst = worst;
     best.mesh = std::move(mesh);
   }
@@ -64,7 +83,7 @@ bool fits(const TetMesh& mesh, const Patch& patch, const TetMesh& changed, const
 
 bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
                     double goal, const PatchEffort& effort) {
-  if (!has(options.ops, Ops::kInsert) || control.surface() || options.iterations > 0) return false;
+  if (!has(options.ops, Ops::kInsert) || options.iterations > 0) return false;
   if (!(survey(mesh, options.policy).worst > 0)) return false;
   PassReport pass;
   pass.stage = "patches";
@@ -72,6 +91,7 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
   const double start = control.seconds();
   for (int turn = 0; turn < effort.turns && !control.stopped(); ++turn) {
     const double next = std::min(goal, smallest_dihedral(mesh, options.policy) + effort.degrees);
+    if (n_below(mesh, next, options.policy) > effort.few) break;
     std::vector<Patch> patches;
     std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
     for (CellHandle c : worst_cells_below(mesh, next, 4 * effort.patches, options.policy)) {
@@ -89,7 +109,7 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
     const double seconds = options.time_limit - control.seconds();
     par::for_each_dynamic(
         options.policy.for_items_of(kPatchNanoseconds), patches.size(), 1,
-        [&](std::size_t i) { outcomes[i] = search(patches[i], options, seconds, next, effort.tries); });
+        [&](std::size_t i) { outcomes[i] = search(patches[i], options, seconds, next, effort); });
     ++pass.rounds;
     pass.seeds += patches.size();
     std::size_t n_changed = 0;

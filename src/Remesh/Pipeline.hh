@@ -49,19 +49,24 @@ std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, s
 double few_below(const TetMesh& mesh, double degrees, par::Policy policy);
 /// How much search_patches() does.
 struct PatchEffort {
+  std::size_t few;      ///< cells below the next angle; where there are more, nothing is tried
   int layers;           ///< of cells round the worst one
   std::size_t patches;  ///< at a time
   int turns;            ///< at most
   int tries;            ///< new vertices for one patch
+  int removals;         ///< and vertices next to the worst cell that are taken out instead
   double degrees;       ///< beyond the worst angle, that are worked for in a turn
 };
-constexpr PatchEffort kLittleEffort = {3, 4, 4, 8, 0.6};
+constexpr PatchEffort kLittleEffort = {64, 3, 4, 4, 8, 12, 0.6};
+/// The same for the very last cells, one after the other.
+constexpr std::array<PatchEffort, 2> kLastEfforts = {{{6, 2, 4, 2, 20, 30, 0.6}, {6, 4, 4, 2, 12, 30, 0.6}}};
 /// One after the other, where the worst angle is to be raised at any cost: what one cannot mend, another may.
 constexpr std::array<PatchEffort, 3> kAllEfforts = {
-    {{3, 8, 40, 20, 2}, {4, 8, 40, 20, 0.5}, {2, 8, 40, 20, 3}}};
-/// Tries new vertices for the worst cells below `goal` degrees, each on a copy of its surroundings that is
-/// improved and put back only if its worst cell has got better. For a mesh without invalid cells, with a
-/// frozen surface, where vertices may be inserted; does nothing elsewhere. True when the mesh has changed.
+    {{64, 3, 8, 40, 20, 20, 2}, {64, 4, 8, 40, 20, 20, 0.5}, {64, 2, 8, 40, 20, 20, 3}}};
+/// Tries for the worst cells below `goal` degrees what a new vertex does, or one less, each time on a copy of
+/// the cell's surroundings that is improved and put back only if its worst cell has got better. Faces of the
+/// surface stay as they are. For a mesh without invalid cells where vertices may be inserted; does nothing
+/// elsewhere. True when the mesh has changed.
 bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
                     double goal, const PatchEffort& effort);
 /// Works on the surroundings of the cells below `goal` degrees as if the goal were larger, and then on these

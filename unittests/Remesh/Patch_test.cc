@@ -168,6 +168,71 @@ TEST(SearchPatches, KeepsToTheBoundOnCellsAndSaysSo) {
   EXPECT_GT(held, 0);
 }
 
+TEST(SearchPatches, TakesVerticesOutWhereNothingElseHelps) {
+  PatchEffort without = kLittleEffort;
+  without.tries = 0;
+  without.removals = 0;
+  PatchEffort with = without;
+  with.removals = kLittleEffort.removals;
+  int raised = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = poor_box(s);
+    const auto boundary = boundary_of(mesh);
+    const ImproveOptions options = serial();
+    RunControl control(options);
+    Workspace work;
+    work.attach(mesh, {});
+    while (search_patches(mesh, work, options, control, 60, without)) {
+    }
+    const double before = smallest_dihedral(mesh, {});
+    raised += search_patches(mesh, work, options, control, 60, with) ? 1 : 0;
+    EXPECT_GE(smallest_dihedral(mesh, {}), before);
+    EXPECT_TRUE(boundary_of(mesh) == boundary);
+    EXPECT_EQ(check(mesh), Ok);
+  }
+  EXPECT_GT(raised, 1);
+}
+
+TEST(SearchPatches, LeavesAMeshThatIsPoorThroughoutAlone) {
+  TetMesh mesh = jittered(6, 0.1, 1);
+  for (VertexHandle v : mesh.vertices()) {
+    const Vec3 p = mesh.point(v);
+    mesh.set_point(v, {p.x, p.y, 1e-3 * p.z});
+  }
+  const TetMesh first = mesh;
+  const ImproveOptions options = serial();
+  RunControl control(options);
+  Workspace work;
+  work.attach(mesh, {});
+  EXPECT_FALSE(search_patches(mesh, work, options, control, 40, kLittleEffort));
+  EXPECT_TRUE(identical(mesh, first));
+}
+
+TEST(Refine, StopsWhereTheBoundOnCellsLeavesNoRoom) {
+  const TetMesh first = jittered(6, 0.2, 2);
+  for (const std::size_t room : {0U, 40U, 100'000U}) {
+    TetMesh mesh = first;
+    ImproveOptions options = serial();
+    options.ops = Ops::kInsert;
+    options.max_cells = first.n_logical_cells() + room;
+    RunControl control(options);
+    Workspace work;
+    work.attach(mesh, {});
+    refine(mesh, work, options, control, 30, 1.1);
+    EXPECT_LE(mesh.n_logical_cells(), options.max_cells);
+    EXPECT_EQ(mesh.n_logical_cells() > first.n_logical_cells(), room > 0);
+    EXPECT_EQ(control.met_cell_bound(), room < 100'000);
+    if (room == 0) {
+      EXPECT_TRUE(control.passes().empty()) << "seeds were evaluated in vain";
+    }
+    std::size_t n_seeds = 0;
+    for (const PassReport& pass : control.passes()) n_seeds += pass.seeds;
+    if (room == 40) {
+      EXPECT_LT(n_seeds, n_below(first, 30, {}));
+    }
+  }
+}
+
 TEST(SearchPatches, LeavesAMeshWithInvalidCellsAlone) {
   TetMesh mesh = small_cavity();
   const TetMesh first = mesh;
