@@ -47,6 +47,21 @@ std::array<Vec3, 4> places_above(std::span<const Vec3> points, const std::array<
   return places;
 }
 
+/// Whether the cells that come number more below op.poor_below than those that go, by more than is allowed.
+template <class Metric>
+bool multiplies_poor(const TetMesh& mesh, const VertexInsertion<Metric>& op, const detail::Site& site) {
+  if (!(op.poor_below > 0)) return false;
+  Cavity cavity;
+  detail::fill_cavity(mesh, site.growth, site.place, cavity);
+  const auto point = [&](VertexHandle v) { return v == Cavity::kNewVertex ? site.place : mesh.point(v); };
+  const auto n_dead = std::count_if(cavity.dead.begin(), cavity.dead.end(),
+                                    [&](CellHandle c) { return op.quality[c.idx()] < op.poor_below; });
+  const auto n_born = std::count_if(cavity.born.begin(), cavity.born.end(), [&](const Tet& t) {
+    return op.metric(point(t[0]), point(t[1]), point(t[2]), point(t[3])) < op.poor_below;
+  });
+  return n_born > n_dead + VertexInsertion<Metric>::kMorePoor;
+}
+
 }  // namespace
 
 template <class Metric>
@@ -105,7 +120,8 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
     if (start.new_worst < least_promise * gain * start.old_worst) continue;
     const detail::Site site = digger.follow_up(start, kMaxDigs);
     const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
-    if (site.new_worst > best.new_worst && site.new_worst > least) best = site;
+    if (site.new_worst > best.new_worst && site.new_worst > least && !multiplies_poor(mesh, *this, site))
+      best = site;
   }
   // Smaller inverted cells would look better in some metrics, and be cut again without end.
   if (!(best.new_worst > 0)) return std::nullopt;

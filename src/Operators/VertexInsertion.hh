@@ -20,6 +20,8 @@ namespace hfr {
 template <class Metric>
 struct VertexInsertion {
   static constexpr double kSeedNanoseconds = 200'000;
+  /// With none or one, the worst angles end lower on the test meshes, with three, the percentiles.
+  static constexpr int kMorePoor = 2;
   static constexpr std::size_t kMaxSites = 1 + 4 + 6 + 16;
   /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
   struct Seed {
@@ -42,6 +44,9 @@ struct VertexInsertion {
   std::size_t max_sites = kMaxSites;  ///< first places that are followed up, the most promising ones
   /// Share of the worst value asked for that a first place must come to by itself to be followed up.
   double least_promise = 0;
+  /// Where positive, a new vertex may make at most kMorePoor cells more that are below it than there were.
+  /// One that only raised the worst of its cells would leave several poor ones in the place of one.
+  double poor_below = 0;
   int only_site = -1;          ///< not negative: only this one of them, counted by promise from 0
   std::size_t max_cells = 48;  ///< of the cavity, at most Growth::kMaxCells
 

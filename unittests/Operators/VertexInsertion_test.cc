@@ -192,6 +192,39 @@ TEST(VertexInsertion, PlacesWithoutPromiseAreNotFollowedUp) {
   EXPECT_GT(given_up, 20);
 }
 
+TEST(VertexInsertion, PoorCellsDoNotMultiply) {
+  const double below = 0.3;
+  const auto n_poor = [&](const std::vector<double>& values) {
+    return std::count_if(values.begin(), values.end(), [&](double q) { return q < below; });
+  };
+  int kept = 0;
+  int others = 0;  // plans that the rule changes or refuses
+  for (std::uint64_t s = 1; s <= 3; ++s) {
+    const TetMesh first = jittered(4, 0.3, s);
+    const auto quality = qualities(first, MinSine2{});
+    VertexInsertion<MinSine2> op{{}, quality};
+    for (std::size_t i = 0; i < first.n_cells(); i += 2) {
+      op.poor_below = 0;
+      const auto any = op.evaluate(first, Seed<MinSine2>(C(i)));
+      op.poor_below = below;
+      const auto plan = op.evaluate(first, Seed<MinSine2>(C(i)));
+      ASSERT_TRUE(any || !plan);
+      others += any && (!plan || !(plan->place == any->place)) ? 1 : 0;
+      if (!plan) continue;
+      TetMesh mesh = first;
+      Cavity cavity;
+      op.commit(mesh, *plan, cavity);
+      Star scratch;
+      if (!admissible(mesh, cavity, true, scratch)) continue;
+      replace(mesh, cavity);
+      EXPECT_LE(n_poor(qualities(mesh, MinSine2{})), n_poor(quality) + op.kMorePoor);
+      ++kept;
+    }
+  }
+  EXPECT_GT(kept, 50);
+  EXPECT_GT(others, 20);
+}
+
 TEST(VertexInsertion, InterfacesAreNotDugThrough) {
   int accepted = 0;
   for (std::uint64_t s = 1; s <= 4; ++s) {
