@@ -19,6 +19,7 @@ constexpr double kRise = 1.002;      // times sin² of the worst cell of a patch
 constexpr double kFlat = 1e-5;       // sin² of a cell that is all but flat
 constexpr double kAhead = 1.05;      // times the goal, which is worked for
 constexpr double kLargestGoal = 60;  // degrees
+constexpr int kIterations = 8;       // of the polish of one try: more found no more
 constexpr double kPatchNanoseconds = 1e7;
 
 struct Outcome {
@@ -49,9 +50,12 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
   here.seed = options.seed;
   here.time_limit = seconds;
   here.raise_min_dihedral = true;  // as many vertices as it takes
+  here.iterations = kIterations;
   Outcome best;
   best.worst = survey(patch.mesh(), here.policy).worst;
   const double least = kRise * best.worst;
+  const double worked_for = std::min(kAhead * goal, kLargestGoal);
+  if (n_below(patch.mesh(), worked_for, here.policy) > effort.few) return best;
   const double enough = dihedral_decision(goal);
   for (int i = -1; i < effort.tries + effort.removals && best.worst < enough; ++i) {  // -1: as it is
     if (i == effort.tries && best.mesh) break;
@@ -64,7 +68,7 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
       work.attach(mesh, here.policy);
     }
     RunControl control(here);
-    polish(mesh, work, here, control, std::min(kAhead * goal, kLargestGoal));
+    polish(mesh, work, here, control, worked_for);
     const double worst = survey(mesh, here.policy).worst;
     if (!(worst > std::max(best.worst, least))) continue;
     best.worst = worst;
