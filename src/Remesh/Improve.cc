@@ -207,6 +207,8 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
           kFewer * static_cast<double>(n_poor) > static_cast<double>(n_below(mesh, rung, options.policy));
       n_missed = fewer || smallest() > now * kClimbGain ? 0 : n_missed + 1;
     }
+    if (!control.stopped())
+      relieve(mesh, work, options, control, few_below(mesh, kFullLadder.back(), options.policy));
   }
   search_worst();
 }
@@ -234,6 +236,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   climb(mesh, work, options, control, floor, as_asked.raise_min_dihedral ? kAllEfforts[0] : kLittleEffort);
   if (as_asked.raise_min_dihedral) {
     control.forget_cell_bound();
+    control.spare_nothing();
     ImproveOptions further = options;
     if (!options.raise_min_dihedral) {  // the bounds were those of the default run
       further = as_asked;

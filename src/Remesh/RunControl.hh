@@ -69,6 +69,10 @@ class RunControl {
   void forget_cell_bound() { met_cell_bound_ = false; }
   bool met_cell_bound() const { return met_cell_bound_; }
 
+  /// From here on the worst angle counts at any cost: a new vertex may leave as many poor cells as it takes.
+  void spare_nothing() { spares_nothing_ = true; }
+  bool spares_nothing() const { return spares_nothing_; }
+
   void add(PassReport pass) { passes_.push_back(std::move(pass)); }
   std::vector<PassReport>& passes() { return passes_; }
   /// Estimate of how much of the run is done, 0 … 1; never goes back.
@@ -83,6 +87,7 @@ class RunControl {
   std::optional<Stop> reason_;
   double fraction_ = 0;
   bool met_cell_bound_ = false;
+  bool spares_nothing_ = false;
   SurfaceMesh* surface_ = nullptr;
   std::vector<PassReport> passes_;
   std::unique_ptr<DeviceMesh> device_;

@@ -274,7 +274,7 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus, double gain) 
         return Op{metric_, work_.quality, gain};
       },
       [&](auto& round, Op op, const Worklist& list) {
-        if (!focus.everything()) op.poor_below = focus.below;
+        if (!focus.everything() && !control_.spares_nothing()) op.poor_below = focus.below;
         std::vector<typename Op::Seed> seeds;
         for (CellHandle c : worst_apart(list, focus)) seeds.emplace_back(c);
         if (seeds.size() + waiting_.size() > kFewSeeds) {
