@@ -3,6 +3,7 @@
 // Shewchuk 2007): here on a copy of the surroundings of each of the last few cells, and removal likewise.
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "Operators/Metrics.hh"
 #include "Operators/Replace.hh"
@@ -95,10 +96,12 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
   const double start = control.seconds();
   for (int turn = 0; turn < effort.turns && !control.stopped(); ++turn) {
     const double next = std::min(goal, smallest_dihedral(mesh, options.policy) + effort.degrees);
-    if (n_below(mesh, next, options.policy) > effort.few) break;
+    const std::size_t n_centres = 4 * effort.patches;  // most patches hold several of the worst cells
+    const auto worst = worst_cells_below(mesh, next, std::max(effort.few + 1, n_centres), options.policy);
+    if (worst.size() > effort.few) break;
     std::vector<Patch> patches;
     std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
-    for (CellHandle c : worst_cells_below(mesh, next, 4 * effort.patches, options.policy)) {
+    for (CellHandle c : std::span(worst).first(std::min(n_centres, worst.size()))) {
       if (patches.size() == effort.patches) break;
       if (taken[c.idx()]) continue;
       Patch patch(mesh, c, effort.layers);

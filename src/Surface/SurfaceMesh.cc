@@ -10,15 +10,7 @@
 namespace hfr {
 namespace {
 
-using surface::Arrays;
-using surface::eigen;
-using surface::FaceRecord;
-using surface::Om;
-using surface::OmEdge;
-using surface::OmFace;
-using surface::OmHalfedge;
-using surface::OmVertex;
-using surface::scaled_normal;
+using namespace surface;  // what SurfaceMesh is made of
 
 /// Of the mean edge length of the surface: normals of triangles no larger say little.
 constexpr double kDetail = 0.1;

@@ -5,20 +5,7 @@
 #include "Surface/SurfaceMeshImpl.hh"
 
 namespace hfr {
-namespace {
-
-using surface::Arrays;
-using surface::eigen;
-using surface::FaceRecord;
-using surface::Om;
-using surface::OmEdge;
-using surface::OmFace;
-using surface::OmHalfedge;
-using surface::OmVertex;
-using surface::scaled_normal;
-using surface::unit;
-
-}  // namespace
+using namespace surface;  // what SurfaceMesh is made of
 
 void SurfaceMesh::Impl::account(const std::vector<OmFace>& some, double sign) {
   double sum = 0;

@@ -8,10 +8,7 @@
 namespace hfr {
 namespace {
 
-using surface::FaceRecord;
-using surface::OmFace;
-using surface::scaled_normal;
-using surface::unit;
+using namespace surface;  // what SurfaceMesh is made of
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// The samples are judged by somewhat less than what is allowed, for what lies between them.

@@ -233,6 +233,29 @@ TEST(Refine, StopsWhereTheBoundOnCellsLeavesNoRoom) {
   }
 }
 
+TEST(Refine, LetsPoorCellsMultiplyOnlyWhereNothingIsSpared) {
+  const TetMesh first = jittered(4, 0.3, 2);
+  std::array<std::size_t, 2> more_poor{};
+  for (const bool spare : {true, false}) {
+    TetMesh mesh = first;
+    ImproveOptions options = serial();
+    options.ops = Ops::kInsert;
+    RunControl control(options);
+    if (!spare) control.spare_nothing();
+    Workspace work;
+    work.attach(mesh, {});
+    refine(mesh, work, options, control, 45, 1.05);
+    const std::size_t n_new = mesh.n_logical_vertices() - first.n_logical_vertices();
+    ASSERT_GT(n_new, 20U);
+    const std::size_t n_poor = n_below(mesh, 45, {});
+    if (spare) {
+      EXPECT_LE(n_poor, n_below(first, 45, {}) + VertexInsertion<MinSine2>::kMorePoor * n_new);
+    }
+    more_poor[spare ? 0 : 1] = n_poor;
+  }
+  EXPECT_GT(more_poor[1], more_poor[0]);
+}
+
 TEST(SearchPatches, LeavesAMeshWithInvalidCellsAlone) {
   TetMesh mesh = small_cavity();
   const TetMesh first = mesh;
