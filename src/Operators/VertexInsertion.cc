@@ -10,6 +10,7 @@
 #include "Operators/Dig.hh"
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
+#include "Operators/Needle.hh"
 
 namespace hfr {
 namespace {
@@ -18,32 +19,15 @@ constexpr int kMaxDigs = 4;                                     // with a move o
 constexpr std::array<double, 3> kAlongAxis = {0.15, 0.3, 0.5};  // places over a constrained face
 
 /// Places from which the cell on a triangle (corners in the order that a cell on it has) has a good smallest
-/// dihedral: the best one, and some between the shortest side and the corner across. Those are for needles,
-/// as a long face of the surface with one short side is: with short side s, at the share t of the way l to
-/// the tip and at height y, the angle at the short side is about y/(t l), that at the far edge (1-t) s/y,
-/// alike where y² = t(1-t) s l.
+/// dihedral: the best one, and some between the shortest side and the corner across, for needles.
 template <class Metric>
-std::array<Vec3, 4> places_above(std::span<const Vec3> points, const std::array<VertexHandle, 3>& face) {
-  std::array<Vec3, 3> p;
-  for (std::size_t i = 0; i < 3; ++i) p[i] = points[face[i].idx()];
-  std::size_t first = 0;  // of the shortest side
-  const auto side2 = [&](std::size_t i) { return norm2(p[(i + 1) % 3] - p[i]); };
-  for (std::size_t i = 1; i < 3; ++i)
-    if (side2(i) < side2(first)) first = i;
-  const Vec3 middle = 0.5 * (p[first] + p[(first + 1) % 3]);
-  const Vec3 axis = p[(first + 2) % 3] - middle;
-  const double side = std::sqrt(side2(first));
-  const double length = norm(axis);
-  const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
-  const double size = norm(normal);
-  const Vec3 up = size > 0 ? (1.0 / size) * normal : normal;
-  MaxMinForm form(middle, MaxMinForm::kAnglesOf<Metric>);
+std::array<Vec3, 4> places_above(const std::array<Vec3, 3>& p) {
+  const detail::Needle needle(p);
+  MaxMinForm form(needle.middle, MaxMinForm::kAnglesOf<Metric>);
   form.add(p[0], p[1], p[2]);
-  std::array<Vec3, 4> places = {form.ascend(middle + (0.8 * side) * up, detail::kAscent)};
-  for (std::size_t i = 0; i < kAlongAxis.size(); ++i) {
-    const double t = kAlongAxis[i];
-    places[i + 1] = middle + t * axis + std::sqrt(t * (1 - t) * side * length) * up;
-  }
+  std::array<Vec3, 4> places = {
+      form.ascend(needle.middle + (0.8 * needle.side) * needle.up, detail::kAscent)};
+  for (std::size_t i = 0; i < kAlongAxis.size(); ++i) places[i + 1] = needle.place(kAlongAxis[i]);
   return places;
 }
 
@@ -72,6 +56,11 @@ void VertexInsertion<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope
 template <class Metric>
 auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
   const detail::Digger<Metric> digger(mesh, metric, quality, max_cells);
+  if (only_place) {
+    const detail::Site site = digger.dig(GrownCells(mesh, seed.cell), *only_place);
+    if (!(site.new_worst > 0 && site.new_worst > gain * site.old_worst)) return std::nullopt;
+    return detail::plan_for(*this, mesh, seed, site);
+  }
   FixedVector<detail::Site, kMaxSites> sites;
   const auto try_from = [&](const GrownCells& cells, Vec3 place) {
     sites.push_back(digger.dig(cells, place));
@@ -104,8 +93,7 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   for (int k = 0; k < 4; ++k) {
     const HalfFaceHandle h = halfface_of(seed.cell, k);
     if (mesh.is_constrained(h))
-      for (Vec3 place : places_above<Metric>(mesh.points(), mesh.halfface_vertices(h)))
-        try_from(alone, place);
+      for (Vec3 place : places_above<Metric>(detail::points_of(mesh, h))) try_from(alone, place);
   }
   std::array<std::uint8_t, kMaxSites> order;
   const auto last = order.begin() + static_cast<std::ptrdiff_t>(sites.size());

@@ -47,7 +47,10 @@ struct VertexInsertion {
   /// Where positive, a new vertex may make at most kMorePoor cells more that are below it than there were.
   /// One that only raised the worst of its cells would leave several poor ones in the place of one.
   double poor_below = 0;
-  int only_site = -1;          ///< not negative: only this one of them, counted by promise from 0
+  int only_site = -1;  ///< not negative: only this one of them, counted by promise from 0
+  /// Where there is one, the cavity is dug from the seed's cell for a vertex at this place, which stays
+  /// there.
+  std::optional<Vec3> only_place = std::nullopt;
   std::size_t max_cells = 48;  ///< of the cavity, at most Growth::kMaxCells
 
   /// The cell, or for the seed of a plan all that go.

@@ -25,6 +25,7 @@ constexpr std::array<double, 21> kFullLadder = {1,  2,  3,    4,  5.5,  7,  8.5,
                                                 18, 20, 22.5, 25, 27.5, 30, 32.5, 35.0, 40, 45};
 constexpr int kMaxMissed = 4;
 constexpr double kClimbGain = 1.002;
+constexpr double kClimbAgain = 1.02;  // the same of a search of the worst cells
 /// Nor left fewer than this share of the cells that were below the rung.
 constexpr double kFewer = 0.8;
 /// Where more than this share of the cells stays below so many degrees after the bulk stage, vertices are
@@ -43,6 +44,8 @@ constexpr std::size_t kMostAtAnyCost = 150;
 /// The rest is for the worst cells.
 constexpr std::size_t kFillOfHundred = 92;
 constexpr std::size_t kFillUpOfHundred = 98;
+constexpr std::size_t kFillAtAnyCost = 85;
+constexpr std::size_t kFillUpAtAnyCost = 95;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -183,16 +186,8 @@ bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const 
 }
 
 /// Climbs again and again, and beyond rungs that are missed, while the worst rises.
-void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
-                          RunControl& control) {
+void climb_beyond(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
-  const auto search_worst = [&] {
-    for (const PatchEffort& effort : kAllEfforts)
-      search_patches(mesh, work, options, control, kFullLadder.back(), effort);
-  };
-  search_worst();
-  if (!control.surface() && !options.coarsen && smallest() < kRefineGoal)
-    refine(mesh, work, options, control, kRefineGoal, kRefineGainAtAnyCost);
   for (double at_start = 0; smallest() > at_start * kClimbGain && !control.stopped();) {
     at_start = smallest();
     int n_missed = 0;
@@ -210,7 +205,31 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
     if (!control.stopped())
       relieve(mesh, work, options, control, few_below(mesh, kFullLadder.back(), options.policy));
   }
+}
+
+/// The same, and the worst cells tried on copies of their surroundings, which may take the worst beyond
+/// rungs that were missed.
+void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
+                          RunControl& control) {
+  const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
+  const auto search_worst = [&] {
+    for (const PatchEffort& effort : kAllEfforts)
+      search_patches(mesh, work, options, control, kFullLadder.back(), effort);
+  };
   search_worst();
+  const auto put_in = [&](std::size_t of_hundred) {
+    if (control.surface() || options.coarsen || smallest() >= kRefineGoal) return;
+    ImproveOptions bounded = options;
+    bounded.max_cells = options.max_cells * of_hundred / 100;
+    refine(mesh, work, bounded, control, kRefineGoal, kRefineGainAtAnyCost);
+  };
+  put_in(kFillAtAnyCost);
+  for (double at_start = 0; smallest() > at_start * kClimbAgain && !control.stopped();) {
+    climb_beyond(mesh, work, options, control);
+    if (at_start == 0) put_in(kFillUpAtAnyCost);
+    at_start = smallest();
+    search_worst();
+  }
 }
 
 /// True when every cell is known to meet the goal.

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "Operators/Metrics.hh"
+#include "Operators/Needle.hh"
 #include "Operators/Replace.hh"
 #include "Operators/VertexInsertion.hh"
 #include "Operators/VertexRemoval.hh"
@@ -16,6 +17,7 @@ namespace hfr {
 namespace {
 
 constexpr double kLoss = 0.02;       // of sin² of the worst cell, that a new vertex may leave at first
+constexpr double kAnyLoss = 1e-4;    // the same for vertices that count together only
 constexpr double kRise = 1.002;      // times sin² of the worst cell of a patch: less is not worth its cells
 constexpr double kFlat = 1e-5;       // sin² of a cell that is all but flat
 constexpr double kAhead = 1.05;      // times the goal, which is worked for
@@ -28,18 +30,93 @@ struct Outcome {
   double worst = 0;
 };
 
-/// Changes the mesh for try number i, counted from 0, even at a loss: the first ones put a vertex in for the
-/// first cell, each in another place, the others take one out near that cell. False where that cannot be.
-bool begin(TetMesh& mesh, const Workspace& work, Ops ops, const PatchEffort& effort, int i) {
-  if (i < effort.tries) {
-    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kLoss};
-    insertion.only_site = i;
-    return apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)));
+/// Where over each needle an apex of its own is put; see detail::Needle.
+struct NeedleRow {
+  double share;         // of the way from the short side to the tip
+  double times_height;  // at which a lone apex would have its best angle
+};
+constexpr std::array<NeedleRow, kNeedleRows> kRows = {{{0.37, 0.8}, {1.0 / 3.0, 0.8}}};
+constexpr double kSlender = 0.35;  // short side over length of a needle
+
+/// What a try begins with on a copy of a patch, even at a loss.
+struct Try {
+  enum Kind {
+    kNothing,  // improved as it is
+    kRow,      // an apex over each needle; number: of kRows
+    kVertex,   // a new vertex for the first cell; number: of the place, counted by promise
+    kRemoval,  // one vertex less; number: of the vertex, which are in the order of discovery from that cell
+  };
+  Kind kind;
+  std::size_t number;
+};
+
+std::vector<Try> tries_of(const PatchEffort& effort) {
+  std::vector<Try> tries = {{Try::kNothing, 0}};
+  const auto add = [&](Try::Kind kind, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) tries.push_back({kind, i});
+  };
+  add(Try::kRow, std::min(effort.rows, kRows.size()));
+  add(Try::kVertex, effort.vertices);
+  add(Try::kRemoval, effort.removals);
+  return tries;
+}
+
+/// An apex of its own over each needle of the boundary whose cell is below the goal. The short sides of a
+/// band of needles lie alternately left and right: one apex near its short side spoils what lies over its
+/// neighbours, but all of them together leave more than apexes that several needles share.
+bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const NeedleRow& row,
+             double goal) {
+  const double below = dihedral_decision(goal);
+  std::vector<std::array<VertexHandle, 3>> needles;
+  for (std::size_t h = 0; h < 4 * mesh.n_cells(); ++h) {
+    const HalfFaceHandle face(h);
+    if (!(work.quality[h / 4] < below) || !mesh.is_constrained(face)) continue;
+    const detail::Needle needle(detail::points_of(mesh, face));
+    if (needle.side < kSlender * needle.length) needles.push_back(mesh.halfface_vertices(face));
   }
-  const VertexHandle v(static_cast<std::size_t>(i - effort.tries));  // they are in the order of discovery
-  if (!has(ops, Ops::kNode) || v.idx() >= mesh.n_vertices() || work.frozen[v.idx()] != 0) return false;
-  const std::vector<double> nothing_to_lose(mesh.n_cells(), kFlat);
-  return apply(VertexRemoval<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
+  bool changed = false;
+  for (const auto& vertices : needles) {
+    const HalfFaceHandle face = mesh.find_halfface(vertices);  // in whatever cell lies on it by now
+    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kAnyLoss};
+    insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(row.share, row.times_height);
+    if (!apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(cell_of(face)))) continue;
+    changed = true;
+    work.attach(mesh, options.policy);
+    work.set_qualities(mesh, MinSine2{}, options.policy);
+  }
+  return changed;
+}
+
+/// False where the try cannot be begun.
+bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOptions& options, double goal) {
+  work.set_qualities(mesh, MinSine2{}, options.policy);
+  switch (attempt.kind) {
+    case Try::kNothing:
+      return true;
+    case Try::kRow: {
+      if (!put_row(mesh, work, options, kRows[attempt.number], goal)) return false;
+      // Vertices that came all at once have to be well connected before any is judged by itself.
+      ImproveOptions connecting = options;
+      connecting.ops = without(without(options.ops, Ops::kNode), Ops::kInsert);
+      RunControl control(connecting);
+      work.attach(mesh, options.policy);
+      polish(mesh, work, connecting, control, goal);
+      return true;
+    }
+    case Try::kVertex: {
+      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kLoss};
+      insertion.only_site = static_cast<int>(attempt.number);
+      return apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)));
+    }
+    case Try::kRemoval: {
+      const VertexHandle v(attempt.number);
+      if (!has(options.ops, Ops::kNode) || v.idx() >= mesh.n_vertices() || work.frozen[v.idx()] != 0)
+        return false;
+      const std::vector<double> nothing_to_lose(mesh.n_cells(), kFlat);
+      return apply(VertexRemoval<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
+    }
+  }
+  return false;
 }
 
 /// The best of several tries at the patch: none unless its worst cell gets better. Vertices are taken out
@@ -58,16 +135,13 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
   const double worked_for = std::min(kAhead * goal, kLargestGoal);
   if (n_below(patch.mesh(), worked_for, here.policy) > effort.few) return best;
   const double enough = dihedral_decision(goal);
-  for (int i = -1; i < effort.tries + effort.removals && best.worst < enough; ++i) {  // -1: as it is
-    if (i == effort.tries && best.mesh) break;
+  for (const Try& attempt : tries_of(effort)) {
+    if (best.worst >= enough || (attempt.kind == Try::kRemoval && best.mesh)) break;
     TetMesh mesh = patch.mesh();
     Workspace work;
     work.attach(mesh, here.policy);
-    if (i >= 0) {
-      work.set_qualities(mesh, MinSine2{}, here.policy);
-      if (!begin(mesh, work, here.ops, effort, i)) continue;
-      work.attach(mesh, here.policy);
-    }
+    if (!begin(attempt, mesh, work, here, worked_for)) continue;
+    work.attach(mesh, here.policy);
     RunControl control(here);
     polish(mesh, work, here, control, worked_for);
     const double worst = survey(mesh, here.policy).worst;

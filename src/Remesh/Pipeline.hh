@@ -47,22 +47,27 @@ std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, s
                                           par::Policy policy);
 /// Degrees below which there are only as many cells as relieve() takes on, at most `degrees`.
 double few_below(const TetMesh& mesh, double degrees, par::Policy policy);
+/// Ways there are to put an apex over each needle of a patch at once.
+constexpr std::size_t kNeedleRows = 2;
 /// How much search_patches() does.
 struct PatchEffort {
-  std::size_t few;      ///< cells below the next angle; where there are more, nothing is tried
-  int layers;           ///< of cells round the worst one
-  std::size_t patches;  ///< at a time
-  int turns;            ///< at most
-  int tries;            ///< new vertices for one patch
-  int removals;         ///< and vertices next to the worst cell that are taken out instead
-  double degrees;       ///< beyond the worst angle, that are worked for in a turn
+  std::size_t few;       ///< cells below the next angle; where there are more, nothing is tried
+  int layers;            ///< of cells round the worst one
+  std::size_t patches;   ///< at a time
+  int turns;             ///< at most
+  std::size_t rows;      ///< of apexes over needles that are tried, at most kNeedleRows
+  std::size_t vertices;  ///< new ones for one patch, each in a try of its own
+  std::size_t removals;  ///< and vertices next to the worst cell that are taken out instead
+  double degrees;        ///< beyond the worst angle, that are worked for in a turn
 };
-constexpr PatchEffort kLittleEffort = {64, 3, 4, 4, 8, 12, 0.6};
+constexpr PatchEffort kLittleEffort = {64, 3, 4, 12, kNeedleRows, 8, 12, 0.6};
 /// The same for the very last cells, one after the other.
-constexpr std::array<PatchEffort, 2> kLastEfforts = {{{6, 2, 4, 2, 20, 30, 0.6}, {6, 4, 4, 2, 12, 30, 0.6}}};
+constexpr std::array<PatchEffort, 2> kLastEfforts = {
+    {{6, 2, 4, 2, kNeedleRows, 20, 30, 0.6}, {6, 4, 4, 2, kNeedleRows, 12, 30, 0.6}}};
 /// One after the other, where the worst angle is to be raised at any cost: what one cannot mend, another may.
-constexpr std::array<PatchEffort, 3> kAllEfforts = {
-    {{64, 3, 8, 40, 20, 20, 2}, {64, 4, 8, 40, 20, 20, 0.5}, {64, 2, 8, 40, 20, 20, 3}}};
+constexpr std::array<PatchEffort, 3> kAllEfforts = {{{64, 3, 8, 40, kNeedleRows, 20, 20, 2},
+                                                     {64, 4, 8, 40, kNeedleRows, 20, 20, 0.5},
+                                                     {64, 2, 8, 40, kNeedleRows, 20, 20, 3}}};
 /// Tries for the worst cells below `goal` degrees what a new vertex does, or one less, each time on a copy of
 /// the cell's surroundings that is improved and put back only if its worst cell has got better. Faces of the
 /// surface stay as they are. For a mesh without invalid cells where vertices may be inserted; does nothing

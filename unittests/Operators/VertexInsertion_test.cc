@@ -165,6 +165,37 @@ TEST(VertexInsertion, FollowsUpTheSitesThatItIsToldAndMayLose) {
   EXPECT_GT(differ, 50);
 }
 
+TEST(VertexInsertion, AVertexForOnePlaceStaysThere) {
+  int planned = 0;
+  int lost = 0;
+  for (std::uint64_t s = 1; s <= 3; ++s) {
+    const TetMesh first = jittered(4, 0.2, s);
+    const auto quality = qualities(first, MinSine2{});
+    for (std::size_t i = 0; i < first.n_cells(); i += 7) {
+      const auto& v = first.cell(C(i)).v;
+      VertexInsertion<MinSine2> op{{}, quality, 1e-3};
+      op.only_place = 0.4 * first.point(v[0]) + 0.3 * first.point(v[1]) + 0.2 * first.point(v[2]) +
+                      0.1 * first.point(v[3]);
+      const auto plan = op.evaluate(first, Seed<MinSine2>(C(i)));
+      if (!plan) continue;
+      ++planned;
+      EXPECT_EQ(plan->place, *op.only_place);
+      EXPECT_GT(plan->new_worst, 1e-3 * plan->old_worst);
+      lost += plan->new_worst < plan->old_worst ? 1 : 0;
+      op.gain = 1;
+      const auto better = op.evaluate(first, Seed<MinSine2>(C(i)));
+      EXPECT_EQ(better.has_value(), plan->new_worst > plan->old_worst);
+      TetMesh mesh = first;
+      op.gain = 1e-3;
+      if (!apply(op, mesh, Seed<MinSine2>(C(i)))) continue;
+      EXPECT_EQ(check(mesh), Ok);
+      EXPECT_EQ(mesh.point(V(mesh.n_vertices() - 1)), *op.only_place);
+    }
+  }
+  EXPECT_GT(planned, 100);
+  EXPECT_GT(lost, 50);
+}
+
 TEST(VertexInsertion, PlacesWithoutPromiseAreNotFollowedUp) {
   int same = 0;
   int given_up = 0;

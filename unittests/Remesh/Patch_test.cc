@@ -170,7 +170,7 @@ TEST(SearchPatches, KeepsToTheBoundOnCellsAndSaysSo) {
 
 TEST(SearchPatches, TakesVerticesOutWhereNothingElseHelps) {
   PatchEffort without = kLittleEffort;
-  without.tries = 0;
+  without.vertices = 0;
   without.removals = 0;
   PatchEffort with = without;
   with.removals = kLittleEffort.removals;
@@ -191,6 +191,34 @@ TEST(SearchPatches, TakesVerticesOutWhereNothingElseHelps) {
     EXPECT_EQ(check(mesh), Ok);
   }
   EXPECT_GT(raised, 1);
+}
+
+TEST(SearchPatches, PutsAnApexOverEachNeedleOfABandAtOnce) {
+  // Round the side lie needles of 0.26 by 5, their short sides up and down by turns.
+  const TetMesh first = [] {
+    TetMesh mesh = built(generate::cylinder(4, 2, 1, 10));
+    ImproveOptions options = serial();
+    options.max_cells = 3400;
+    improve(mesh, options);
+    return mesh;
+  }();
+  PatchEffort effort = kLittleEffort;
+  effort.vertices = 0;
+  effort.removals = 0;
+  double worst[2];
+  for (const std::size_t rows : {std::size_t{0}, kNeedleRows}) {
+    effort.rows = rows;
+    TetMesh mesh = first;
+    const ImproveOptions options = serial();
+    RunControl control(options);
+    Workspace work;
+    work.attach(mesh, {});
+    search_patches(mesh, work, options, control, 20, effort);
+    EXPECT_EQ(check(mesh), Ok);
+    EXPECT_TRUE(boundary_of(mesh) == boundary_of(first));
+    worst[rows > 0 ? 1 : 0] = smallest_dihedral(mesh, {});
+  }
+  EXPECT_GT(worst[1], 1.1 * worst[0]);
 }
 
 TEST(SearchPatches, LeavesAMeshThatIsPoorThroughoutAlone) {
