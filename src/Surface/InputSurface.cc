@@ -10,6 +10,8 @@
 #include <limits>
 #include <unsupported/Eigen/BVH>
 
+#include "Surface/NearTriangle.hh"
+
 namespace hfr {
 namespace {
 
@@ -64,6 +66,7 @@ struct InputSurface::Impl {
   std::vector<std::array<Vec3, 3>> triangles;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<Vec3> normals;
+  std::vector<NearTriangle> near;  // the triangles once more
   Tree tree;
 
   template <class Items>
@@ -150,6 +153,7 @@ InputSurface::InputSurface(std::span<const std::array<Vec3, 3>> triangles) : imp
   for (const auto& t : triangles) {
     const Vec3 n = scaled_normal(t);
     const double length = norm(n);
+    impl_->near.emplace_back(t);
     impl_->normals.push_back(length > 0 ? (1.0 / length) * n : Vec3{});
   }
   impl_->plant(impl_->triangles);
@@ -185,14 +189,17 @@ InputSurface::Hit InputSurface::nearest_within(Vec3 x, double limit, Vec3 side,
   return impl_->nearest(x, &side, limit, guesses);
 }
 
-bool InputSurface::is_within(Vec3 x, double limit, std::span<const std::uint32_t> guesses) const {
+bool InputSurface::is_within(Vec3 x, double limit, std::size_t item) const {
+  return impl_->segments.empty() ? impl_->near[item].is_within(x, limit)
+                                 : impl_->distance2(x, item) <= limit * limit;
+}
+
+std::optional<std::size_t> InputSurface::any_within(Vec3 x, double limit) const {
   const double limit2 = limit * limit;
-  for (std::uint32_t i : guesses)
-    if (impl_->distance2(x, i) <= limit2) return true;
   Impl::Search search{x, nullptr, limit2};
   const auto found = [&] { return search.hit.distance <= limit2; };
   impl_->descend(search, found);
-  return found();
+  return found() ? std::optional(search.hit.item) : std::nullopt;
 }
 
 double InputSurface::distance(Vec3 x, std::size_t item) const { return std::sqrt(impl_->distance2(x, item)); }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,8 +40,10 @@ class InputSurface {
   /// guess, the guess counts.
   Hit nearest_within(Vec3 x, double limit, Vec3 side, std::span<const std::uint32_t> guesses) const;
   Hit nearest(Vec3 x, std::size_t guess) const;
-  /// Is anything no further from x than `limit`? Quick where it is one of the guessed items.
-  bool is_within(Vec3 x, double limit, std::span<const std::uint32_t> guesses) const;
+  /// Is this item no further from x than `limit`? Most often quicker than its distance.
+  bool is_within(Vec3 x, double limit, std::size_t item) const;
+  /// An item that is no further from x than `limit`, the first that is found; none where there is none.
+  std::optional<std::size_t> any_within(Vec3 x, double limit) const;
   double distance(Vec3 x, std::size_t item) const;  ///< of x from one triangle or segment
   Vec3 normal(std::size_t item) const;              ///< of a triangle, length 1; zero when it has no area
 

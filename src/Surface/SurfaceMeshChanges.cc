@@ -22,14 +22,15 @@ void SurfaceMesh::Impl::account(const std::vector<OmFace>& some, double sign) {
 
 void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among, std::vector<Vec3> homeless) {
   constexpr double kNearEnough = 0.25;  // of what is allowed
-  const double enough2 = kNearEnough * kNearEnough * hausdorff * hausdorff;
+  const double enough = kNearEnough * hausdorff;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> beneath;
   for (OmFace f : among) {
     triangles.push_back(corners(f));
     beneath.push_back(record(f).beneath);
+    const NearTriangle now(triangles.back());
     std::erase_if(record(f).samples, [&](Vec3 s) {
-      const bool leaves = norm2(nearest_point(triangles.back(), s) - s) > enough2;
+      const bool leaves = !now.is_within(s, enough);
       if (leaves) homeless.push_back(s);
       return leaves;
     });

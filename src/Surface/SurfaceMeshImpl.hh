@@ -14,8 +14,10 @@
 #include <optional>
 #include <set>
 
+#include "Operators/Cavity.hh"
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
+#include "Surface/NearTriangle.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr {
@@ -154,10 +156,11 @@ struct SurfaceMesh::Impl {
   /// The vertices of each orbit move together; not at all where they are of several kinds.
   void bind(std::vector<std::vector<VertexHandle>> found);
 
-  using Guesses = std::span<std::uint32_t>;
-  bool are_near(std::span<const Triangle> born, std::span<const Triangle> dead, Guesses beneath,
+  /// Triangles of the input that may be the nearest ones.
+  using Guesses = FixedVector<std::uint32_t, 64>;
+  bool are_near(std::span<const Triangle> born, std::span<const Triangle> dead, Guesses& beneath,
                 double distance) const;
-  bool turn_little(std::span<const Triangle> born, std::span<const Triangle> dead, Guesses beneath,
+  bool turn_little(std::span<const Triangle> born, std::span<const Triangle> dead, const Guesses& beneath,
                    double distance) const;
 
   OmVertex add_vertex(VertexHandle v, Vec3 p);

@@ -2,7 +2,6 @@
 // The shape that must be kept: distances from the input and of it, normals, volumes.
 #include <numbers>
 
-#include "Operators/Cavity.hh"
 #include "Surface/SurfaceMeshImpl.hh"
 
 namespace hfr {
@@ -37,14 +36,20 @@ Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
 /// Are points spread over the new triangles no further than `distance` from the input? What the new triangles
 /// have in common with the old ones has been looked at before.
 bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const Triangle> dead,
-                                 Guesses beneath, double distance) const {
+                                 Guesses& beneath, double distance) const {
+  Guesses found;  // beneath these triangles, too
   const auto is_near = [&](Vec3 x) {
     for (std::size_t i = 0; i < beneath.size(); ++i) {
-      if (!(shape->distance(x, beneath[i]) <= distance)) continue;
+      if (!shape->is_within(x, distance, beneath[i])) continue;
       std::swap(beneath[i], beneath[i / 2]);  // the next point is likely to be there, too
       return true;
     }
-    return shape->is_within(x, distance, {});
+    if (std::any_of(found.begin(), found.end(),
+                    [&](std::uint32_t item) { return shape->is_within(x, distance, item); }))
+      return true;
+    const auto item = shape->any_within(x, distance);
+    if (item && !found.full()) found.push_back(static_cast<std::uint32_t>(*item));
+    return item.has_value();
   };
   const auto has_edge = [](const Triangle& t, Vec3 p, Vec3 q) {
     return (t[0] == p && t[1] == q) || (t[1] == p && t[2] == q) || (t[2] == p && t[0] == q);
@@ -76,7 +81,7 @@ bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const
 /// normals of triangles no larger than noise say little, but they must not turn back. What is worse already
 /// must not get worse still: a surface that folds over has to be mended somehow.
 bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> born, std::span<const Triangle> dead,
-                                    Guesses beneath, double distance) const {
+                                    const Guesses& beneath, double distance) const {
   const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
     const Vec3 n = unit(scaled_normal(t));
     const Vec3 middle = t[0] + (1.0 / 3) * (t[1] - t[0]) + (1.0 / 3) * (t[2] - t[0]);
@@ -114,9 +119,10 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   if (!impl_->keeps_regions(faces_dead, dead, born)) return false;
 
   // What was beneath the old triangles is likely to be beneath the new ones.
-  FixedVector<std::uint32_t, 64> beneath;
+  Impl::Guesses beneath;
   const double h = kBetween * impl_->hausdorff;
   std::size_t last = 0;  // the triangle that was near
+  const std::vector<NearTriangle> now(born.begin(), born.end());
   for (std::size_t i = 0; i < faces_dead.size(); ++i) {
     const OmFace face = impl_->find(faces_dead[i]);
     if (!face.is_valid()) return false;
@@ -125,11 +131,11 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
       beneath.push_back(record.beneath);
     if (born.size() == faces_dead.size()) last = i;
     for (Vec3 s : record.samples) {
-      const auto is_near = [&](const Triangle& t) { return norm2(nearest_point(t, s) - s) <= h * h; };
-      if (is_near(born[last])) continue;
-      const auto at = std::find_if(born.begin(), born.end(), is_near);
-      if (at == born.end()) return false;
-      last = static_cast<std::size_t>(at - born.begin());
+      const auto is_near = [&](const NearTriangle& t) { return t.is_within(s, h); };
+      if (is_near(now[last])) continue;
+      const auto at = std::find_if(now.begin(), now.end(), is_near);
+      if (at == now.end()) return false;
+      last = static_cast<std::size_t>(at - now.begin());
     }
   }
   return impl_->are_near(born, dead, beneath, h) && impl_->turn_little(born, dead, beneath, 2 * h);

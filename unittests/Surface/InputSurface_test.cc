@@ -88,9 +88,13 @@ TEST(InputSurface, GuessesChangeNoAnswer) {
               surface.nearest_within(x, 0.5, side).distance);
     constexpr double kLimit = 0.3;
     n_within += least <= kLimit;
-    EXPECT_EQ(surface.is_within(x, kLimit, {}), least <= kLimit);
-    EXPECT_EQ(surface.is_within(x, kLimit, guesses), least <= kLimit);
-    EXPECT_EQ(surface.distance(x, i), norm(nearest_point(triangles[i], x) - x));
+    const double distance = surface.distance(x, i);
+    EXPECT_EQ(distance, norm(nearest_point(triangles[i], x) - x));
+    EXPECT_EQ(surface.is_within(x, kLimit, i), distance <= kLimit);
+    EXPECT_TRUE(surface.is_within(x, 1.001 * distance, i));
+    const auto found = surface.any_within(x, kLimit);
+    EXPECT_EQ(found.has_value(), least <= kLimit);
+    EXPECT_LE(surface.distance(x, found.value_or(surface.nearest(x).item)), std::max(kLimit, least));
   }
   EXPECT_GT(n_within, 20U) << "the limit is never met";
   EXPECT_LT(n_within, 180U) << "the limit is always met";
