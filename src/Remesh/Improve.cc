@@ -19,15 +19,22 @@ constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 constexpr std::array<double, 13> kLadder = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
 constexpr double kCommonRung = 25;
 constexpr double kReliefRung = 30;
+/// Up to here patches are searched where the surface may change; it has cheaper ways beyond.
+constexpr double kPatchRungFlat = kCommonRung;
+constexpr double kPatchRungFree = 20;
 /// The same where the worst is to be raised at any cost, until this many rungs in a row have not raised it by
 /// this factor.
 constexpr std::array<double, 21> kFullLadder = {1,  2,  3,    4,  5.5,  7,  8.5,  10,   12, 14, 16,
                                                 18, 20, 22.5, 25, 27.5, 30, 32.5, 35.0, 40, 45};
 constexpr int kMaxMissed = 4;
 constexpr double kClimbGain = 1.002;
-constexpr double kClimbAgain = 1.02;  // the same of a search of the worst cells
 /// Nor left fewer than this share of the cells that were below the rung.
 constexpr double kFewer = 0.8;
+/// And climbs all of them again if a search of the worst cells has raised it by this factor.
+constexpr double kClimbAgain = 1.02;
+/// Where the surface may change its shape there is always something that gives way by little: the last cells
+/// are relieved again only if the worst has risen by this factor.
+constexpr double kReliefGain = 1.02;
 /// Where more than this share of the cells stays below so many degrees after the bulk stage, vertices are
 /// missing rather than badly connected, and are put in first.
 constexpr double kManyPoor = 0.08;
@@ -73,10 +80,12 @@ double share_below(const TetMesh& mesh, double degrees, const ImproveOptions& op
          static_cast<double>(mesh.n_logical_cells());
 }
 
+bool is_free(const ImproveOptions& options) { return options.surface.mode == SurfaceMode::kFree; }
+
 /// With a surface that may change, what many cells suffer from can be mended, too.
 double largest_share(const ImproveOptions& options) {
   constexpr double kWithSurface = 0.35;
-  return options.surface.mode == SurfaceMode::kFree ? kWithSurface : kLargestShare;
+  return is_free(options) ? kWithSurface : kLargestShare;
 }
 
 void validate(const ImproveOptions& options) {
@@ -94,15 +103,16 @@ void validate(const ImproveOptions& options) {
 }
 
 /// Raises the worst dihedrals rung by rung; one that is missed is no reason to stop, because what holds a
-/// cell below it may give way on the next.
-void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+/// cell below it may give way on the next. With to_first_missed it is.
+void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                 bool to_first_missed = false) {
   double now = smallest_dihedral(mesh, options.policy);
   double below = 0;  // the last rung that was worked for
   for (double rung : kLadder) {
     if (control.stopped()) return;
     if (now >= rung) continue;
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
-    if (rung > kCommonRung && now < below) break;
+    if ((to_first_missed || rung > kCommonRung) && now < below) break;
     below = rung;
     polish(mesh, work, options, control, rung, largest_share(options));
     now = smallest_dihedral(mesh, options.policy);
@@ -115,12 +125,13 @@ bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Ru
                const PatchEffort& effort) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
   const double at_first = smallest();
+  const double gain = is_free(options) ? kReliefGain : kClimbGain;
   double now = at_first;
   for (double rung : kLadder) {
     if ((rung > kReliefRung && !options.coarsen) || control.stopped()) break;
     if (now >= rung) continue;
     if (share_below(mesh, rung, options) > largest_share(options)) break;
-    for (double before = 0; now < rung && now > kClimbGain * before && !control.stopped();) {
+    for (double before = 0; now < rung && now > gain * before && !control.stopped();) {
       before = now;
       relieve(mesh, work, options, control, few_below(mesh, rung, options.policy));
       now = smallest();
@@ -128,7 +139,7 @@ bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Ru
     const auto search = [&](const PatchEffort& how) {
       if (now < rung && search_patches(mesh, work, options, control, rung, how)) now = smallest();
     };
-    if (!control.surface() || rung <= kCommonRung) {  // a free surface has cheaper ways beyond
+    if (!control.surface() || rung <= (is_free(options) ? kPatchRungFree : kPatchRungFlat)) {
       search(effort);
       for (const PatchEffort& last : kLastEfforts) search(last);
     }
@@ -160,8 +171,10 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   // What was put in first is well connected by now, which shows where vertices are still missing.
   if (options.iterations == 0 && fill_in(mesh, work, options, control, kFillUpOfHundred))
     climb_rungs(mesh, work, options, control);
-  // Whatever raises the last few takes from their neighbours.
-  if (mend_last(mesh, work, options, control, effort)) climb_rungs(mesh, work, options, control);
+  // Whatever raises the last few takes from their neighbours. Where the surface may change its shape, what
+  // many cells lack is missed as before.
+  if (mend_last(mesh, work, options, control, effort))
+    climb_rungs(mesh, work, options, control, /*to_first_missed=*/is_free(options));
 }
 
 /// Works towards a goal: within the bounds on cells first, then within those that were asked for if the

@@ -50,6 +50,9 @@ constexpr std::array<Relief, 4> kReliefs = {{{2, 2.5}, {2, 5}, {4, 2.5}, {4, 5}}
 constexpr std::size_t kFewToRelieve = 12;
 constexpr int kReliefIterations = 4;
 constexpr double kLargestRelief = 60;  // degrees
+/// Where the surface may change its shape and more cells than this are poor, vertices that are put in for the
+/// sake of room go to the wrong places, at most of the cost.
+constexpr std::size_t kFewToDigForRoom = 300;
 
 // Vertices are put in when an iteration leaves more than this share of the poor cells, and no more once
 // fewer than one in so many of these got one.
@@ -291,6 +294,7 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
   const double decision = dihedral_decision(goal);
   if (options.iterations > 0) return false;  // it would be further ones
   const Few few{.to_dig = kFewToRelieve, .to_search = kFewToRelieve};
+  const bool curved = options.surface.mode == SurfaceMode::kFree;
   for (const Relief& relief : kReliefs) {
     const std::vector<CellHandle> stuck = cells_below(mesh, goal, options.policy);
     if (stuck.empty()) return true;
@@ -301,7 +305,8 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
     for (int i = 1; i <= kReliefIterations && !control.stopped(); ++i) {
       std::size_t changes = stage.iterate(i, focus, true);
       if (has(options.ops, Ops::kEdge)) changes += stage.fan_pass(i, focus);
-      if (has(options.ops, Ops::kInsert)) changes += stage.insert_pass(i, focus);
+      if (has(options.ops, Ops::kInsert) && (!curved || stage.n_below(focus.below) <= kFewToDigForRoom))
+        changes += stage.insert_pass(i, focus);
       if (changes == 0) break;
     }
     stage.look_again();

@@ -23,9 +23,11 @@ namespace {
 
 enum Looked : std::size_t { kSwaps, kCollapses, kMoves, kSplits };
 
-// Where so many vertices of a curved surface are looked at, the worst cell of a star has to rise by this
-// factor for its vertex to move: moves cost far more there than inside, and each calls for others.
+// Where so many vertices of a curved surface are looked at, or one in so many of the mesh, the worst cell of
+// a star has to rise by this factor for its vertex to move: moves cost far more there than inside, and each
+// calls for others.
 constexpr std::size_t kManyMoves = 300;
+constexpr std::size_t kManyMovesShare = 8;
 constexpr double kMoveGain = 1.05;
 
 /// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
@@ -193,7 +195,8 @@ std::size_t Stage<Metric>::surface_moves(int iteration, const Worklist& list) {
   if (!bound.empty()) counts = periodic_moves(bound);
   if (!vertices.empty()) {
     SurfaceSearch search{&surface};
-    if (surface.options().mode == SurfaceMode::kFree && vertices.size() > kManyMoves) search.gain = kMoveGain;
+    const bool many = vertices.size() > std::min(kManyMoves, mesh_.n_vertices() / kManyMovesShare);
+    if (surface.options().mode == SurfaceMode::kFree && many) search.gain = kMoveGain;
     counts += hfr::smooth_pass(mesh_, work_, search, metric_, vertices, options_.policy);
     surface.moved(mesh_, vertices);
   }
