@@ -103,16 +103,15 @@ void validate(const ImproveOptions& options) {
 }
 
 /// Raises the worst dihedrals rung by rung; one that is missed is no reason to stop, because what holds a
-/// cell below it may give way on the next. With to_first_missed it is.
-void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
-                 bool to_first_missed = false) {
+/// cell below it may give way on the next.
+void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   double now = smallest_dihedral(mesh, options.policy);
   double below = 0;  // the last rung that was worked for
   for (double rung : kLadder) {
     if (control.stopped()) return;
     if (now >= rung) continue;
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
-    if ((to_first_missed || rung > kCommonRung) && now < below) break;
+    if (rung > kCommonRung && now < below) break;
     below = rung;
     polish(mesh, work, options, control, rung, largest_share(options));
     now = smallest_dihedral(mesh, options.policy);
@@ -171,10 +170,8 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
   // What was put in first is well connected by now, which shows where vertices are still missing.
   if (options.iterations == 0 && fill_in(mesh, work, options, control, kFillUpOfHundred))
     climb_rungs(mesh, work, options, control);
-  // Whatever raises the last few takes from their neighbours. Where the surface may change its shape, what
-  // many cells lack is missed as before.
-  if (mend_last(mesh, work, options, control, effort))
-    climb_rungs(mesh, work, options, control, /*to_first_missed=*/is_free(options));
+  // Whatever raises the last few takes from their neighbours.
+  if (mend_last(mesh, work, options, control, effort)) climb_rungs(mesh, work, options, control);
 }
 
 /// Works towards a goal: within the bounds on cells first, then within those that were asked for if the
