@@ -2,6 +2,7 @@
 #ifndef HFR_SURFACE_NEAR_TRIANGLE_HH
 #define HFR_SURFACE_NEAR_TRIANGLE_HH
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
