@@ -262,7 +262,8 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   if (options.coarsen) coarsen(mesh, work, options, control);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
-  climb(mesh, work, options, control, floor, as_asked.raise_min_dihedral ? kAllEfforts[0] : kLittleEffort);
+  const PatchEffort& little = control.surface() ? kSurfaceEffort : kLittleEffort;
+  climb(mesh, work, options, control, floor, as_asked.raise_min_dihedral ? kAllEfforts[0] : little);
   if (as_asked.raise_min_dihedral) {
     control.forget_cell_bound();
     control.spare_nothing();
