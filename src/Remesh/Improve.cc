@@ -63,11 +63,25 @@ constexpr double kLargestShare = 0.1;
 constexpr std::size_t kLeastOfHundred = 81;
 constexpr std::size_t kMostOfHundred = 119;
 
+/// Whether the options that say nothing about the number of cells mean it to stay about what it is. A surface
+/// that may change is best with as many vertices as it needs, but raising the worst at any cost must not end
+/// in a mesh of which little is left.
+bool keeps_size(const ImproveOptions& options) {
+  if (options.compat != Compat::kNone || (options.raise_min_dihedral && options.coarsen)) return false;
+  switch (options.surface.mode) {
+    case SurfaceMode::kFrozen:
+      return true;
+    case SurfaceMode::kFlat:
+      return options.raise_min_dihedral;
+    case SurfaceMode::kFree:
+      return false;
+  }
+  return false;
+}
+
 ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
   if (options.coarsen && options.max_cells == 0) options.max_cells = n_cells;
-  if (options.compat != Compat::kNone || options.surface.mode != SurfaceMode::kFrozen ||
-      (options.raise_min_dihedral && options.coarsen))
-    return options;
+  if (!keeps_size(options)) return options;
   options.raise_min_dihedral = false;  // that comes after
   if (options.min_cells == 0 && !options.coarsen) options.min_cells = n_cells * kLeastOfHundred / 100;
   if (options.max_cells == 0) options.max_cells = n_cells * kMostOfHundred / 100;
@@ -270,6 +284,7 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
     ImproveOptions further = options;
     if (!options.raise_min_dihedral) {  // the bounds were those of the default run
       further = as_asked;
+      further.min_cells = options.min_cells;
       if (further.max_cells == 0) further.max_cells = mesh.n_logical_cells() * kMostAtAnyCost / 100;
     }
     climb_while_it_helps(mesh, work, further, control);

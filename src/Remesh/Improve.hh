@@ -76,9 +76,10 @@ struct ImproveOptions {
   /// better percentiles on some meshes, and a lower worst angle on most (measured in docs/worst-angles.md).
   bool bulk_nodes = false;
   /// No vertex is removed where cells would come to be fewer than min_cells, none inserted where more than
-  /// max_cells; swaps may add or take a few. 0: no bound with compat or a surface that may change; else 81
-  /// and 119 of 100 cells of the input. They hold towards min_dihedral until nothing else helps;
-  /// raise_min_dihedral goes on to 150 of 100 cells of what they leave.
+  /// max_cells; swaps may add or take a few. 0: no bound with compat or a surface that may change its shape,
+  /// nor in flat mode without raise_min_dihedral; else 81 and 119 of 100 cells of the input. They hold
+  /// towards min_dihedral until nothing else helps; raise_min_dihedral goes on to 150 of 100 cells of what
+  /// they leave.
   std::size_t min_cells = 0;
   std::size_t max_cells = 0;
   /// Vertices are removed wherever that makes the worst angle of their cells better: without a goal a stage

@@ -372,5 +372,20 @@ TEST(SurfaceRuns, EveryNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+TEST(SurfaceRuns, RaisingTheWorstAtAnyCostKeepsTheNumberOfCellsInBounds) {
+  const TetMesh first = built(generate::jittered_box({6, 3, 2}, 0.1, 2, {0, 0, 0}, {1, 1, 0.5}));
+  ImproveOptions options = with(SurfaceMode::kFlat);
+  options.raise_min_dihedral = true;
+  TetMesh bounded = first;
+  const Result result = improve(bounded, options);
+  EXPECT_GT(result.after.min_dihedral.min, 35);
+  EXPECT_LE(bounded.n_cells(), first.n_cells() * 119 * 150 / 10000);
+  EXPECT_GE(bounded.n_cells(), first.n_cells() * 81 / 100);
+  options.max_cells = 100 * first.n_cells();
+  TetMesh wider = first;
+  improve(wider, options);
+  EXPECT_GT(wider.n_cells(), 2 * first.n_cells());
+}
+
 }  // namespace
 }  // namespace hfr::test
