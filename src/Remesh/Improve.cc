@@ -51,8 +51,8 @@ constexpr std::size_t kMostAtAnyCost = 150;
 /// The rest is for the worst cells.
 constexpr std::size_t kFillOfHundred = 92;
 constexpr std::size_t kFillUpOfHundred = 98;
-constexpr std::size_t kFillAtAnyCost = 85;
-constexpr std::size_t kFillUpAtAnyCost = 95;
+constexpr std::size_t kFillAtAnyCost = 90;
+constexpr std::size_t kFillUpAtAnyCost = 96;
 /// Degrees below which cells are worked on before the bulk stage.
 constexpr double kEarlyGoal = 15;
 /// Where the bulk stage has left more cells below a goal nobody asked for, the mesh as a whole is beyond it,
@@ -63,9 +63,10 @@ constexpr double kLargestShare = 0.1;
 constexpr std::size_t kLeastOfHundred = 81;
 constexpr std::size_t kMostOfHundred = 119;
 
-/// Whether the options that say nothing about the number of cells mean it to stay about what it is. A surface
-/// that may change is best with as many vertices as it needs, but raising the worst at any cost must not end
-/// in a mesh of which little is left.
+/// Whether the number of cells is to stay about what it is where the options do not say. A surface that may
+/// change gives its cells good angles with fewer or more vertices, as they are needed; but where the worst
+/// angle is raised at any cost, small meshes would come to several times their cells, and others would lose
+/// so many that there is no room left to work in. (In free mode neither was seen.)
 bool keeps_size(const ImproveOptions& options) {
   if (options.compat != Compat::kNone || (options.raise_min_dihedral && options.coarsen)) return false;
   switch (options.surface.mode) {
@@ -132,16 +133,21 @@ void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, 
   }
 }
 
-/// Mends the last few cells below the first rung that was missed, and those below the next ones. True when
-/// the worst has risen.
+const PatchEffort& little_effort(const RunControl& control) {
+  return control.surface() ? kSurfaceEffort : kLittleEffort;
+}
+
+/// Mends the last few cells below the first rung that was missed, and those below the next ones up to the
+/// goal. True when the worst has risen.
 bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
-               const PatchEffort& effort) {
+               const PatchEffort& effort, double goal = kLargestGoal) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
   const double at_first = smallest();
   const double gain = is_free(options) ? kReliefGain : kClimbGain;
   double now = at_first;
-  for (double rung : kLadder) {
-    if ((rung > kReliefRung && !options.coarsen) || control.stopped()) break;
+  for (double next : kLadder) {
+    const double rung = std::min(next, goal);
+    if (now >= goal || (rung > kReliefRung && !options.coarsen) || control.stopped()) break;
     if (now >= rung) continue;
     if (share_below(mesh, rung, options) > largest_share(options)) break;
     for (double before = 0; now < rung && now > gain * before && !control.stopped();) {
@@ -161,16 +167,25 @@ bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Ru
   return now > kClimbGain * at_first;
 }
 
-/// Puts vertices in where the mesh lacks them; leaves that many cells of 100 that it may make. True when it
-/// does lack them.
-bool fill_in(TetMesh& mesh, Workspace& work, ImproveOptions options, RunControl& control,
+/// Puts vertices in up to that many of 100 cells that the run may make; that this bound was met is nothing
+/// that the run has to tell.
+void refine_within(TetMesh& mesh, Workspace& work, ImproveOptions options, RunControl& control,
+                   std::size_t of_hundred, double gain) {
+  const bool met_bound = control.met_cell_bound();
+  if (options.max_cells > 0)
+    options.max_cells = std::max<std::size_t>(options.max_cells * of_hundred / 100, 1);
+  refine(mesh, work, options, control, kRefineGoal, gain);
+  if (!met_bound) control.forget_cell_bound();
+}
+
+/// Puts vertices in where the mesh lacks them. True when it does.
+bool fill_in(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
              std::size_t of_hundred) {
   if (control.surface() || control.stopped() || smallest_dihedral(mesh, options.policy) >= kRefineGoal)
     return false;
   const double share = share_below(mesh, kRefineGoal, options);
   if (share <= kManyPoor || share >= kAllPoor) return false;
-  options.max_cells = options.max_cells * of_hundred / 100;
-  refine(mesh, work, options, control, kRefineGoal, kRefineGain);
+  refine_within(mesh, work, options, control, of_hundred, kRefineGain);
   return true;
 }
 
@@ -189,8 +204,8 @@ void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunCon
 }
 
 /// Works towards a goal: within the bounds on cells first, then within those that were asked for if the
-/// former were in the way. What misses it is raised as far as it goes, rung by rung, and tried once more if
-/// that has helped.
+/// former were in the way. What misses it is raised as far as it goes, rung by rung, the last few cells with
+/// more effort, and tried once more if that has helped.
 bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const ImproveOptions& as_asked,
            RunControl& control, double goal) {
   const ImproveOptions* now = &options;
@@ -205,6 +220,7 @@ bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const 
   for (double rung : kLadder)
     if (rung < goal && !control.stopped() && smallest_dihedral(mesh, options.policy) < rung)
       polish(mesh, work, *now, control, rung);
+  if (!control.stopped()) mend_last(mesh, work, *now, control, little_effort(control), goal);
   if (control.stopped() || !(smallest_dihedral(mesh, options.policy) > missed_at)) return false;
   return reaches();
 }
@@ -231,8 +247,8 @@ void climb_beyond(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
   }
 }
 
-/// The same, and the worst cells tried on copies of their surroundings, which may take the worst beyond
-/// rungs that were missed.
+/// The same, with the worst cells tried on copies of their surroundings before and after, which may take the
+/// worst beyond rungs that were missed, and with vertices put in where they are missing, twice.
 void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
                           RunControl& control) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
@@ -242,10 +258,9 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
   };
   search_worst();
   const auto put_in = [&](std::size_t of_hundred) {
-    if (control.surface() || options.coarsen || smallest() >= kRefineGoal) return;
-    ImproveOptions bounded = options;
-    bounded.max_cells = options.max_cells * of_hundred / 100;
-    refine(mesh, work, bounded, control, kRefineGoal, kRefineGainAtAnyCost);
+    if (control.surface() || control.stopped() || options.coarsen || smallest() >= kRefineGoal) return false;
+    refine_within(mesh, work, options, control, of_hundred, kRefineGainAtAnyCost);
+    return true;
   };
   put_in(kFillAtAnyCost);
   for (double at_start = 0; smallest() > at_start * kClimbAgain && !control.stopped();) {
@@ -276,15 +291,15 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   if (options.coarsen) coarsen(mesh, work, options, control);
   improve_bulk(mesh, work, options, control);
   control.set_fraction(0.5);
-  const PatchEffort& little = control.surface() ? kSurfaceEffort : kLittleEffort;
-  climb(mesh, work, options, control, floor, as_asked.raise_min_dihedral ? kAllEfforts[0] : little);
+  climb(mesh, work, options, control, floor,
+        as_asked.raise_min_dihedral ? kAllEfforts[0] : little_effort(control));
   if (as_asked.raise_min_dihedral) {
     control.forget_cell_bound();
     control.spare_nothing();
     ImproveOptions further = options;
     if (!options.raise_min_dihedral) {  // the bounds were those of the default run
       further = as_asked;
-      further.min_cells = options.min_cells;
+      further.min_cells = options.min_cells;  // what is left out now is missing for the last cells
       if (further.max_cells == 0) further.max_cells = mesh.n_logical_cells() * kMostAtAnyCost / 100;
     }
     climb_while_it_helps(mesh, work, further, control);

@@ -2,6 +2,8 @@
 // Insertion "followed by smoothing and topological improvement", kept or rolled back as one step (Klingner &
 // Shewchuk 2007): here on a copy of the surroundings of each of the last few cells, and removal likewise.
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -28,21 +30,36 @@ constexpr double kPatchNanoseconds = 1e7;
 struct Outcome {
   std::optional<TetMesh> mesh;
   double worst = 0;
+  bool held_back = false;  // there was one that had too many cells, or too few
 };
 
-/// Where over each needle an apex of its own is put; see detail::Needle.
-struct NeedleRow {
-  double share;         // of the way from the short side to the tip
-  double times_height;  // at which a lone apex would have its best angle
+/// Cells that a patch may come to have.
+struct Room {
+  std::size_t least, most;
+
+  bool holds(const TetMesh& changed) const {
+    return changed.n_logical_cells() >= least && changed.n_logical_cells() <= most;
+  }
 };
-constexpr std::array<NeedleRow, kNeedleRows> kRows = {{{0.37, 0.8}, {1.0 / 3.0, 0.8}}};
+
+Room room_of(const Patch& patch, const TetMesh& mesh, const ImproveOptions& options) {
+  const std::size_t others = mesh.n_logical_cells() - patch.cells().size();
+  const auto above_others = [&](std::size_t n) { return std::max(n, others) - others; };
+  return {above_others(options.min_cells),
+          options.max_cells > 0 ? above_others(options.max_cells) : std::numeric_limits<std::size_t>::max()};
+}
+
+/// Where over each needle an apex of its own is put, as shares of the way from the short side to the tip, and
+/// how high, as a share of what would be best for a lone one; see detail::Needle.
+constexpr std::array<double, kNeedleRows> kRowShares = {0.37, 1.0 / 3.0};
+constexpr double kRowHeight = 0.8;
 constexpr double kSlender = 0.35;  // short side over length of a needle
 
 /// What a try begins with on a copy of a patch, even at a loss.
 struct Try {
   enum Kind {
     kNothing,  // improved as it is
-    kRow,      // an apex over each needle; number: of kRows
+    kRow,      // an apex over each needle; number: of kRowShares
     kVertex,   // a new vertex for the first cell; number: of the place, counted by promise
     kRemoval,  // one vertex less; number: of the vertex, which are in the order of discovery from that cell
   };
@@ -55,17 +72,17 @@ std::vector<Try> tries_of(const PatchEffort& effort) {
   const auto add = [&](Try::Kind kind, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) tries.push_back({kind, i});
   };
-  add(Try::kRow, std::min(effort.rows, kRows.size()));
+  add(Try::kRow, std::min(effort.rows, kRowShares.size()));
   add(Try::kVertex, effort.vertices);
   add(Try::kRemoval, effort.removals);
   return tries;
 }
 
-/// An apex of its own over each needle of the boundary whose cell is below the goal. The short sides of a
+/// An apex of its own over each needle whose cell is below the goal, among the faces that stay: those of the
+/// surface, of interfaces, with labels, and towards the rest of the mesh. The short sides of a
 /// band of needles lie alternately left and right: one apex near its short side spoils what lies over its
 /// neighbours, but all of them together leave more than apexes that several needles share.
-bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const NeedleRow& row,
-             double goal) {
+bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, double share, double goal) {
   const double below = dihedral_decision(goal);
   std::vector<std::array<VertexHandle, 3>> needles;
   for (std::size_t h = 0; h < 4 * mesh.n_cells(); ++h) {
@@ -77,11 +94,12 @@ bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, cons
   bool changed = false;
   for (const auto& vertices : needles) {
     const HalfFaceHandle face = mesh.find_halfface(vertices);  // in whatever cell lies on it by now
+    if (!face.is_valid()) continue;                            // where the patch is pinched at all three
     VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kAnyLoss};
-    insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(row.share, row.times_height);
+    insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(share, kRowHeight);
     if (!apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(cell_of(face)))) continue;
     changed = true;
-    work.attach(mesh, options.policy);
+    work.quality.resize(mesh.n_cells());
     work.set_qualities(mesh, MinSine2{}, options.policy);
   }
   return changed;
@@ -94,7 +112,7 @@ bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOpti
     case Try::kNothing:
       return true;
     case Try::kRow: {
-      if (!put_row(mesh, work, options, kRows[attempt.number], goal)) return false;
+      if (!put_row(mesh, work, options, kRowShares[attempt.number], goal)) return false;
       // Vertices that came all at once have to be well connected before any is judged by itself.
       ImproveOptions connecting = options;
       connecting.ops = without(without(options.ops, Ops::kNode), Ops::kInsert);
@@ -121,12 +139,14 @@ bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOpti
 
 /// The best of several tries at the patch: none unless its worst cell gets better. Vertices are taken out
 /// only where none that was put in has helped.
-Outcome search(const Patch& patch, const ImproveOptions& options, double seconds, double goal,
+Outcome search(const Patch& patch, Room room, const ImproveOptions& options, double seconds, double goal,
                const PatchEffort& effort) {
+  ImproveOptions whole;
+  whole.time_limit = seconds;
+  RunControl clock(whole);
   ImproveOptions here;
   here.ops = options.ops;
   here.seed = options.seed;
-  here.time_limit = seconds;
   here.raise_min_dihedral = true;  // as many vertices as it takes
   here.iterations = kIterations;
   Outcome best;
@@ -136,7 +156,8 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
   if (n_below(patch.mesh(), worked_for, here.policy) > effort.few) return best;
   const double enough = dihedral_decision(goal);
   for (const Try& attempt : tries_of(effort)) {
-    if (best.worst >= enough || (attempt.kind == Try::kRemoval && best.mesh)) break;
+    if (best.worst >= enough || (attempt.kind == Try::kRemoval && best.mesh) || clock.stopped()) break;
+    here.time_limit = seconds - clock.seconds();
     TetMesh mesh = patch.mesh();
     Workspace work;
     work.attach(mesh, here.policy);
@@ -146,16 +167,14 @@ Outcome search(const Patch& patch, const ImproveOptions& options, double seconds
     polish(mesh, work, here, control, worked_for);
     const double worst = survey(mesh, here.policy).worst;
     if (!(worst > std::max(best.worst, least))) continue;
+    if (!room.holds(mesh)) {
+      best.held_back = true;
+      continue;
+    }
     best.worst = worst;
     best.mesh = std::move(mesh);
   }
   return best;
-}
-
-/// Whether the mesh keeps to the bounds on its cells with this in place of the patch.
-bool fits(const TetMesh& mesh, const Patch& patch, const TetMesh& changed, const ImproveOptions& options) {
-  const std::size_t n = mesh.n_logical_cells() - patch.cells().size() + changed.n_logical_cells();
-  return n >= options.min_cells && (options.max_cells == 0 || n <= options.max_cells);
 }
 
 }  // namespace
@@ -188,17 +207,20 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
     if (patches.empty()) break;
     std::vector<Outcome> outcomes(patches.size());
     const double seconds = options.time_limit - control.seconds();
-    par::for_each_dynamic(
-        options.policy.for_items_of(kPatchNanoseconds), patches.size(), 1,
-        [&](std::size_t i) { outcomes[i] = search(patches[i], options, seconds, next, effort); });
+    par::for_each_dynamic(options.policy.for_items_of(kPatchNanoseconds), patches.size(), 1,
+                          [&](std::size_t i) {
+                            const Room room = room_of(patches[i], mesh, options);
+                            outcomes[i] = search(patches[i], room, options, seconds, next, effort);
+                          });
     ++pass.rounds;
     pass.seeds += patches.size();
     std::size_t n_changed = 0;
     bool worst_rose = false;
     for (std::size_t i = 0; i < patches.size(); ++i) {
+      if (outcomes[i].held_back) control.note_cell_bound();
       if (!outcomes[i].mesh) continue;
       ++pass.candidates;
-      if (!fits(mesh, patches[i], *outcomes[i].mesh, options)) {
+      if (!room_of(patches[i], mesh, options).holds(*outcomes[i].mesh)) {  // the others have had theirs
         control.note_cell_bound();
         continue;
       }

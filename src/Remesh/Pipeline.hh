@@ -61,9 +61,9 @@ struct PatchEffort {
   double degrees;        ///< beyond the worst angle, that are worked for in a turn
 };
 constexpr PatchEffort kLittleEffort = {64, 3, 4, 12, kNeedleRows, 8, 12, 0.6};
-/// Where the surface may change, which has cheaper ways to mend needles.
+/// Where the surface may change, which has cheaper ways to mend needles, but for the very last cells.
 constexpr PatchEffort kSurfaceEffort = {64, 3, 4, 4, 0, 8, 12, 0.6};
-/// The same for the very last cells, one after the other.
+/// For the very last cells, one after the other.
 constexpr std::array<PatchEffort, 2> kLastEfforts = {
     {{6, 2, 4, 2, kNeedleRows, 20, 30, 0.6}, {6, 4, 4, 2, kNeedleRows, 12, 30, 0.6}}};
 /// One after the other, where the worst angle is to be raised at any cost: what one cannot mend, another may.
