@@ -25,11 +25,12 @@ TEST(NearTriangle, AnswersAsTheNearestPointDoes) {
   for (std::size_t i = 0; i < kTries; ++i) {
     std::array<Vec3, 3> t;
     for (Vec3& p : t) p = random_point(engine, 0, 1);
-    if (i % 3 == 0) t[2] = t[0] + 0.4 * (t[1] - t[0]) + 1e-4 * t[2];  // thin
+    // Thin, and so thin that no plane is of use.
+    if (i % 3 == 0) t[2] = t[0] + 0.4 * (t[1] - t[0]) + (i % 2 == 0 ? 1e-4 : 1e-7) * t[2];
     const Vec3 x = random_point(engine, -0.2, 1.2);
     const NearTriangle near(t);
     const double exact = distance(t, x);
-    for (double reach : {0.05, 0.3, 0.999 * exact, 1.001 * exact})
+    for (double reach : {0.05, 0.3, 0.999 * exact, 1.001 * exact, (1 - 1e-8) * exact, (1 + 1e-8) * exact})
       EXPECT_EQ(near.is_within(x, reach), exact <= reach) << i << " " << reach << " " << exact;
     n_near += exact <= 0.3;
   }
