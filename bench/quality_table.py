@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the tool makes of each test mesh with a frozen surface, beside the best figures of other programs.
 
-For each mesh a row before, a row after the default run and one after --min-dihedral max: cells, smallest and
+For each mesh a row before, a row after the default run and one after --min-dihedral max, or after other goals: cells, smallest and
 largest dihedral, 0.1, 1 and 5 % percentile of each cell's smallest one, user seconds of the whole program, the exit
 code of `hfremesh check`, and what keeps the cells below the first angle that was missed. Angles in degrees.
 
-usage: bench/quality_table.py TOOL MESHES [--threads N] [--only NAME,...] [--runs default,max] [--time-limit S]
-                              [--output FILE]
+usage: bench/quality_table.py TOOL MESHES [--threads N] [--only NAME,...] [--runs default,max,DEGREES]
+                              [--time-limit S] [--output FILE]
 MESHES is the folder of the test meshes; those that are not there are left out.
 """
 import argparse
@@ -82,7 +82,7 @@ def main():
     parser.add_argument("meshes", type=pathlib.Path, help="folder of the test meshes")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--only", help="names of rows, comma-separated")
-    parser.add_argument("--runs", default="default,max", help="which runs, comma-separated")
+    parser.add_argument("--runs", default="default,max", help="which runs, comma-separated: default, max, or degrees of a goal")
     parser.add_argument("--time-limit", type=float, default=600, help="seconds that max may take for a mesh")
     parser.add_argument("--output", help="Markdown file to write (default: standard output)")
     options = parser.parse_args()
@@ -101,8 +101,9 @@ def main():
             print(f"quality_table: {name} is not there", file=sys.stderr)
             continue
         before_is_out = False
-        runs = (("default", []), ("max", ["--min-dihedral", "max", "--time-limit", str(options.time_limit)]))
-        for run, arguments in (r for r in runs if r[0] in options.runs.split(",")):
+        for run in options.runs.split(","):
+            arguments = {"default": [], "max": ["--min-dihedral", "max", "--time-limit", str(options.time_limit)]
+                         }.get(run, ["--min-dihedral", run])
             report_file, out = folder / "report.json", folder / "out.mesh"
             report_file.unlink(missing_ok=True)
             start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
