@@ -121,8 +121,10 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   // What was beneath the old triangles is likely to be beneath the new ones.
   Impl::Guesses beneath;
   const double h = kBetween * impl_->hausdorff;
-  std::size_t last = 0;  // the triangle that was near
-  const std::vector<NearTriangle> now(born.begin(), born.end());
+  std::size_t last = 0;                        // the triangle that was near
+  thread_local std::vector<NearTriangle> now;  // of this thread, so that it is allocated once
+  now.clear();
+  for (const Triangle& t : born) now.emplace_back(t);
   for (std::size_t i = 0; i < faces_dead.size(); ++i) {
     const OmFace face = impl_->find(faces_dead[i]);
     if (!face.is_valid()) return false;
