@@ -49,7 +49,7 @@ struct VertexInsertion {
   double poor_below = 0;
   int only_site = -1;  ///< not negative: only this one of them, counted by promise from 0
   /// Where there is one, the cavity is dug from the seed's cell for a vertex at this place, which stays
-  /// there.
+  /// there; max_sites, least_promise, poor_below and only_site do not matter then.
   std::optional<Vec3> only_place = std::nullopt;
   std::size_t max_cells = 48;  ///< of the cavity, at most Growth::kMaxCells
 

@@ -95,8 +95,6 @@ double share_below(const TetMesh& mesh, double degrees, const ImproveOptions& op
          static_cast<double>(mesh.n_logical_cells());
 }
 
-bool is_free(const ImproveOptions& options) { return options.surface.mode == SurfaceMode::kFree; }
-
 /// With a surface that may change, what many cells suffer from can be mended, too.
 double largest_share(const ImproveOptions& options) {
   constexpr double kWithSurface = 0.35;
@@ -258,9 +256,8 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
   };
   search_worst();
   const auto put_in = [&](std::size_t of_hundred) {
-    if (control.surface() || control.stopped() || options.coarsen || smallest() >= kRefineGoal) return false;
+    if (control.surface() || control.stopped() || options.coarsen || smallest() >= kRefineGoal) return;
     refine_within(mesh, work, options, control, of_hundred, kRefineGainAtAnyCost);
-    return true;
   };
   put_in(kFillAtAnyCost);
   for (double at_start = 0; smallest() > at_start * kClimbAgain && !control.stopped();) {

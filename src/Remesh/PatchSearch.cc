@@ -107,7 +107,8 @@ bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, doub
 
 /// False where the try cannot be begun.
 bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOptions& options, double goal) {
-  work.set_qualities(mesh, MinSine2{}, options.policy);
+  if (attempt.kind == Try::kRow || attempt.kind == Try::kVertex)
+    work.set_qualities(mesh, MinSine2{}, options.policy);
   switch (attempt.kind) {
     case Try::kNothing:
       return true;

@@ -294,7 +294,6 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
   const double decision = dihedral_decision(goal);
   if (options.iterations > 0) return false;  // it would be further ones
   const Few few{.to_dig = kFewToRelieve, .to_search = kFewToRelieve};
-  const bool curved = options.surface.mode == SurfaceMode::kFree;
   for (const Relief& relief : kReliefs) {
     const std::vector<CellHandle> stuck = cells_below(mesh, goal, options.policy);
     if (stuck.empty()) return true;
@@ -305,7 +304,8 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
     for (int i = 1; i <= kReliefIterations && !control.stopped(); ++i) {
       std::size_t changes = stage.iterate(i, focus, true);
       if (has(options.ops, Ops::kEdge)) changes += stage.fan_pass(i, focus);
-      if (has(options.ops, Ops::kInsert) && (!curved || stage.n_below(focus.below) <= kFewToDigForRoom))
+      if (has(options.ops, Ops::kInsert) &&
+          (!is_free(options) || stage.n_below(focus.below) <= kFewToDigForRoom))
         changes += stage.insert_pass(i, focus);
       if (changes == 0) break;
     }

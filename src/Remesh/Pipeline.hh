@@ -11,6 +11,8 @@
 
 namespace hfr {
 
+/// Whether the surface may change its shape.
+inline bool is_free(const ImproveOptions& options) { return options.surface.mode == SurfaceMode::kFree; }
 /// sin² of an angle in degrees: what the dihedral metrics call their decision value.
 double dihedral_decision(double degrees);
 /// The mesh in two numbers, from one pass over its cells.

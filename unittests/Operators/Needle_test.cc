@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "Operators/Clusters.hh"
 
 namespace hfr::test {
@@ -45,6 +47,35 @@ TEST(Needle, PlaceMakesTheAnglesAtTheShortSideAndAtTheTipAlike) {
       EXPECT_NEAR(norm(Needle(p).place(t, 0.5) - at), 0.5 * std::abs(at.z), 1e-14);
     }
   }
+}
+
+TEST(Needle, RowsOfApexesLeaveMoreThanApexesThatAreShared) {
+  // A band in the plane z = 0, as in docs/worst-angles.md: short sides at y = 0 and at y = length by turns.
+  const double side = 0.28, length = 5.4;
+  const auto near = [&](int i) { return Vec3{i * side, 0, 0}; };
+  const auto across = [&](int i) { return Vec3{(i + 0.5) * side, length, 0}; };
+  const auto smallest = [](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const auto angles = dihedrals(a, b, c, d);
+    return *std::min_element(angles.begin(), angles.end());
+  };
+  const std::array<Vec3, 3> one = {near(0), near(1), across(0)};
+  const std::array<Vec3, 3> next = {near(1), across(1), across(0)};
+  const auto leaves = [&](double share) {  // of the cells on both, and of the one between them on their edge
+    const Vec3 p = Needle(one).place(share);
+    const Vec3 r = Needle(next).place(share);
+    return std::min({smallest(one[0], one[1], one[2], p), smallest(next[0], next[1], next[2], r),
+                     smallest(near(1), across(0), p, r)});
+  };
+  EXPECT_NEAR(leaves(1.0 / 3.0), 17.7, 0.2);
+  // One for both, half-way.
+  const Vec3 shared = Needle(one).place(0.5);
+  const double both =
+      std::min(smallest(one[0], one[1], one[2], shared), smallest(next[0], next[1], next[2], shared));
+  EXPECT_GT(both, 12);
+  EXPECT_LT(both, 13.5);
+  // One for both at the third of the first.
+  const Vec3 third = Needle(one).place(1.0 / 3.0);
+  EXPECT_LT(smallest(next[0], next[1], next[2], third), 10);
 }
 
 TEST(Needle, TakesATriangleWithoutArea) {

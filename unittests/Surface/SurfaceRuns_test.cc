@@ -372,6 +372,20 @@ TEST(SurfaceRuns, EveryNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+TEST(SurfaceRuns, RaisingTheWorstAtAnyCostLeavesCellsToWorkIn) {
+  // Layers so thin that most of their vertices are better away; swaps take cells beyond the bound, too.
+  const TetMesh first = built(generate::jittered_box({4, 4, 16}, 0.1, 1, {0, 0, 0}, {1, 1, 1}));
+  ImproveOptions options = with(SurfaceMode::kFlat);
+  options.raise_min_dihedral = true;
+  options.ops = without(options.ops, Ops::kInsert);
+  TetMesh bounded = first;
+  improve(bounded, options);
+  options.min_cells = 1;
+  TetMesh free = first;
+  improve(free, options);
+  EXPECT_GT(4 * bounded.n_cells(), 5 * free.n_cells());
+}
+
 TEST(SurfaceRuns, RaisingTheWorstAtAnyCostKeepsTheNumberOfCellsInBounds) {
   const TetMesh first = built(generate::jittered_box({6, 3, 2}, 0.1, 2, {0, 0, 0}, {1, 1, 0.5}));
   ImproveOptions options = with(SurfaceMode::kFlat);
