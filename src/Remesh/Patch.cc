@@ -72,22 +72,39 @@ void Patch::copy_constraints(const TetMesh& whole) {
       if (whole.is_labelled_edge(there[e[0]], there[e[1]]) ||
           whole.locks().edges.find({there[e[0]], there[e[1]]}))
         labels.edges.set({here[e[0]], here[e[1]]}, 1);
-    for (int k = 0; k < 4; ++k)
-      if (whole.is_constrained(halfface_of(cells_[i], k)))
-        labels.faces.set(mesh_.halfface_vertices(halfface_of(CellHandle(i), k)), 1);
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(cells_[i], k);
+      auto face = mesh_.halfface_vertices(halfface_of(CellHandle(i), k));
+      if (whole.opposite_halfface(h).is_valid()) {
+        if (whole.is_constrained(h)) labels.faces.set(face, 1);
+        continue;
+      }
+      const auto& known = whole.labels().faces;
+      const std::size_t at = known.position(whole.halfface_vertices(h));
+      if (at == known.size()) continue;
+      const auto& entry = known.entries()[at];
+      if (CyclicOrder::key(entry.vertices) != CyclicOrder::key(whole.halfface_vertices(h)))
+        std::swap(face[1], face[2]);
+      labels.faces.set(face, entry.value);
+    }
   }
 }
 
 void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
   std::unordered_map<std::array<VertexHandle, 3>, HalfFaceHandle, TupleHash> behind;
+  std::vector<std::array<VertexHandle, 3>> gone;  // faces of the boundary, unless they come again
   const std::unordered_set<CellHandle> old(cells_.begin(), cells_.end());
   for (CellHandle c : cells_) {
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(c, k);
       const HalfFaceHandle m = whole.opposite_halfface(h);
-      if (!m.is_valid() || !old.contains(cell_of(m))) behind[AnyOrder::key(whole.halfface_vertices(h))] = m;
+      if (m.is_valid() && old.contains(cell_of(m))) continue;
+      const auto face = AnyOrder::key(whole.halfface_vertices(h));
+      behind[face] = m;
+      if (!m.is_valid()) gone.push_back(face);
     }
   }
+  std::unordered_set<std::array<VertexHandle, 3>, TupleHash> kept;
   std::vector<VertexHandle> vertices = vertices_;
   for (std::size_t i = 0; i < changed.n_vertices(); ++i) {
     const VertexHandle local(i);
@@ -144,11 +161,25 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
         whole.set_mate(h, halfface_of(slots[cell_of(m).idx()], static_cast<int>(m.idx() % 4)));
         continue;
       }
-      const HalfFaceHandle outside = behind.at(AnyOrder::key(whole.halfface_vertices(h)));
-      whole.set_mate(h, outside);
-      if (outside.is_valid()) whole.set_mate(outside, h);
+      const auto face = whole.halfface_vertices(h);
+      const auto at = behind.find(AnyOrder::key(face));
+      if (at == behind.end()) {  // new on the surface
+        whole.set_mate(h, HalfFaceHandle());
+        const auto& known = changed.labels().faces;
+        const std::size_t entry = known.position(changed.halfface_vertices(halfface_of(local, k)));
+        if (entry == known.size()) continue;
+        const auto& v = known.entries()[entry].vertices;
+        whole.labels().faces.set({vertices[v[0].idx()], vertices[v[1].idx()], vertices[v[2].idx()]},
+                                 known.entries()[entry].value);
+        continue;
+      }
+      kept.insert(at->first);
+      whole.set_mate(h, at->second);
+      if (at->second.is_valid()) whole.set_mate(at->second, h);
     }
   }
+  for (const auto& face : gone)
+    if (!kept.contains(face)) whole.labels().faces.erase_unordered(face);
 }
 
 }  // namespace hfr

@@ -14,6 +14,7 @@
 #include "Operators/VertexRemoval.hh"
 #include "Remesh/Patch.hh"
 #include "Remesh/Pipeline.hh"
+#include "Remesh/SurfaceRun.hh"
 
 namespace hfr {
 namespace {
@@ -140,16 +141,19 @@ bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOpti
 
 /// The best of several tries at the patch: none unless its worst cell gets better. Vertices are taken out
 /// only where none that was put in has helped.
-Outcome search(const Patch& patch, Room room, const ImproveOptions& options, double seconds, double goal,
-               const PatchEffort& effort) {
+/// `surface`: of the whole, whose part of the patch may change as well; null where it may not.
+Outcome search(const Patch& patch, const SurfaceMesh* surface, Room room, const ImproveOptions& options,
+               double seconds, double goal, const PatchEffort& effort) {
   ImproveOptions whole;
   whole.time_limit = seconds;
   RunControl clock(whole);
   ImproveOptions here;
   here.ops = options.ops;
   here.seed = options.seed;
+  if (surface) here.surface.mode = SurfaceMode::kFlat;
   here.raise_min_dihedral = true;  // as many vertices as it takes
   here.iterations = kIterations;
+  here.policy = {};  // patches are searched side by side
   Outcome best;
   best.worst = survey(patch.mesh(), here.policy).worst;
   const double least = kRise * best.worst;
@@ -165,6 +169,8 @@ Outcome search(const Patch& patch, Room room, const ImproveOptions& options, dou
     if (!begin(attempt, mesh, work, here, worked_for)) continue;
     work.attach(mesh, here.policy);
     RunControl control(here);
+    const PartOfSurface part(mesh, surface, patch.vertices());
+    control.set_surface(part.get());
     polish(mesh, work, here, control, worked_for);
     const double worst = survey(mesh, here.policy).worst;
     if (!(worst > std::max(best.worst, least))) continue;
@@ -188,6 +194,8 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
   pass.stage = "patches";
   pass.op = "insert";
   const double start = control.seconds();
+  // A curved one cannot: its shape is that of the input, which a patch does not know.
+  SurfaceMesh* const surface = options.surface.mode == SurfaceMode::kFlat ? control.surface() : nullptr;
   for (int turn = 0; turn < effort.turns && !control.stopped(); ++turn) {
     const double next = std::min(goal, smallest_dihedral(mesh, options.policy) + effort.degrees);
     const std::size_t n_centres = 4 * effort.patches;  // most patches hold several of the worst cells
@@ -211,7 +219,7 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
     par::for_each_dynamic(options.policy.for_items_of(kPatchNanoseconds), patches.size(), 1,
                           [&](std::size_t i) {
                             const Room room = room_of(patches[i], mesh, options);
-                            outcomes[i] = search(patches[i], room, options, seconds, next, effort);
+                            outcomes[i] = search(patches[i], surface, room, options, seconds, next, effort);
                           });
     ++pass.rounds;
     pass.seeds += patches.size();
@@ -230,7 +238,10 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
       worst_rose = worst_rose || i == 0;
     }
     pass.winners += n_changed;
-    if (n_changed > 0) work.attach(mesh, options.policy);
+    if (n_changed > 0) {
+      work.attach(mesh, options.policy);
+      take_again(surface, mesh, options.policy);
+    }
     if (!worst_rose) break;
   }
   pass.worst = survey(mesh, options.policy).worst;

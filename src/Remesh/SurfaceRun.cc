@@ -105,6 +105,15 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   return report;
 }
 
+PartOfSurface::PartOfSurface(const TetMesh& part, const SurfaceMesh* whole,
+                             std::span<const VertexHandle> vertices)
+    : surface_(whole ? std::make_shared<SurfaceMesh>(part, *whole, vertices) : nullptr) {}
+SurfaceMesh* PartOfSurface::get() const { return surface_.get(); }
+
+void take_again(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy) {
+  if (surface) surface->take_again(mesh, policy);
+}
+
 #else
 
 struct SurfaceRun::Impl {};
@@ -116,6 +125,9 @@ SurfaceRun::SurfaceRun(TetMesh&, const ImproveOptions& options, bool, std::vecto
 }
 SurfaceMesh* SurfaceRun::get() const { return nullptr; }
 SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
+PartOfSurface::PartOfSurface(const TetMesh&, const SurfaceMesh*, std::span<const VertexHandle>) {}
+SurfaceMesh* PartOfSurface::get() const { return nullptr; }
+void take_again(SurfaceMesh*, const TetMesh&, par::Policy) {}
 
 #endif
 

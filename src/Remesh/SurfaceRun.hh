@@ -3,6 +3,7 @@
 #define HFR_REMESH_SURFACE_RUN_HH
 
 #include <memory>
+#include <span>
 
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Improve.hh"
@@ -28,6 +29,22 @@ class SurfaceRun {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The part of a flat surface that a patch has, for the time of a try on a copy of it; see SurfaceMesh. None
+/// where `whole` is null.
+class PartOfSurface {
+ public:
+  PartOfSurface(const TetMesh& part, const SurfaceMesh* whole, std::span<const VertexHandle> vertices);
+  PartOfSurface(const PartOfSurface&) = delete;
+  PartOfSurface& operator=(const PartOfSurface&) = delete;
+
+  SurfaceMesh* get() const;
+
+ private:
+  std::shared_ptr<SurfaceMesh> surface_;  // shared: a build without surfaces cannot delete one
+};
+/// After patches have been put back: the flat surface as it is now. Does nothing without one.
+void take_again(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
 
 /// What the frozen surface holds back among the cells that are stuck below `degrees`.
 HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,

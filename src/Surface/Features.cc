@@ -33,36 +33,6 @@ double diagonal(const Arrays& arrays) {
   return norm(high - low);
 }
 
-std::vector<Edge> find_edges(const Arrays& arrays) {
-  struct Use {
-    VertexHandle a, b;
-    std::uint32_t f;
-    std::uint8_t k;
-    bool forth;  // the face has the edge from a to b
-  };
-  std::vector<Use> uses;
-  uses.reserve(3 * arrays.faces.size());
-  for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const VertexHandle a = arrays.faces[i][k];
-      const VertexHandle b = arrays.faces[i][(k + 1U) % 3];
-      uses.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(i), k, a < b});
-    }
-  }
-  std::sort(uses.begin(), uses.end(),
-            [](const Use& x, const Use& y) { return std::tie(x.a, x.b, x.f) < std::tie(y.a, y.b, y.f); });
-  std::vector<Edge> edges;
-  for (std::size_t i = 0; i < uses.size();) {
-    std::size_t end = i + 1;
-    while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
-    Edge edge{uses[i].a, uses[i].b, {uses[i].f, uses[end - 1].f}, {uses[i].k, uses[end - 1].k}};
-    edge.manifold = end - i == 2 && uses[i].forth != uses[i + 1].forth;
-    edges.push_back(edge);
-    i = end;
-  }
-  return edges;
-}
-
 /// Planar facets: grown from the largest face that is in none yet, over edges where the surface does not turn
 /// back, as long as all corners lie in the plane.
 std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<Edge>& edges, double tolerance,
@@ -372,6 +342,36 @@ Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options) {
   arrays.fixed = arrays.locked;
   add_fixed(arrays, options);
   return arrays;
+}
+
+std::vector<Edge> find_edges(const Arrays& arrays) {
+  struct Use {
+    VertexHandle a, b;
+    std::uint32_t f;
+    std::uint8_t k;
+    bool forth;  // the face has the edge from a to b
+  };
+  std::vector<Use> uses;
+  uses.reserve(3 * arrays.faces.size());
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const VertexHandle a = arrays.faces[i][k];
+      const VertexHandle b = arrays.faces[i][(k + 1U) % 3];
+      uses.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(i), k, a < b});
+    }
+  }
+  std::sort(uses.begin(), uses.end(),
+            [](const Use& x, const Use& y) { return std::tie(x.a, x.b, x.f) < std::tie(y.a, y.b, y.f); });
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < uses.size();) {
+    std::size_t end = i + 1;
+    while (end < uses.size() && uses[end].a == uses[i].a && uses[end].b == uses[i].b) ++end;
+    Edge edge{uses[i].a, uses[i].b, {uses[i].f, uses[end - 1].f}, {uses[i].k, uses[end - 1].k}};
+    edge.manifold = end - i == 2 && uses[i].forth != uses[i + 1].forth;
+    edges.push_back(edge);
+    i = end;
+  }
+  return edges;
 }
 
 double mean_edge(const Arrays& arrays) {

@@ -42,6 +42,9 @@ struct Edge {
   bool locked = false;    ///< a feature that the user wants as it is
 };
 
+/// All edges of the faces; none is a feature yet.
+std::vector<Edge> find_edges(const Arrays& arrays);
+
 struct Features {
   std::vector<Edge> edges;           ///< by ascending vertices
   std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode

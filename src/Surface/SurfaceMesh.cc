@@ -192,6 +192,13 @@ SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par
   impl_->bind(surface::periodic_orbits(arrays, options));
 }
 
+void SurfaceMesh::take_again(const TetMesh& mesh, par::Policy policy) {
+  HFR_ASSERT(impl_->flat() && !impl_->alone && impl_->gone.empty() && impl_->fresh.empty());
+  const SurfaceOptions options = impl_->options;
+  SurfaceMesh again(mesh, options, policy);
+  impl_.swap(again.impl_);
+}
+
 void SurfaceMesh::Impl::bind(std::vector<std::vector<VertexHandle>> found) {
   orbits = std::move(found);
   if (!orbits.empty()) orbit_of.assign(freedom.size(), kNoOrbit);

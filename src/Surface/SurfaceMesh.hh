@@ -46,6 +46,11 @@ class SurfaceMesh {
   SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
   /// A surface without cells. What speaks of a TetMesh or a half-face is of no use then.
   SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options);
+  /// The surface of a part of a mesh whose surface is `whole`, in flat mode: some cells of one region as a
+  /// mesh of their own, whose vertex i is vertices[i] of the whole's. Faces of the whole's boundary may
+  /// change as they may there; all others, which face cells that are no part, stay as they are, with their
+  /// vertices.
+  SurfaceMesh(const TetMesh& part, const SurfaceMesh& whole, std::span<const VertexHandle> vertices);
   ~SurfaceMesh();
   SurfaceMesh(const SurfaceMesh&) = delete;
   SurfaceMesh& operator=(const SurfaceMesh&) = delete;
@@ -118,6 +123,9 @@ class SurfaceMesh {
   void collapsed(VertexHandle v, VertexHandle onto);
   /// The edge from a to b has got the vertex `middle`.
   void was_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place);
+  /// In flat mode, after cells have been replaced without a word: takes the surface as it is now. Labels must
+  /// have been written.
+  void take_again(const TetMesh& mesh, par::Policy policy = {});
   /// Brings patch labels of the volume up to date with what has happened since.
   void write_labels(TetMesh& mesh);
 

@@ -9,6 +9,7 @@
 #include "HalfFace/Errors.hh"
 #include "IO/Hash.hh"
 #include "Remesh/Meshes.hh"
+#include "Remesh/Pipeline.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
@@ -92,6 +93,29 @@ TEST(Periodic, SidesMoveTogetherAndTheirWorstCellsGetBetter) {
     EXPECT_NE(shadow(mesh, patch), shadow(input, patch)) << "nothing has moved";
   }
   EXPECT_NEAR(volume(mesh), 1, 1e-13);
+}
+
+TEST(Periodic, PatchesThatAreSearchedLeaveThemAlone) {
+  TetMesh mesh = periodic_box(6, 0.3);
+  ImproveOptions options = with(SurfaceMode::kFlat, {{{1, 2}}, {{3, 4}}});
+  options.ops = Ops::kEdge | Ops::kFace | Ops::kSmooth;
+  improve(mesh, options);
+  options.ops = ImproveOptions{}.ops;
+  std::array<decltype(shadow(mesh, 1)), 2> before = {shadow(mesh, 1), shadow(mesh, 3)};
+  const double worst = smallest_dihedral(mesh, {});
+  RunControl control(options);
+  SurfaceMesh surface(mesh, options.surface);
+  control.set_surface(&surface);
+  Workspace work;
+  work.attach(mesh, {});
+  EXPECT_TRUE(search_patches(mesh, work, options, control, 40, kLittleEffort));
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_TRUE(surface.in_step(mesh));
+  EXPECT_GT(smallest_dihedral(mesh, {}), worst);
+  for (const int patch : {1, 3}) {
+    EXPECT_EQ(shadow(mesh, patch), before[static_cast<std::size_t>(patch / 2)]);
+    EXPECT_EQ(shadow(mesh, patch), shadow(mesh, patch + 1));
+  }
 }
 
 TEST(Periodic, WhatIsNotPeriodicChangesAsEver) {
