@@ -19,13 +19,17 @@ constexpr double kLargestGoal = 70.5;  // the regular tetrahedron has 70.53
 constexpr std::array<double, 13> kLadder = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
 constexpr double kCommonRung = 25;
 constexpr double kReliefRung = 30;
-/// Up to here patches are searched where the surface may change; it has cheaper ways beyond.
-constexpr double kPatchRungFlat = kCommonRung;
+/// Up to here patches are searched where the surface may change its shape: they do not know it, and there are
+/// cheaper ways beyond.
 constexpr double kPatchRungFree = 20;
 /// The same where the worst is to be raised at any cost, until this many rungs in a row have not raised it by
 /// this factor.
-constexpr std::array<double, 21> kFullLadder = {1,  2,  3,    4,  5.5,  7,  8.5,  10,   12, 14, 16,
-                                                18, 20, 22.5, 25, 27.5, 30, 32.5, 35.0, 40, 45};
+constexpr std::array<double, 23> kFullLadder = {1,  2,    3,  4,    5.5, 7,    8.5,  10,   12, 14,   16, 18,
+                                                20, 22.5, 25, 27.5, 30,  32.5, 35.0, 37.5, 40, 42.5, 45};
+/// Of these, 37.5 and 42.5 only from here on: for meshes that end far below they would be two more of the
+/// rungs that are worked for in vain.
+constexpr double kHalfRungsFrom = 30;
+constexpr bool is_half_rung(double rung) { return rung == 37.5 || rung == 42.5; }
 constexpr int kMaxMissed = 4;
 constexpr double kClimbGain = 1.002;
 /// Nor left fewer than this share of the cells that were below the rung.
@@ -40,12 +44,17 @@ constexpr double kReliefGain = 1.02;
 constexpr double kManyPoor = 0.08;
 /// Where more than this share does, it is the mesh that is poor: vertices would not get it there either.
 constexpr double kAllPoor = 0.6;
+/// Where more than this share misses a goal that was asked for, all cells are worked on before it is worked
+/// for: most would be touched anyway, and polished by themselves they would lose too many vertices.
+constexpr double kManyMiss = 0.2;
+/// Where no more than this share is left in the end, a frozen surface holds them, whatever is done to others.
+constexpr double kFewMiss = 0.01;
 constexpr double kRefineGoal = 30;
 /// What a new vertex must do there for sin² of the worst of its cells; the second where cells may be many.
 constexpr double kRefineGain = 1.6;
 constexpr double kRefineGainAtAnyCost = 1.3;
 /// Cells that raising the worst angle at any cost makes of 100 that the default run leaves, where the options
-/// do not say.
+/// do not say and the surface is frozen. One that may change needs no more for it than otherwise.
 constexpr std::size_t kMostAtAnyCost = 150;
 /// Of 100 cells that a run may make, those that there may be when vertices are put in first, and once more.
 /// The rest is for the worst cells.
@@ -64,16 +73,16 @@ constexpr std::size_t kLeastOfHundred = 81;
 constexpr std::size_t kMostOfHundred = 119;
 
 /// Whether the number of cells is to stay about what it is where the options do not say. A surface that may
-/// change gives its cells good angles with fewer or more vertices, as they are needed; but where the worst
-/// angle is raised at any cost, small meshes would come to several times their cells, and others would lose
-/// so many that there is no room left to work in. (In free mode neither was seen.)
+/// change gives its cells good angles with fewer or more vertices, as they are needed; but where a goal was
+/// asked for or the worst angle is raised at any cost, small meshes would come to several times their cells,
+/// and others would lose so many that there is no room left to work in. (In free mode neither was seen.)
 bool keeps_size(const ImproveOptions& options) {
   if (options.compat != Compat::kNone || (options.raise_min_dihedral && options.coarsen)) return false;
   switch (options.surface.mode) {
     case SurfaceMode::kFrozen:
       return true;
     case SurfaceMode::kFlat:
-      return options.raise_min_dihedral;
+      return options.raise_min_dihedral || options.min_dihedral;
     case SurfaceMode::kFree:
       return false;
   }
@@ -84,7 +93,10 @@ ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
   if (options.coarsen && options.max_cells == 0) options.max_cells = n_cells;
   if (!keeps_size(options)) return options;
   options.raise_min_dihedral = false;  // that comes after
-  if (options.min_cells == 0 && !options.coarsen) options.min_cells = n_cells * kLeastOfHundred / 100;
+  // Towards a goal a flat surface gives its cells good angles with fewer of them, in a third of the time.
+  const bool may_lose =
+      options.coarsen || (options.surface.mode == SurfaceMode::kFlat && options.min_dihedral);
+  if (options.min_cells == 0 && !may_lose) options.min_cells = n_cells * kLeastOfHundred / 100;
   if (options.max_cells == 0) options.max_cells = n_cells * kMostOfHundred / 100;
   return options;
 }
@@ -115,12 +127,23 @@ void validate(const ImproveOptions& options) {
   HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
 }
 
+/// The angles up to a goal that the worst cells are raised to on the way there, and the goal itself if one
+/// was asked for.
+std::vector<double> rungs_to(double goal) {
+  std::vector<double> rungs;
+  for (double rung : kLadder)
+    if (rung < goal) rungs.push_back(rung);
+  if (goal < kLargestGoal) rungs.push_back(goal);
+  return rungs;
+}
+
 /// Raises the worst dihedrals rung by rung; one that is missed is no reason to stop, because what holds a
 /// cell below it may give way on the next.
-void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
+void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                 double goal) {
   double now = smallest_dihedral(mesh, options.policy);
   double below = 0;  // the last rung that was worked for
-  for (double rung : kLadder) {
+  for (double rung : rungs_to(goal)) {
     if (control.stopped()) return;
     if (now >= rung) continue;
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
@@ -143,20 +166,22 @@ bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Ru
   const double at_first = smallest();
   const double gain = is_free(options) ? kReliefGain : kClimbGain;
   double now = at_first;
-  for (double next : kLadder) {
-    const double rung = std::min(next, goal);
-    if (now >= goal || (rung > kReliefRung && !options.coarsen) || control.stopped()) break;
+  for (double rung : rungs_to(goal)) {
+    const bool asked_for = options.coarsen || options.min_dihedral;
+    if (now >= goal || (rung > kReliefRung && !asked_for) || control.stopped()) break;
     if (now >= rung) continue;
     if (share_below(mesh, rung, options) > largest_share(options)) break;
+    const auto search = [&](const PatchEffort& how) {
+      if (now < rung && search_patches(mesh, work, options, control, rung, how)) now = smallest();
+    };
+    // The surroundings of a flat surface take vertices wherever they may; towards a goal patches need fewer.
+    if (options.min_dihedral && options.surface.mode == SurfaceMode::kFlat) search(effort);
     for (double before = 0; now < rung && now > gain * before && !control.stopped();) {
       before = now;
       relieve(mesh, work, options, control, few_below(mesh, rung, options.policy));
       now = smallest();
     }
-    const auto search = [&](const PatchEffort& how) {
-      if (now < rung && search_patches(mesh, work, options, control, rung, how)) now = smallest();
-    };
-    if (!control.surface() || rung <= (is_free(options) ? kPatchRungFree : kPatchRungFlat)) {
+    if (!is_free(options) || rung <= kPatchRungFree) {
       search(effort);
       for (const PatchEffort& last : kLastEfforts) search(last);
     }
@@ -190,37 +215,57 @@ bool fill_in(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 /// Raises the worst dihedrals as far as a limited effort takes them. `floor` is where the worst stood before:
 /// the bulk stage, which knows only volume-length, may have lowered it.
 void climb(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double floor,
-           const PatchEffort& effort) {
+           const PatchEffort& effort, double goal) {
   if (smallest_dihedral(mesh, options.policy) < floor) polish(mesh, work, options, control, floor);
   fill_in(mesh, work, options, control, kFillOfHundred);
-  climb_rungs(mesh, work, options, control);
+  climb_rungs(mesh, work, options, control, goal);
   // What was put in first is well connected by now, which shows where vertices are still missing.
   if (options.iterations == 0 && fill_in(mesh, work, options, control, kFillUpOfHundred))
-    climb_rungs(mesh, work, options, control);
+    climb_rungs(mesh, work, options, control, goal);
   // Whatever raises the last few takes from their neighbours.
-  if (mend_last(mesh, work, options, control, effort)) climb_rungs(mesh, work, options, control);
+  if (mend_last(mesh, work, options, control, effort, goal)) climb_rungs(mesh, work, options, control, goal);
+}
+
+/// What a run does of itself: the damage, all cells in volume-length, then the worst angles, up to the goal
+/// if there is one. `floor`: see climb().
+void improve_all(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                 double floor, const PatchEffort& effort, double goal) {
+  // The worst angles first: the bulk stage, which knows only volume-length, can box them in. Few cells, so
+  // kind by kind, as towards a goal.
+  ImproveOptions early = options;
+  if (early.rounds == Rounds::kAuto) early.rounds = Rounds::kByKind;
+  polish(mesh, work, early, control, kEarlyGoal, kLargestShare);
+  if (options.coarsen) coarsen(mesh, work, options, control);
+  improve_bulk(mesh, work, options, control);
+  control.set_fraction(0.5);
+  climb(mesh, work, options, control, floor, effort, goal);
 }
 
 /// Works towards a goal: within the bounds on cells first, then within those that were asked for if the
 /// former were in the way. What misses it is raised as far as it goes, rung by rung, the last few cells with
-/// more effort, and tried once more if that has helped.
+/// more effort, and tried once more if that has helped. `from_the_worst`: nothing else has been worked on,
+/// and all cells are if that was not enough.
 bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const ImproveOptions& as_asked,
-           RunControl& control, double goal) {
+           RunControl& control, double goal, bool from_the_worst) {
+  const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
+  const auto attempt = [&](const ImproveOptions& within) {
+    if (polish(mesh, work, within, control, goal)) return true;
+    const double missed_at = smallest();
+    climb_rungs(mesh, work, within, control, goal);
+    if (!control.stopped()) mend_last(mesh, work, within, control, little_effort(control), goal);
+    return !control.stopped() && smallest() > missed_at && polish(mesh, work, within, control, goal);
+  };
+  if (attempt(options)) return true;
   const ImproveOptions* now = &options;
-  const auto reaches = [&] { return polish(mesh, work, *now, control, goal); };
-  if (reaches()) return true;
   if (control.met_cell_bound() && !control.stopped()) {
     control.forget_cell_bound();
     now = &as_asked;
-    if (reaches()) return true;
+    if (attempt(as_asked)) return true;
   }
-  const double missed_at = smallest_dihedral(mesh, options.policy);
-  for (double rung : kLadder)
-    if (rung < goal && !control.stopped() && smallest_dihedral(mesh, options.policy) < rung)
-      polish(mesh, work, *now, control, rung);
-  if (!control.stopped()) mend_last(mesh, work, *now, control, little_effort(control), goal);
-  if (control.stopped() || !(smallest_dihedral(mesh, options.policy) > missed_at)) return false;
-  return reaches();
+  if (!from_the_worst || control.stopped() || options.iterations > 0) return false;
+  if (!control.surface() && share_below(mesh, goal, options) <= kFewMiss) return false;
+  improve_all(mesh, work, *now, control, smallest(), little_effort(control), goal);
+  return polish(mesh, work, *now, control, goal);
 }
 
 /// Climbs again and again, and beyond rungs that are missed, while the worst rises.
@@ -231,7 +276,7 @@ void climb_beyond(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
     int n_missed = 0;
     for (double rung : kFullLadder) {
       const double now = smallest();
-      if (now >= rung) continue;
+      if (now >= rung || (is_half_rung(rung) && now < kHalfRungsFrom)) continue;
       if (n_missed == kMaxMissed || control.stopped()) break;
       const auto n_poor = n_below(mesh, rung, options.policy);
       polish(mesh, work, options, control, rung);
@@ -279,17 +324,12 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   const double floor = report_value(Metric::kMinDihedral, std::clamp(at_first.worst, 0.0, 8.0 / 9.0));
   if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
   control.set_fraction(0.1);
-  if (options.min_dihedral) return reach(mesh, work, options, as_asked, control, *options.min_dihedral);
-  // The worst angles first: the bulk stage, which knows only volume-length, can box them in. Few cells, so
-  // kind by kind, as towards a goal.
-  ImproveOptions early = options;
-  if (early.rounds == Rounds::kAuto) early.rounds = Rounds::kByKind;
-  polish(mesh, work, early, control, kEarlyGoal, kLargestShare);
-  if (options.coarsen) coarsen(mesh, work, options, control);
-  improve_bulk(mesh, work, options, control);
-  control.set_fraction(0.5);
-  climb(mesh, work, options, control, floor,
-        as_asked.raise_min_dihedral ? kAllEfforts[0] : little_effort(control));
+  const double goal = options.min_dihedral.value_or(kLargestGoal);
+  const bool few_miss = options.min_dihedral && !options.coarsen &&
+                        (options.iterations > 0 || share_below(mesh, goal, options) <= kManyMiss);
+  const PatchEffort& effort = as_asked.raise_min_dihedral ? kAllEfforts[0] : little_effort(control);
+  if (!few_miss) improve_all(mesh, work, options, control, floor, effort, goal);
+  if (options.min_dihedral) return reach(mesh, work, options, as_asked, control, goal, few_miss);
   if (as_asked.raise_min_dihedral) {
     control.forget_cell_bound();
     control.spare_nothing();
@@ -297,7 +337,9 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
     if (!options.raise_min_dihedral) {  // the bounds were those of the default run
       further = as_asked;
       further.min_cells = options.min_cells;  // what is left out now is missing for the last cells
-      if (further.max_cells == 0) further.max_cells = mesh.n_logical_cells() * kMostAtAnyCost / 100;
+      const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
+      if (further.max_cells == 0)
+        further.max_cells = frozen ? mesh.n_logical_cells() * kMostAtAnyCost / 100 : options.max_cells;
     }
     climb_while_it_helps(mesh, work, further, control);
   }

@@ -93,8 +93,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
                                options_.compat == Compat::kJpdc2013};
     const std::size_t n_cells = mesh_.n_logical_cells();
     round_options.may_lose = may_lose(n_cells);
-    if (options_.max_cells > 0)
-      round_options.may_gain = options_.max_cells - std::min(n_cells, options_.max_cells);
+    round_options.may_gain = may_gain(n_cells);
     Round<Op> round(mesh_, work_, round_options);
     const RoundCounts counts = run_round(round, make_op(), list);
     total += counts;

@@ -161,6 +161,12 @@ class Stage {
     return options_.min_cells > 0 ? n_cells - std::min(n_cells, options_.min_cells) : RoundOptions{}.may_lose;
   }
 
+  /// And add to one; see RoundOptions::may_gain.
+  std::size_t may_gain(std::size_t n_cells) const {
+    return options_.max_cells > 0 ? options_.max_cells - std::min(n_cells, options_.max_cells)
+                                  : RoundOptions{}.may_gain;
+  }
+
   /// Whether the bound on cells leaves room for a new vertex.
   bool has_room() const;
 

@@ -110,12 +110,15 @@ std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
     seeds.push_back(typename Op::Seed(e));
   RoundCounts counts;
   if (!seeds.empty()) {
-    Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
+    RoundOptions round_options{options_.policy, /*check_links=*/true, options_.seed};
+    round_options.may_gain = may_gain(mesh_.n_logical_cells());
+    Round<Op> round(mesh_, work_, round_options);
     const Op op{metric_, work_.quality, &surface};
     // The ends of the edges are asked for before the cells that name them are gone.
     std::map<Index, std::array<VertexHandle, 2>> ends;
     for (const auto& seed : seeds) ends[seed.edge.idx()] = mesh_.edge_vertices(seed.edge);
     counts = round.run(op, seeds);
+    if (counts.held_back > 0) control_.note_cell_bound();
     round.for_committed([&](const auto& plan, VertexHandle middle) {
       const auto [a, b] = ends.at(plan.seed.edge.idx());
       surface.was_split(a, b, middle, plan.place);

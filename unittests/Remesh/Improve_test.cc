@@ -110,6 +110,28 @@ TEST(Improve, GoalWithinReachIsReachedAndNoMoreIsDone) {
   EXPECT_GT(same, before.n_vertices() / 2);
 }
 
+/// Stages of a run towards a goal that is reached, in the order in which they began.
+std::vector<std::string> stages_towards(double goal, double jitter) {
+  TetMesh mesh = jittered(7, jitter, 1);
+  ImproveOptions options = serial();
+  options.min_dihedral = goal;
+  const Result result = improve(mesh, options);
+  EXPECT_TRUE(result.goal_reached) << goal;
+  EXPECT_GE(smallest_dihedral(mesh, {}), goal);
+  std::vector<std::string> stages;
+  for (const PassReport& pass : result.passes)
+    if (std::find(stages.begin(), stages.end(), pass.stage) == stages.end()) stages.push_back(pass.stage);
+  return stages;
+}
+
+TEST(Improve, AllCellsAreWorkedOnFirstWhereManyMissTheGoalAndLastWhereThatWasMissing) {
+  EXPECT_EQ(stages_towards(30, 0.2), (std::vector<std::string>{"polish"})) << "8 % miss it";
+  EXPECT_EQ(stages_towards(35, 0.2).at(0), "bulk") << "24 % miss it, none by much";
+  const auto missed = stages_towards(35, 0.15);  // by 12 %
+  EXPECT_EQ(missed.at(0), "polish");
+  EXPECT_EQ(missed.back(), "bulk");
+}
+
 TEST(Improve, AskingForMoreThanCanBeHadGivesNoLessThanAskingForWhatCan) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     generate::Arrays arrays = generate::cylinder(3, 8);

@@ -171,6 +171,7 @@ TEST(SurfaceRuns, FrozenSaysWhatTheSurfaceHoldsBackAndWhatWouldFreeIt) {
   const auto held = [](TetMesh mesh, SurfaceMode mode, double goal) {
     ImproveOptions options = with(mode);
     options.min_dihedral = goal;
+    options.ops = without(options.ops, Ops::kInsert);  // new vertices would mend most of them
     return improve(mesh, options);
   };
   const Result wedge = held(sheared(std::tan(78 * std::numbers::pi / 180), 0), SurfaceMode::kFrozen, 20);
@@ -393,12 +394,13 @@ TEST(SurfaceRuns, RaisingTheWorstAtAnyCostKeepsTheNumberOfCellsInBounds) {
   TetMesh bounded = first;
   const Result result = improve(bounded, options);
   EXPECT_GT(result.after.min_dihedral.min, 35);
-  EXPECT_LE(bounded.n_cells(), first.n_cells() * 119 * 150 / 10000);
+  EXPECT_LE(bounded.n_cells(), first.n_cells() * 119 / 100);
   EXPECT_GE(bounded.n_cells(), first.n_cells() * 81 / 100);
   options.max_cells = 100 * first.n_cells();
   TetMesh wider = first;
   improve(wider, options);
-  EXPECT_GT(wider.n_cells(), 2 * first.n_cells());
+  EXPECT_GT(wider.n_cells(), first.n_cells() * 119 / 100)
+      << bounded.n_cells() << ' ' << wider.n_cells() << ' ' << first.n_cells();
 }
 
 }  // namespace
