@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
 #include "Operators/Clusters.hh"
+#include "Surface/InputSurface.hh"
 
 namespace hfr::test {
 namespace {
@@ -214,6 +219,40 @@ TEST(SurfaceDistance, OfSurfacesThatAreShiftedIsTheShift) {
   const SurfaceDistance part = surface_distance(std::span(here).first(18), here, 0.1);
   EXPECT_LT(part.there, 1e-15);
   EXPECT_GT(part.back, 0.5);
+}
+
+/// As surface_distance() by its definition: every point of a triangle's grid against every other triangle.
+double furthest_of_all(std::span<const Triangle> from, std::span<const Triangle> to, double spacing) {
+  double largest = 0;
+  for (const Triangle& t : from) {
+    const double longest = std::max({norm(t[1] - t[0]), norm(t[2] - t[1]), norm(t[0] - t[2])});
+    const double cuts = std::ceil(longest / spacing);
+    for (double u = 0; u <= cuts; ++u) {
+      for (double v = 0; u + v <= cuts; ++v) {
+        const Vec3 x = t[0] + (u / cuts) * (t[1] - t[0]) + (v / cuts) * (t[2] - t[0]);
+        double least = std::numeric_limits<double>::infinity();
+        for (const Triangle& other : to) least = std::min(least, norm2(nearest_point(other, x) - x));
+        largest = std::max(largest, std::sqrt(least));
+      }
+    }
+  }
+  return largest;
+}
+
+TEST(SurfaceDistance, IsThatOfAllPointsFromAllTriangles) {
+  const TetMesh mesh = built(generate::box({5, 4, 3}));
+  const std::vector<Triangle> here = surface_triangles(mesh);
+  for (double bump : {0.0, 1e-9, 0.05}) {
+    TetMesh other = built(generate::box({4, 5, 4}));
+    for (VertexHandle v : other.boundary_vertices())
+      other.set_point(v, other.point(v) + Vec3{0, 0, bump * generate::random_unit(5, v.idx())});
+    const std::vector<Triangle> there = surface_triangles(other);
+    const SurfaceDistance found = surface_distance(here, there, 0.06);
+    const double tolerance = std::max(1e-12 * bump, 1e-16);
+    EXPECT_NEAR(found.there, furthest_of_all(here, there, 0.06), tolerance) << bump;
+    EXPECT_NEAR(found.back, furthest_of_all(there, here, 0.06), tolerance) << bump;
+    EXPECT_GE(found.back, 0.5 * bump);
+  }
 }
 
 }  // namespace
