@@ -30,18 +30,23 @@ constexpr std::size_t kManyMoves = 300;
 constexpr std::size_t kManyMovesShare = 8;
 constexpr double kMoveGain = 1.05;
 
+/// About how long SurfaceCollapse::may_gain() takes.
+constexpr double kMayGainNanoseconds = 1'000;
+
 /// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
 std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
-                                        const Worklist& list) {
+                                        const Workspace& work, const Worklist& list) {
   std::vector<VertexHandle> vertices;
+  std::vector<std::uint8_t> seen(mesh.n_vertices(), 0);
   for (Index c : list.cells()) {
     for (VertexHandle v : mesh.cell(CellHandle(c)).v) {
+      if (!work.frozen[v.idx()] || seen[v.idx()]) continue;  // the surface is frozen for what works inside
+      seen[v.idx()] = 1;
       const SurfaceKind kind = surface.freedom(v).kind;
       if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
     }
   }
   std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   return vertices;
 }
 
@@ -74,16 +79,14 @@ Worklist Stage<Metric>::changed_since(std::uint32_t since, Focus focus) {
 template <class Metric>
 template <class Allow>
 std::vector<EdgeHandle> Stage<Metric>::surface_edges(const Worklist& list, bool inside, Allow&& allow) const {
-  const SurfaceMesh& surface = *control_.surface();
   std::vector<EdgeHandle> seeds;
   for (Index c : list.cells()) {
     const auto& v = mesh_.cell(CellHandle(c)).v;
     for (Index e = 0; e < 6; ++e) {
       const VertexHandle a = v[kEdgeCorners[e][0]];
       const VertexHandle b = v[kEdgeCorners[e][1]];
-      if (surface.freedom(a).kind == SurfaceKind::kInside || surface.freedom(b).kind == SurfaceKind::kInside)
-        continue;
-      bool smallest = true;  // of the listed cells round the edge
+      if (!work_.frozen[a.idx()] || !work_.frozen[b.idx()]) continue;  // not of the surface
+      bool smallest = true;                                            // of the listed cells round the edge
       const auto look = [&](CellHandle other, VertexHandle, VertexHandle) {
         smallest = smallest && (!list.has(other) || other.idx() >= c);
         return smallest;
@@ -166,9 +169,15 @@ std::size_t Stage<Metric>::surface_collapses(int iteration, const Worklist& list
   using Op = SurfaceCollapse<Metric>;
   SurfaceMesh& surface = *control_.surface();
   const double start = control_.seconds();
-  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
-  drop_pinched(mesh_, work_.star_size, vertices, options_.policy);
+  const std::vector<VertexHandle> all = free_vertices(mesh_, surface, work_, list);
   std::vector<VertexHandle> targets;
+  const Op op{metric_, work_.quality, &surface, {}};
+  std::vector<VertexHandle> vertices;
+  const par::Policy by_cost = options_.policy.for_items_of(kMayGainNanoseconds);
+  for (std::size_t i : par::compact<std::size_t>(by_cost, all.size(),
+                                                 [&](std::size_t k) { return op.may_gain(mesh_, all[k]); }))
+    vertices.push_back(all[i]);
+  drop_pinched(mesh_, work_.star_size, vertices, options_.policy);
   std::vector<typename Op::Seed> seeds;
   for (VertexHandle v : vertices) {
     const auto first = static_cast<std::uint32_t>(targets.size());
@@ -177,7 +186,14 @@ std::size_t Stage<Metric>::surface_collapses(int iteration, const Worklist& list
     if (n > 0) seeds.push_back({v, first, n});
   }
   RoundCounts counts;
-  if (!seeds.empty()) {
+  const auto has_target = [&](VertexHandle v) {
+    std::vector<VertexHandle> only = {v};
+    drop_pinched(mesh_, work_.star_size, only, options_.policy);
+    if (!only.empty()) surface.collapse_targets(v, targets);
+    return !targets.empty();
+  };
+  // A round in which none of the legal collapses gains counts, too: the clock salts the ranks of later ones.
+  if (!seeds.empty() || std::any_of(all.begin(), all.end(), has_target)) {
     Round<Op> round(mesh_, work_, {options_.policy, /*check_links=*/true, options_.seed});
     counts = round.run(Op{metric_, work_.quality, &surface, targets}, seeds);
     round.for_committed(
@@ -192,7 +208,7 @@ template <class Metric>
 std::size_t Stage<Metric>::surface_moves(int iteration, const Worklist& list) {
   SurfaceMesh& surface = *control_.surface();
   const double start = control_.seconds();
-  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, list);
+  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, work_, list);
   const std::vector<VertexHandle> bound = take_bound(surface, vertices);
   RoundCounts counts;
   if (!bound.empty()) counts = periodic_moves(bound);
@@ -265,7 +281,7 @@ void Stage<Metric>::restore_volume() {
   constexpr double kEnough = 5e-5;  // of the volume
   SurfaceMesh& surface = *control_.surface();
   const Worklist all(mesh_, options_.policy, [](CellHandle) { return true; });
-  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, all);
+  std::vector<VertexHandle> vertices = free_vertices(mesh_, surface, work_, all);
   take_bound(surface, vertices);  // those of periodic patches stay
   for (int i = 1; i <= kMaxPasses && std::abs(surface.volume_gain()) > kEnough; ++i) {
     const double start = control_.seconds();

@@ -9,6 +9,8 @@
 namespace hfr {
 namespace {
 
+constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
+
 /// The cells that a collapse may write, and in two regions those of the smaller one first; of either region
 /// the ones behind the star first.
 struct Cluster {
@@ -106,6 +108,42 @@ bool gather_faces(const TetMesh& mesh, VertexHandle v, const Star& star, Faces& 
 }  // namespace
 
 template <class Metric>
+bool SurfaceCollapse<Metric>::may_gain(const TetMesh& mesh, VertexHandle v) const {
+  Star star;
+  FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
+  if (!mesh.gather_star(v, star) || !gather_faces(mesh, v, star, faces)) return false;
+  const auto n = static_cast<std::size_t>(star.size);
+  RawArray<std::array<VertexHandle, 3>, Star::kCapacity> link;
+  double old_worst = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < n; ++k) {
+    link[k] = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
+    old_worst = std::min(old_worst, quality[star.cells[k].idx()]);
+  }
+  FixedVector<VertexHandle, 3 * kMaxFaces> asked;
+  const auto gains = [&](VertexHandle onto) {
+    const Vec3 p = mesh.point(onto);
+    bool has_born = false;
+    for (std::size_t k = 0; k < n; ++k) {
+      const auto& f = link[k];
+      if (has(f, onto)) continue;
+      has_born = true;
+      if (metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p) > old_worst) continue;
+      std::swap(link[0], link[k]);  // a face that has ended one search is likely to end the next
+      return false;
+    }
+    return has_born;
+  };
+  for (const auto& f : faces) {
+    for (VertexHandle w : f) {
+      if (w == v || std::find(asked.begin(), asked.end(), w) != asked.end()) continue;
+      asked.push_back(w);
+      if (gains(w)) return true;
+    }
+  }
+  return false;
+}
+
+template <class Metric>
 void SurfaceCollapse<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope& out) const {
   Cluster cluster;
   gather_cluster(mesh, seed.vertex, cluster);
@@ -123,7 +161,7 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   if (cells.empty()) return std::nullopt;
   const auto n = static_cast<std::size_t>(star.size);
   const std::size_t n_behind = cells.size() - n;
-  FixedVector<std::array<VertexHandle, 3>, 64> faces;
+  FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
   if (!gather_faces(mesh, v, star, faces)) return std::nullopt;
 
   double old_worst = std::numeric_limits<double>::infinity();
@@ -147,7 +185,7 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
       worst = std::min(worst, metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p));
     }
     if (!(worst > plan.new_worst) || n_born == 0) continue;
-    FixedVector<Triangle, 64> dead, born;
+    FixedVector<Triangle, kMaxFaces> dead, born;
     bool meets_twice = false;  // an inner face (v, onto, x) whose edge (v, x) is on the surface
     for (const auto& f : faces) {
       Triangle t = {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
