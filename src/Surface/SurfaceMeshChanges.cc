@@ -34,6 +34,7 @@ void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among, std::vec
       if (leaves) homeless.push_back(s);
       return leaves;
     });
+    record(f).reach = record(f).samples.empty() ? 0.0 : enough;
   }
   for (Vec3 s : homeless) {
     std::size_t nearest = 0;
@@ -45,7 +46,10 @@ void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among, std::vec
         nearest = i;
       }
     }
-    if (least < std::numeric_limits<double>::infinity()) record(among[nearest]).samples.push_back(s);
+    if (!(least < std::numeric_limits<double>::infinity())) continue;
+    FaceRecord& home = record(among[nearest]);
+    home.samples.push_back(s);
+    home.reach = std::max(home.reach, std::sqrt(least));
   }
   for (std::size_t i = 0; i < among.size(); ++i) {
     const Vec3 middle = (1.0 / 3) * (triangles[i][0] + triangles[i][1] + triangles[i][2]);

@@ -63,6 +63,7 @@ struct FaceRecord {
   HalfFaceHandle inside;                 // where it was when last asked for
   std::uint32_t facet = 0;               // flat mode
   std::vector<Vec3> samples;             // of the input, free mode: points that were nearest to this face
+  double reach = 0;                      // and none of them is further from it
   std::uint32_t beneath = 0;             // free mode: a triangle of the input that lies about there
 };
 

@@ -12,6 +12,8 @@ using namespace surface;  // what SurfaceMesh is made of
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// The samples are judged by somewhat less than what is allowed, for what lies between them.
 constexpr double kBetween = 0.7;
+/// What is less than this share of a distance is so beyond rounding.
+constexpr double kSurely = 1 - 1e-9;
 /// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
 constexpr double kNotBack = 0.1;
 /// Share of the volume beyond which a change in the same direction is refused.
@@ -131,7 +133,15 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
     const FaceRecord& record = impl_->record(face);
     if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
       beneath.push_back(record.beneath);
-    if (born.size() == faces_dead.size()) last = i;
+    if (born.size() == faces_dead.size()) {
+      // Each point of the face as it was told last, which a move that has not been told yet may have changed,
+      // has one of the new triangle as near as the furthest that a corner goes.
+      double step2 = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        step2 = std::max(step2, norm2(born[i][k] - point(faces_dead[i][k])));
+      if (record.reach + std::sqrt(step2) <= kSurely * h) continue;
+      last = i;
+    }
     for (Vec3 s : record.samples) {
       const auto is_near = [&](const NearTriangle& t) { return t.is_within(s, h); };
       if (is_near(now[last])) continue;
