@@ -6,11 +6,14 @@
 
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
+#include "Operators/StarForm.hh"
 
 namespace hfr {
 namespace {
 
-constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
+constexpr std::size_t kMaxFaces = 64;   // of the surface round a vertex
+constexpr std::size_t kDirections = 8;  // of the search at one radius
+static_assert(2 * kDirections <= StarForm::kTrials);
 
 /// Two directions of length 1 that are normal to n and to each other. Exact zeros stay zeros, so that a
 /// vertex of a facet along two axes keeps the third coordinate to the last bit.
@@ -69,6 +72,29 @@ struct Patch {
   }
 };
 
+/// True when none of up to StarForm::kTrials places, which for_places(ask) tells relative to the vertex, has
+/// a star whose worst cell is better than `floor` > 0, beyond what rounding in another formula may do. All
+/// are looked at together.
+template <class ForPlaces>
+bool all_fall_short(StarForm& star, double floor, ForPlaces&& for_places) {
+  constexpr double kSurely = 1 - 1e-6;
+  StarForm::Trials x{}, y{}, z{}, worst;
+  std::size_t n = 0;
+  for_places([&](Vec3 place) {
+    x[n] = place.x;
+    y[n] = place.y;
+    z[n] = place.z;
+    ++n;
+  });
+  for (std::size_t i = n; i < StarForm::kTrials; ++i) {  // what is left repeats the last
+    x[i] = x[n - 1];
+    y[i] = y[n - 1];
+    z[i] = z[n - 1];
+  }
+  star.worst(x, y, z, kSurely * floor, worst);
+  return std::none_of(worst.begin(), worst.end(), [&](double w) { return w > kSurely * floor; });
+}
+
 }  // namespace
 
 template <class Metric>
@@ -118,17 +144,33 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
       for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - origin);
     double radius = 0.5 * length / (3.0 * static_cast<double>(link.size()));
     const auto uv = tangents(axis);
+    const auto places_at = [&](double r, Vec3 centre) {
+      FixedVector<Vec3, kDirections> places;
+      if (on_curve) {
+        for (double s : {1.0, -1.0}) places.push_back(centre + (s * r) * axis);
+        return places;
+      }
+      for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j)
+          if (i != 0 || j != 0) places.push_back(centre + r * ((i * 1.0) * uv[0] + (j * 1.0) * uv[1]));
+      return places;
+    };
+    std::optional<StarForm> star;
+    if (std::is_same_v<Metric, VolumeLength> && move.old_worst > 0) star.emplace(mesh, v, link);
     for (int level = 0; level < halvings;) {
       const Vec3 centre = place;
       bool better = false;
-      if (on_curve) {
-        for (double s : {1.0, -1.0}) better = consider(centre + (s * radius) * axis) || better;
-      } else {
-        for (int i = -1; i <= 1; ++i)
-          for (int j = -1; j <= 1; ++j)
-            if (i != 0 || j != 0)
-              better = consider(centre + radius * ((i * 1.0) * uv[0] + (j * 1.0) * uv[1])) || better;
+      const bool hopeless = star && all_fall_short(*star, worst_now, [&](auto&& ask) {
+                              for (double r : {radius, 0.5 * radius})
+                                for (Vec3 x : places_at(r, centre))
+                                  ask(surface->project(v, x + lift) - origin);
+                            });
+      if (hopeless) {
+        radius *= 0.25;
+        level += 2;
+        continue;
       }
+      for (Vec3 x : places_at(radius, centre)) better = consider(x) || better;
       if (better) continue;
       radius *= 0.5;
       ++level;
