@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "Commands.hh"
 #include "Console.hh"
@@ -138,6 +140,12 @@ ExitCode exit_code_of(const Result& result) {
   return result.invalid_cells.empty() ? ExitCode::kGoalMissed : ExitCode::kInvalidCells;
 }
 
+/// With a length of two digits that is no smaller.
+std::string round_up_option(std::string_view name, double length) {
+  const double unit = std::pow(10.0, std::floor(std::log10(length)) - 1);
+  return fmt::format("{} {:.2g}", name, std::ceil(length / unit) * unit);
+}
+
 /// One line that says why the exit code is not 0.
 std::string shortfall(const Result& result, const ImproveOptions& options) {
   std::string text;
@@ -153,6 +161,9 @@ std::string shortfall(const Result& result, const ImproveOptions& options) {
   if (!result.folded_faces.empty())
     text +=
         fmt::format("; {} boundary faces are folded onto one another", grouped(result.folded_faces.size()));
+  if (!result.invalid_cells.empty() && result.surface.unfold_needs > 0)
+    text += fmt::format("; the surface is folded over, and {} would let it be unfolded",
+                        round_up_option("--hausdorff", result.surface.unfold_needs));
   if (text.empty() && !result.goal_reached)
     text = options.min_dihedral
                ? fmt::format("the goal of {} degrees was not reached for every cell", *options.min_dihedral)

@@ -109,6 +109,7 @@ Json surface_json(const SurfaceReport& surface) {
   json["mode"] = surface.mode == SurfaceMode::kFlat ? "flat" : "free";
   json["bound"] = surface.bound;
   json["hausdorff"] = surface.hausdorff;
+  json["unfold_needs"] = surface.unfold_needs;
   json["diagonal"] = surface.diagonal;
   json["volume_change"] = surface.volume_change;
   json["feature_edges"] = surface.feature_edges;

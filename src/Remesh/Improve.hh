@@ -142,6 +142,9 @@ struct SurfaceReport {
   double bound = 0;      ///< largest distance that was allowed
   double hausdorff = 0;  ///< largest distance of the result from the input or of the input from the result
   double diagonal = 0;   ///< of the input's bounding box
+  /// Distance to allow (SurfaceOptions::hausdorff) for folds of the surface to be unfolded, where what was
+  /// allowed does not do; 0 otherwise.
+  double unfold_needs = 0;
   double volume_change = 0;  ///< of the enclosed volume, as a share of it
   std::size_t feature_edges = 0;
   std::size_t triangles_before = 0, triangles_after = 0;

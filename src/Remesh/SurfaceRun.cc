@@ -57,6 +57,7 @@ struct SurfaceRun::Impl {
   double volume = 0;
   std::map<int, double> regions;  // their volumes
   double bound = 0;               // largest distance allowed
+  double unfold_needs = 0;        // and what folds would take
   std::unique_ptr<SurfaceMesh> surface;
 };
 
@@ -82,6 +83,7 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
     pass.seeds = pass.candidates = done.n_folded;
     pass.winners = done.n_moved;
     if (done.n_folded > 0) passes.push_back(pass);
+    impl_->unfold_needs = done.needs;
     // What is left of the distance; the surface is taken as it is now.
     if (done.n_moved > 0 && wanted.mode == SurfaceMode::kFree)
       wanted.hausdorff = impl_->bound - done.distance;
@@ -96,6 +98,7 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   if (!impl_->surface) return report;
   report.mode = impl_->surface->options().mode;
   report.bound = impl_->bound;
+  report.unfold_needs = impl_->unfold_needs;
   report.feature_edges = impl_->surface->n_feature_edges();
   if (!impl_->measure) return report;
   const std::vector<Triangle> after = surface_triangles(mesh, impl_->policy);

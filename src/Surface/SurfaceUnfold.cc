@@ -2,12 +2,16 @@
 #include "Surface/SurfaceUnfold.hh"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
+#include "Surface/SurfaceLayers.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr {
@@ -16,10 +20,14 @@ namespace {
 using surface::Arrays;
 using surface::corners;
 using surface::scaled_normal;
+using surface::SurfaceLayers;
 using surface::unit;
 
 constexpr int kRings = 6;  // round folded faces that take part
 constexpr int kSight = 4;  // rings that are known to be about as wide as folds
+/// The same round all that a wide fold covers, one after the other until its distance is small enough.
+constexpr std::array<int, 5> kRingsOfCovered = {2, 1, 3, 4, 6};
+constexpr int kRingsAtOnce = 24;  // that a fold is looked for in
 constexpr int kPasses = 300;
 constexpr int kPatience = 60;  // passes without fewer folds
 /// A face is folded over when its normal is turned by more than this (cosine) against the area vector of what
@@ -54,7 +62,7 @@ class Stars {
 class Unfolder {
  public:
   Unfolder(const Arrays& arrays, const SurfaceOptions& options)
-      : arrays_(arrays), options_(options), stars_(arrays) {
+      : arrays_(arrays), options_(options), stars_(arrays), reach_(surface::mean_edge(arrays)) {
     points_.assign(arrays.points.begin(), arrays.points.end());
   }
 
@@ -94,23 +102,45 @@ class Unfolder {
     return flags;
   }
 
-  /// Vertices to spread: those of folded faces and some rings round them, if nothing holds them.
-  std::vector<VertexHandle> region(const std::vector<std::uint8_t>& folds) const {
-    std::vector<std::uint8_t> in(points_.size(), 0), near(arrays_.faces.size(), 0);
-    for (std::size_t i = 0; i < folds.size(); ++i)
-      if (folds[i])
-        for (VertexHandle v : arrays_.faces[i]) in[v.idx()] = 1;
-    for (int ring = 0; ring < kRings; ++ring) {
-      for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
-        for (VertexHandle v : arrays_.faces[i]) near[i] = near[i] || in[v.idx()];
-      for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
-        if (near[i])
-          for (VertexHandle v : arrays_.faces[i]) in[v.idx()] = 1;
+  /// What rings of faces do not see of wide folds: takes in what hangs together with the flagged faces and is
+  /// against all layers near to it. Returns how many faces that are.
+  std::size_t grow(std::vector<std::uint8_t>& folds) const {
+    std::size_t all = 0;
+    for (std::size_t n = 1; n > 0; all += n)
+      n = take_in(folds, [](const SurfaceLayers& layers, const Triangle& t) { return layers.against(t); });
+    return all;
+  }
+  /// The flagged faces with all that lies on or under them.
+  std::vector<std::uint8_t> covered(std::vector<std::uint8_t> folds) const {
+    const auto several = [](const SurfaceLayers& layers, const Triangle& t) { return layers.covered(t); };
+    while (take_in(folds, several) > 0) {
     }
-    const std::vector<std::uint8_t> held = held_vertices(folds);
+    return folds;
+  }
+  /// How many of the faces are against all layers near to them.
+  std::size_t n_against(std::span<const std::uint32_t> faces) const {
+    const SurfaceLayers layers(arrays_, points_, reach_, faces);
+    return static_cast<std::size_t>(std::count_if(faces.begin(), faces.end(), [&](std::uint32_t f) {
+      return layers.against(corners(points_, arrays_.faces[f]));
+    }));
+  }
+  /// Faces at the vertices, ascending.
+  std::vector<std::uint32_t> faces_at(const std::vector<VertexHandle>& vertices) const {
+    std::vector<std::uint32_t> faces;
+    for (VertexHandle v : vertices) faces.insert(faces.end(), stars_.at(v).begin(), stars_.at(v).end());
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
+  }
+
+  /// Vertices to spread: those of flagged faces and some rings round them, if nothing holds them. In a wide
+  /// fold what turns between two sides of which all layers together do not is no feature.
+  std::vector<VertexHandle> region(const std::vector<std::uint8_t>& folds, int rings, bool wide) const {
+    const std::vector<VertexHandle> in = vertices_round(folds, rings);
+    const std::vector<std::uint8_t> held = held_vertices(folds, wide ? faces_at(in) : Faces{});
     std::vector<VertexHandle> vertices;
-    for (std::size_t v = 0; v < in.size(); ++v)
-      if (in[v] && !held[v]) vertices.push_back(VertexHandle(v));
+    std::copy_if(in.begin(), in.end(), std::back_inserter(vertices),
+                 [&](VertexHandle v) { return !held[v.idx()]; });
     return vertices;
   }
 
@@ -128,16 +158,63 @@ class Unfolder {
       points_[v.idx()] = shape.nearest((1 / n) * sum).point;
     }
   }
-  void set(std::vector<Vec3> points) { points_ = std::move(points); }
 
  private:
+  using Faces = std::vector<std::uint32_t>;
+
+  /// Vertices of the flagged faces and of so many rings round them, ascending.
+  std::vector<VertexHandle> vertices_round(const std::vector<std::uint8_t>& folds, int rings) const {
+    std::vector<std::uint8_t> in(points_.size(), 0), near(arrays_.faces.size(), 0);
+    for (std::size_t i = 0; i < folds.size(); ++i)
+      if (folds[i])
+        for (VertexHandle v : arrays_.faces[i]) in[v.idx()] = 1;
+    for (int ring = 0; ring < rings; ++ring) {
+      for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
+        for (VertexHandle v : arrays_.faces[i]) near[i] = near[i] || in[v.idx()];
+      for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
+        if (near[i])
+          for (VertexHandle v : arrays_.faces[i]) in[v.idx()] = 1;
+    }
+    std::vector<VertexHandle> vertices;
+    for (std::size_t v = 0; v < in.size(); ++v)
+      if (in[v]) vertices.push_back(VertexHandle(v));
+    return vertices;
+  }
+  /// Flags faces that can be come to from flagged ones over faces of that kind, some rings far.
+  template <class Kind>
+  std::size_t take_in(std::vector<std::uint8_t>& folds, Kind&& kind) const {
+    const Faces near = faces_at(vertices_round(folds, kRingsAtOnce));
+    const SurfaceLayers layers(arrays_, points_, reach_, near);
+    std::vector<std::uint8_t> asked(arrays_.faces.size(), 1);
+    for (std::uint32_t f : near) asked[f] = folds[f];
+    Faces rim, next;
+    for (std::uint32_t f : near)
+      if (folds[f]) rim.push_back(f);
+    std::size_t n = 0;
+    for (; !rim.empty(); rim.swap(next)) {
+      next.clear();
+      for (std::uint32_t i : rim)
+        for (VertexHandle v : arrays_.faces[i])
+          for (std::uint32_t f : stars_.at(v)) {
+            if (asked[f]) continue;
+            asked[f] = 1;
+            if (!kind(layers, corners(points_, arrays_.faces[f]))) continue;
+            folds[f] = 1;
+            next.push_back(f);
+            ++n;
+          }
+    }
+    return n;
+  }
   std::vector<Vec3> normals() const {  // as long as twice the areas
     std::vector<Vec3> all;
     for (const auto& f : arrays_.faces) all.push_back(scaled_normal(corners(points_, f)));
     return all;
   }
-  /// Fixed ones, and those on features other than edges of folded faces.
-  std::vector<std::uint8_t> held_vertices(const std::vector<std::uint8_t>& folds) const {
+  /// Fixed ones, and those on features other than edges of folded faces. `layered`: faces at whose edges all
+  /// layers count.
+  std::vector<std::uint8_t> held_vertices(const std::vector<std::uint8_t>& folds,
+                                          const Faces& layered) const {
     std::vector<std::uint8_t> held(points_.size(), 0);
     for (VertexHandle v : arrays_.locked_vertices) held[v.idx()] = 1;
     for (const auto& e : arrays_.locked_edges)
@@ -156,14 +233,20 @@ class Unfolder {
         at_fold[v.idx()] = at_fold[v.idx()] || folds[i];
         round[v.idx()] = round[v.idx()] + normal[i];
       }
-    const double cosine = std::cos(0.5 * options_.feature_angle * (std::numbers::pi / 180.0));
+    const double radians = options_.feature_angle * (std::numbers::pi / 180.0);
+    const SurfaceLayers layers(arrays_, points_, reach_, layered);
+    const auto turns = [&](VertexHandle c, VertexHandle d) {
+      if (layered.empty())
+        return !(dot(unit(round[c.idx()]), unit(round[d.idx()])) > std::cos(0.5 * radians));
+      return !(dot(layers.outward(points_[c.idx()]), layers.outward(points_[d.idx()])) > std::cos(radians));
+    };
     for (const surface::Edge& e : surface::find_features(arrays_, turning, 0).edges) {
       if (!e.feature) continue;
       if (e.manifold && !e.locked && arrays_.patch[e.f[0]] == arrays_.patch[e.f[1]]) {
         const VertexHandle c = arrays_.faces[e.f[0]][(e.k[0] + 2U) % 3];
         const VertexHandle d = arrays_.faces[e.f[1]][(e.k[1] + 2U) % 3];
         if (at_fold[e.a.idx()] || at_fold[e.b.idx()] || at_fold[c.idx()] || at_fold[d.idx()]) continue;
-        if (dot(unit(round[c.idx()]), unit(round[d.idx()])) > cosine) continue;
+        if (!turns(c, d)) continue;
       }
       held[e.a.idx()] = held[e.b.idx()] = 1;
     }
@@ -173,6 +256,7 @@ class Unfolder {
   const Arrays& arrays_;
   const SurfaceOptions& options_;
   Stars stars_;
+  double reach_;  // of layers
   std::vector<Vec3> points_;
 };
 
@@ -182,45 +266,98 @@ std::vector<Triangle> triangles(const Arrays& arrays, std::span<const Vec3> poin
   return all;
 }
 
+/// What one way to unfold comes to.
+struct Attempt {
+  std::vector<Vec3> points;  ///< empty: no fewer folds
+  std::size_t n_left = 0;
+  double distance = 0;
+  std::vector<VertexHandle> vertices;
+};
+
+/// The surface as it was, the shape to keep, and ways to unfold it.
+class Attempts {
+ public:
+  Attempts(const Arrays& arrays, const SurfaceOptions& options, par::Policy policy)
+      : arrays_(arrays),
+        options_(options),
+        policy_(policy),
+        before_(triangles(arrays, arrays.points)),
+        shape_(before_) {}
+
+  /// Round the flagged faces. `wide`: what counts are faces that are against all layers near to them.
+  Attempt spread(const std::vector<std::uint8_t>& flagged, std::size_t n_folded, int rings, bool wide) const {
+    constexpr double kSpacing = 0.25;
+    Unfolder unfolder(arrays_, options_);
+    Attempt attempt{.points = {}, .n_left = n_folded, .vertices = unfolder.region(flagged, rings, wide)};
+    const std::vector<std::uint32_t> faces = unfolder.faces_at(attempt.vertices);
+    int idle = 0;
+    for (int pass = 0; pass < kPasses && attempt.n_left > 0 && idle < kPatience; ++pass) {
+      unfolder.spread(attempt.vertices, shape_);
+      std::size_t n = 0;
+      if (wide)
+        n = unfolder.n_against(faces);
+      else
+        unfolder.folded(n);
+      ++idle;
+      if (n >= attempt.n_left) continue;
+      attempt.n_left = n;
+      attempt.points = unfolder.points();
+      idle = 0;
+    }
+    if (!attempt.points.empty())
+      attempt.distance = surface_distance(before_, triangles(arrays_, attempt.points),
+                                          kSpacing * surface::mean_edge(arrays_), policy_)
+                             .hausdorff();
+    return attempt;
+  }
+
+ private:
+  const Arrays& arrays_;
+  const SurfaceOptions& options_;
+  par::Policy policy_;
+  std::vector<Triangle> before_;
+  InputSurface shape_;
+};
+
 /// The new points of the vertices, or nothing.
 std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptions& options,
                                         par::Policy policy, Unfolding& done) {
-  constexpr double kSpacing = 0.25;
   constexpr double kCoplanar = 1e-12;  // of the mean edge: what flat mode allows
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
-  Unfolder unfolder(arrays, options);
-  const std::vector<std::uint8_t> folds = unfolder.folded(done.n_folded);
+  const Unfolder unfolder(arrays, options);
+  std::vector<std::uint8_t> folds = unfolder.folded(done.n_folded);
   done.n_left = done.n_folded;
   if (done.n_folded == 0) return std::nullopt;
-  const std::vector<VertexHandle> vertices = unfolder.region(folds);
-  const std::vector<Triangle> before = triangles(arrays, arrays.points);
-  const InputSurface shape(before);
-  std::vector<Vec3> best;
-  int idle = 0;
-  for (int pass = 0; pass < kPasses && done.n_left > 0 && idle < kPatience; ++pass) {
-    unfolder.spread(vertices, shape);
-    std::size_t n = 0;
-    unfolder.folded(n);
-    ++idle;
-    if (n >= done.n_left) continue;
-    done.n_left = n;
-    best = unfolder.points();
-    idle = 0;
-  }
-  if (best.empty()) return std::nullopt;
-  const double edge = surface::mean_edge(arrays);
   const double bound = options.mode == SurfaceMode::kFlat
-                           ? kCoplanar * edge
+                           ? kCoplanar * surface::mean_edge(arrays)
                            : kShare * surface::allowed_distance(arrays, options);
-  const SurfaceDistance moved = surface_distance(before, triangles(arrays, best), kSpacing * edge, policy);
-  if (!(moved.hausdorff() <= bound)) {
+  const Attempts attempts(arrays, options, policy);
+  const auto fits = [&](const Attempt& a) { return !a.points.empty() && a.distance <= bound; };
+  std::vector<std::uint8_t> flagged = folds;
+  done.n_folded += unfolder.grow(flagged);
+  Attempt best;
+  if (done.n_folded == done.n_left) best = attempts.spread(folds, done.n_folded, kRings, false);
+  double least = std::numeric_limits<double>::infinity();  // distance that unfolding takes
+  if (!fits(best) || best.n_left > 0) {
+    const std::vector<std::uint8_t> covered = unfolder.covered(flagged);
+    for (int rings : kRingsOfCovered) {
+      Attempt next = attempts.spread(covered, done.n_folded, rings, true);
+      if (!next.points.empty() && next.n_left == 0) least = std::min(least, next.distance);
+      if (!fits(next) || (fits(best) && best.n_left <= next.n_left)) continue;
+      best = std::move(next);
+      if (best.n_left == 0) break;
+    }
+  }
+  if (!fits(best)) {
     done.n_left = done.n_folded;
+    if (options.mode == SurfaceMode::kFree && std::isfinite(least)) done.needs = least / kShare;
     return std::nullopt;
   }
-  done.distance = moved.hausdorff();
-  for (VertexHandle v : vertices)
-    if (best[v.idx()] != arrays.points[v.idx()]) ++done.n_moved;
-  return best;
+  done.n_left = best.n_left;
+  done.distance = best.distance;
+  for (VertexHandle v : best.vertices)
+    if (best.points[v.idx()] != arrays.points[v.idx()]) ++done.n_moved;
+  return best.points;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ struct Unfolding {
   std::size_t n_left = 0;    ///< of these and others, after it
   std::size_t n_moved = 0;   ///< vertices
   double distance = 0;       ///< measured, of the new surface from the old one or the other way round
+  double needs = 0;          ///< distance to allow for no fold to be left; 0 = not known, or none is
 };
 
 /// Where the surface is folded over onto itself, as by too strong a twist, its vertices are spread evenly and
