@@ -235,10 +235,16 @@ class Unfolder {
       }
     const double radians = options_.feature_angle * (std::numbers::pi / 180.0);
     const SurfaceLayers layers(arrays_, points_, reach_, layered);
-    const auto turns = [&](VertexHandle c, VertexHandle d) {
+    // As far from the edge as layers reach: the far corners of long triangles lie round the next bend.
+    const auto beside = [&](Vec3 on_edge, VertexHandle v) {
+      const Vec3 to = points_[v.idx()] - on_edge;
+      return layers.outward(on_edge + std::min(1.0, reach_ / norm(to)) * to);
+    };
+    const auto turns = [&](const surface::Edge& e, VertexHandle c, VertexHandle d) {
       if (layered.empty())
         return !(dot(unit(round[c.idx()]), unit(round[d.idx()])) > std::cos(0.5 * radians));
-      return !(dot(layers.outward(points_[c.idx()]), layers.outward(points_[d.idx()])) > std::cos(radians));
+      const Vec3 on_edge = 0.5 * (points_[e.a.idx()] + points_[e.b.idx()]);
+      return !(dot(beside(on_edge, c), beside(on_edge, d)) > std::cos(radians));
     };
     for (const surface::Edge& e : surface::find_features(arrays_, turning, 0).edges) {
       if (!e.feature) continue;
@@ -246,7 +252,7 @@ class Unfolder {
         const VertexHandle c = arrays_.faces[e.f[0]][(e.k[0] + 2U) % 3];
         const VertexHandle d = arrays_.faces[e.f[1]][(e.k[1] + 2U) % 3];
         if (at_fold[e.a.idx()] || at_fold[e.b.idx()] || at_fold[c.idx()] || at_fold[d.idx()]) continue;
-        if (!turns(c, d)) continue;
+        if (!turns(e, c, d)) continue;
       }
       held[e.a.idx()] = held[e.b.idx()] = 1;
     }

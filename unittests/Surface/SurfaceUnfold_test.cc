@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Surface/SurfaceUnfold.hh"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "Surface/Meshes.hh"
+#include "Surface/SurfaceMesh.hh"
+
+namespace hfr::test {
+namespace {
+
+SurfaceOptions within(double hausdorff) {
+  SurfaceOptions options;
+  options.mode = SurfaceMode::kFree;
+  options.hausdorff = hausdorff;
+  return options;
+}
+
+TetMesh wrung(double degrees) { return built(generate::cylinder(6, 16, 1, 2, 0, degrees)); }
+
+/// Triangles of the cylinder's side that look at its axis.
+std::size_t n_inwards(const TetMesh& mesh) {
+  std::size_t n = 0;
+  for (const Triangle& t : surface_triangles(mesh)) {
+    const Vec3 middle = (1.0 / 3.0) * (t[0] + t[1] + t[2]);
+    const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
+    if (std::abs(normal.z) > 0.9 * norm(normal)) continue;  // one of the ends
+    if (middle.x * normal.x + middle.y * normal.y < 0) ++n;
+  }
+  return n;
+}
+
+TEST(SurfaceUnfold, FindsAllOfAFoldThatIsWiderThanTheRingsRoundAFace) {
+  for (double degrees : {75.0, 90.0, 110.0}) {
+    TetMesh mesh = wrung(degrees);
+    const std::size_t folded = n_inwards(mesh);
+    ASSERT_GT(folded, 80U) << degrees;
+    const Unfolding done = unfold_surface(mesh, within(1e-9));
+    EXPECT_GE(done.n_folded, folded) << degrees;
+    EXPECT_LE(done.n_folded, folded + 8) << degrees;
+  }
+}
+
+TEST(SurfaceUnfold, SpreadsAWideFoldUntilNothingLooksInwards) {
+  for (double degrees : {65.0, 75.0, 90.0}) {
+    const TetMesh folded = wrung(degrees);
+    TetMesh mesh = folded;
+    const Unfolding done = unfold_surface(mesh, within(0.04));
+    EXPECT_GT(done.n_moved, 0U) << degrees;
+    EXPECT_EQ(done.n_left, 0U) << degrees;
+    EXPECT_EQ(n_inwards(mesh), 0U) << degrees;
+    EXPECT_EQ(done.needs, 0) << degrees;
+    EXPECT_LE(done.distance, 0.8 * 0.04);
+    const double measured =
+        surface_distance(surface_triangles(folded), surface_triangles(mesh), 0.05).hausdorff();
+    EXPECT_LE(measured, 0.04) << degrees;
+    for (VertexHandle v : folded.vertices())  // the ends and their sharp edges
+      if (folded.point(v).z == 0 || folded.point(v).z == 2) EXPECT_EQ(mesh.point(v), folded.point(v));
+  }
+}
+
+TEST(SurfaceUnfold, LeavesAFoldThatTheDistanceDoesNotAllowAsItIsAndSaysWhichWould) {
+  const TetMesh folded = wrung(90);
+  TetMesh mesh = folded;
+  const Unfolding done = unfold_surface(mesh, within(0.005));
+  EXPECT_EQ(done.n_moved, 0U);
+  EXPECT_EQ(done.n_left, done.n_folded);
+  EXPECT_TRUE(std::ranges::equal(mesh.points(), folded.points()));
+  ASSERT_GT(done.needs, 0.005);
+  const Unfolding again = unfold_surface(mesh, within(1.001 * done.needs));
+  EXPECT_GT(again.n_moved, 0U);
+  EXPECT_EQ(again.n_left, 0U);
+  EXPECT_EQ(n_inwards(mesh), 0U);
+}
+
+TEST(SurfaceUnfold, IsTheSameForAnyNumberOfThreads) {
+  TetMesh one = wrung(90);
+  const Unfolding alone = unfold_surface(one, within(0.04), {.threads = 1});
+  for (int threads : {2, 3, 7}) {
+    TetMesh mesh = wrung(90);
+    const Unfolding done = unfold_surface(mesh, within(0.04), {.threads = threads});
+    EXPECT_EQ(done.distance, alone.distance) << threads;
+    EXPECT_TRUE(std::ranges::equal(mesh.points(), one.points())) << threads;
+  }
+}
+
+TEST(SurfaceUnfold, TouchesNeitherAFrozenSurfaceNorOneWithoutFolds) {
+  TetMesh mesh = wrung(90);
+  EXPECT_EQ(unfold_surface(mesh, SurfaceOptions{}).n_folded, 0U);
+  TetMesh smooth = wrung(40);
+  const Unfolding none = unfold_surface(smooth, within(0.04));
+  EXPECT_EQ(none.n_folded, 0U);
+  EXPECT_EQ(none.n_moved, 0U);
+  EXPECT_TRUE(std::ranges::equal(smooth.points(), wrung(40).points()));
+}
+
+}  // namespace
+}  // namespace hfr::test
