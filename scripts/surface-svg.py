@@ -4,7 +4,7 @@
 
 Usage: scripts/surface-svg.py OUT.svg A.off [B.off ...]     seen along +x; OFF is written by hfremesh convert.
 docs/pictures/folded-cylinder.svg comes from:
-  hfremesh generate cylinder --n 6 16 --wring 70 -o c.mesh
+  hfremesh generate cylinder --n 6 16 --wring 90 -o c.mesh
   hfremesh c.mesh -o free.mesh --surface free --hausdorff 0.03
   hfremesh convert c.mesh -o c.off; hfremesh convert free.mesh -o free.off
   scripts/surface-svg.py docs/pictures/folded-cylinder.svg c.off free.off

@@ -164,6 +164,20 @@ TEST(ExitCodes, FourWhenInvalidCellsRemainAndTheyAreNamed) {
   EXPECT_EQ(tool.run("check out.mesh").code, 4);
 }
 
+#ifdef HFR_HAS_SURFACE
+// The commands of docs/surface.md.
+TEST(ExitCodes, FourForASideThatIsFoldedOverAndZeroOnceTheSurfaceIsFree) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate cylinder --n 6 16 --wring 90 -o c.mesh").code, 0);
+  const Outcome frozen = tool.run("c.mesh -o frozen.mesh");
+  EXPECT_EQ(frozen.code, 4) << frozen.err;
+  EXPECT_THAT(frozen.err, HasSubstr("boundary faces are folded onto one another"));
+  const Outcome free = tool.run("c.mesh -o free.mesh --surface free --hausdorff 0.03");
+  EXPECT_EQ(free.code, 0) << free.err;
+  EXPECT_EQ(tool.run("check free.mesh").code, 0);
+}
+#endif
+
 TEST(ExitCodes, FiveWhenTheTimeIsUpAndTheMeshIsWritten) {
   Tool tool;
   ASSERT_EQ(tool.run("generate cavity --n 8 8 8 -o in.mesh").code, 0);
