@@ -262,9 +262,16 @@ bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const 
     now = &as_asked;
     if (attempt(as_asked)) return true;
   }
-  if (!from_the_worst || control.stopped() || options.iterations > 0) return false;
-  if (!control.surface() && share_below(mesh, goal, options) <= kFewMiss) return false;
-  improve_all(mesh, work, *now, control, smallest(), little_effort(control), goal);
+  if (control.stopped() || options.iterations > 0) return false;
+  if (control.surface()) {
+    // Work for more makes room that the goal's last cells lack.
+    const auto onwards = from_the_worst ? improve_all : climb;
+    onwards(mesh, work, *now, control, smallest(), little_effort(control), kLargestGoal);
+  } else if (from_the_worst && share_below(mesh, goal, options) > kFewMiss) {
+    improve_all(mesh, work, *now, control, smallest(), little_effort(control), goal);
+  } else {
+    return false;
+  }
   return polish(mesh, work, *now, control, goal);
 }
 

@@ -252,7 +252,11 @@ void coarsen(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 
 void restore_volume(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   if (!control.surface() || options.surface.mode != SurfaceMode::kFree) return;
-  Stage<MinSine2>(mesh, work, options, control, MinSine2{}, "volume").restore_volume();
+  // A goal that is met must not be lost for an obtuse angle that is worse.
+  if (options.min_dihedral)
+    Stage<MinDihedral>(mesh, work, options, control, MinDihedral{}, "volume").restore_volume();
+  else
+    Stage<MinSine2>(mesh, work, options, control, MinSine2{}, "volume").restore_volume();
 }
 
 void refine(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,

@@ -312,6 +312,7 @@ std::size_t Stage<Metric>::surface_pass(int, Focus, bool) {
 #endif
 
 template void Stage<MinSine2>::restore_volume();
+template void Stage<MinDihedral>::restore_volume();
 #define HFR_INSTANTIATE(Metric)                                                   \
   template std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus); \
   template std::size_t Stage<Metric>::surface_pass(int iteration, Focus focus, bool with_node);

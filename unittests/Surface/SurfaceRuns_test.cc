@@ -69,7 +69,9 @@ TEST(SurfaceRuns, FlatKeepsRegionsPatchesAndLabels) {
   for (const auto& [region, v] : region_volumes(mesh)) EXPECT_NEAR(v, volumes.at(region), 1e-12);
   const auto areas_after = patch_areas(mesh);
   ASSERT_EQ(areas_after.size(), areas.size());
-  for (const auto& [patch, area] : areas_after) EXPECT_NEAR(area, areas.at(patch), 1e-12);
+  for (const auto& [patch, area] : areas)
+    EXPECT_GT(area, 1 - 1e-12) << "more where triangles are folded over";
+  for (const auto& [patch, area] : areas_after) EXPECT_NEAR(area, 1, 1e-12);
   EXPECT_EQ(places_of(mesh, mesh.labels().edges), edges);
   // No label is left on what is no face of the surface any more.
   for (const auto& entry : mesh.labels().faces.entries()) {
