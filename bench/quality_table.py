@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tool makes of each test mesh with a frozen surface, beside the best figures of other programs.
+"""What the tool makes of each test mesh, with a frozen surface unless told otherwise, beside the best figures of other programs.
 
 For each mesh a row before, a row after the default run and one after --min-dihedral max, or after other goals: cells, smallest and
 largest dihedral, 0.1, 1 and 5 % percentile of each cell's smallest one, user seconds of the whole program, the exit
 code of `hfremesh check`, and what keeps the cells below the first angle that was missed. Angles in degrees.
 
 usage: bench/quality_table.py TOOL MESHES [--threads N] [--only NAME,...] [--runs default,max,DEGREES]
-                              [--time-limit S] [--output FILE]
+                              [--surface frozen,flat,free] [--time-limit S] [--output FILE]
 MESHES is the folder of the test meshes; those that are not there are left out.
 """
 import argparse
+import itertools
 import json
 import pathlib
 import resource
@@ -83,6 +84,7 @@ def main():
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--only", help="names of rows, comma-separated")
     parser.add_argument("--runs", default="default,max", help="which runs, comma-separated: default, max, or degrees of a goal")
+    parser.add_argument("--surface", default="frozen", help="modes, comma-separated; every run is done in each")
     parser.add_argument("--time-limit", type=float, default=600, help="seconds that max may take for a mesh")
     parser.add_argument("--output", help="Markdown file to write (default: standard output)")
     options = parser.parse_args()
@@ -101,21 +103,22 @@ def main():
             print(f"quality_table: {name} is not there", file=sys.stderr)
             continue
         before_is_out = False
-        for run in options.runs.split(","):
+        for mode, run in itertools.product(options.surface.split(","), options.runs.split(",")):
             arguments = {"default": [], "max": ["--min-dihedral", "max", "--time-limit", str(options.time_limit)]
                          }.get(run, ["--min-dihedral", run])
             report_file, out = folder / "report.json", folder / "out.mesh"
             report_file.unlink(missing_ok=True)
             start = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
             subprocess.run([options.tool, mesh, "-o", out, "-q", "-j", str(options.threads), "--json", report_file,
-                            *arguments], stderr=subprocess.DEVNULL)
+                            "--surface", mode, *arguments], stderr=subprocess.DEVNULL)
             seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - start
             report = json.loads(report_file.read_text())
             checked = subprocess.run([options.tool, "check", out, "-q"], stderr=subprocess.DEVNULL).returncode
             if not before_is_out:
                 lines.append(f"| {name} | before | {figures(report['before'], report['before']['cells'])} | | | |")
                 before_is_out = True
-            lines.append(f"| | {run} | {figures(report['after'], report['before']['cells'])} | {seconds:.2f} | {checked} | "
+            label = run if mode == "frozen" else f"{mode}, {run}"
+            lines.append(f"| | {label} | {figures(report['after'], report['before']['cells'])} | {seconds:.2f} | {checked} | "
                          f"{limits_of(report)} |")
             print(lines[-1], file=sys.stderr)
         if peer:
