@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kMaxFaces = 64;   // of the surface round a vertex
 constexpr std::size_t kDirections = 8;  // of the search at one radius
+/// Steps of one search where a cell is inverted: it gets less so for ever, ever further away.
+constexpr int kMostSteps = 100;
 static_assert(2 * kDirections <= StarForm::kTrials);
 
 /// Two directions of length 1 that are normal to n and to each other. Exact zeros stay zeros, so that a
@@ -157,6 +159,7 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
     };
     std::optional<StarForm> star;
     if (std::is_same_v<Metric, VolumeLength> && move.old_worst > 0) star.emplace(mesh, v, link);
+    int n_steps = 0;
     for (int level = 0; level < halvings;) {
       const Vec3 centre = place;
       bool better = false;
@@ -171,7 +174,7 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
         continue;
       }
       for (Vec3 x : places_at(radius, centre)) better = consider(x) || better;
-      if (better) continue;
+      if (better && (move.old_worst > 0 || ++n_steps < kMostSteps)) continue;
       radius *= 0.5;
       ++level;
     }

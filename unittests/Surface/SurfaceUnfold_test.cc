@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "HalfFace/Check.hh"
+#include "Remesh/Improve.hh"
 #include "Surface/Meshes.hh"
 #include "Surface/SurfaceMesh.hh"
 
@@ -79,6 +81,20 @@ TEST(SurfaceUnfold, LeavesAFoldThatTheDistanceDoesNotAllowAsItIsAndSaysWhichWoul
   EXPECT_GT(again.n_moved, 0U);
   EXPECT_EQ(again.n_left, 0U);
   EXPECT_EQ(n_inwards(mesh), 0U);
+}
+
+TEST(SurfaceUnfold, RunEndsWhereTheDistanceIsTooSmall) {
+  // A vertex of an inverted cell made it less so for ever, ever further away: for minutes.
+  TetMesh mesh = built(generate::cylinder(4, 12, 1, 2, 0, /*wring=*/120));
+  ImproveOptions options;
+  options.policy = {};
+  options.surface.mode = SurfaceMode::kFree;
+  const Result result = improve(mesh, options);
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_FALSE(result.invalid_cells.empty());
+  EXPECT_FALSE(result.folded_faces.empty());
+  EXPECT_GT(result.surface.unfold_needs, result.surface.bound);
+  EXPECT_LE(result.surface.hausdorff, result.surface.bound);
 }
 
 TEST(SurfaceUnfold, IsTheSameForAnyNumberOfThreads) {
