@@ -107,10 +107,12 @@ double share_below(const TetMesh& mesh, double degrees, const ImproveOptions& op
          static_cast<double>(mesh.n_logical_cells());
 }
 
-/// With a surface that may change, what many cells suffer from can be mended, too.
-double largest_share(const ImproveOptions& options) {
-  constexpr double kWithSurface = 0.35;
-  return is_free(options) ? kWithSurface : kLargestShare;
+/// With a surface that may change its shape, what many cells suffer from can be mended, too. Beyond the angle
+/// that such runs are for, that is dear: noisy surfaces would cost twice what they cost frozen.
+double largest_share(const ImproveOptions& options, double rung) {
+  constexpr double kFreeUpTo = 20, kUpToThere = 0.35, kBeyond = 0.2;
+  if (!is_free(options)) return kLargestShare;
+  return rung > kFreeUpTo ? kBeyond : kUpToThere;
 }
 
 void validate(const ImproveOptions& options) {
@@ -149,7 +151,7 @@ void climb_rungs(TetMesh& mesh, Workspace& work, const ImproveOptions& options, 
     // Beyond what most meshes come to, only from a rung that was reached: many cells lie below the next.
     if (rung > kCommonRung && now < below) break;
     below = rung;
-    polish(mesh, work, options, control, rung, largest_share(options));
+    polish(mesh, work, options, control, rung, largest_share(options, rung));
     now = smallest_dihedral(mesh, options.policy);
   }
 }
@@ -170,7 +172,7 @@ bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Ru
     const bool asked_for = options.coarsen || options.min_dihedral;
     if (now >= goal || (rung > kReliefRung && !asked_for) || control.stopped()) break;
     if (now >= rung) continue;
-    if (share_below(mesh, rung, options) > largest_share(options)) break;
+    if (share_below(mesh, rung, options) > largest_share(options, rung)) break;
     const auto search = [&](const PatchEffort& how) {
       if (now < rung && search_patches(mesh, work, options, control, rung, how)) now = smallest();
     };
