@@ -2,7 +2,8 @@
 #ifndef HFR_PARALLEL_BACKEND_HH
 #define HFR_PARALLEL_BACKEND_HH
 
-/// What a thread library has to do for src/Parallel; one of the Backend*.cc files is compiled.
+/// What a thread library has to do for src/Parallel; one of the Backend*.cc files is compiled. It defines
+/// what Interleave.hh declares, too.
 namespace hfr::par::detail {
 
 /// Threads that the process may use; 0 when loops always run serially.

@@ -2,6 +2,7 @@
 #include <omp.h>
 
 #include "Parallel/Backend.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr::par::detail {
 
@@ -12,5 +13,8 @@ void backend_parts(int parts, void (*body)(void*, int), void* context) {
 #pragma omp parallel for num_threads(parts) schedule(static, 1)
   for (int part = 0; part < parts; ++part) body(context, part);
 }
+
+const bool kInterleaves = false;
+void interleave() {}
 
 }  // namespace hfr::par::detail

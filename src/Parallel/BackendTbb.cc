@@ -5,6 +5,7 @@
 #include <tbb/task_arena.h>
 
 #include "Parallel/Backend.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr::par::detail {
 
@@ -19,5 +20,8 @@ void backend_parts(int parts, void (*body)(void*, int), void* context) {
       },
       tbb::simple_partitioner());
 }
+
+const bool kInterleaves = false;
+void interleave() {}
 
 }  // namespace hfr::par::detail

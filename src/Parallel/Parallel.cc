@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "Parallel/Backend.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr::par {
 
@@ -39,9 +40,12 @@ void run_parts(int parts, void (*body)(void*, int), void* context) {
 void run_blocks(int n_threads, std::size_t n_blocks, void (*body)(void*, std::size_t), void* context) {
   std::atomic<std::size_t> next{0};
   parts(n_threads, [&](int) {
-    for (std::size_t b = next.fetch_add(1, std::memory_order_relaxed); b < n_blocks;
-         b = next.fetch_add(1, std::memory_order_relaxed))
+    for (;;) {
+      before_shared_access();
+      const std::size_t b = next.fetch_add(1, std::memory_order_relaxed);
+      if (b >= n_blocks) break;
       body(context, b);
+    }
   });
 }
 

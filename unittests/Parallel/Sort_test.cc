@@ -20,7 +20,7 @@ TEST(StableSort, IsThatOfTheStandardLibraryForAnyNumberOfThreads) {
   std::vector<KeyIndex> scratch;
   std::size_t n_equal = 0;
   for (const std::uint64_t mask : {0xffULL, 0xff00ff00ULL, ~0ULL, 0ULL}) {
-    for (const std::size_t n : {0U, 1U, 2U, 100U, 5000U, 70000U}) {
+    for (const std::size_t n : {0U, 1U, 2U, 100U, 511U, 512U, 513U, 5000U, 70000U}) {
       std::vector<KeyIndex> wanted = random_items(n, mask);
       std::stable_sort(wanted.begin(), wanted.end(),
                        [](const KeyIndex& a, const KeyIndex& b) { return a.key < b.key; });
