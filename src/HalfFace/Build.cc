@@ -5,8 +5,10 @@
 // table in cache. The result depends on the input alone, not on threads.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
+#include "HalfFace/NonManifold.hh"
 #include "HalfFace/TetMesh.hh"
 
 namespace hfr {
@@ -105,7 +107,7 @@ class MeshBuilder {
     mesh_.points_ = std::move(points);
   }
 
-  TetMesh run(BuildReport* report) {
+  TetMesh run(BuildReport* report, NonManifold non_manifold) {
     if (input_.size() > HalfFaceHandle::kInvalid / 12)
       throw ResourceLimit(std::to_string(input_.size()) +
                           " cells are too many for 32-bit indices; build with HFR_INDEX64=ON");
@@ -125,6 +127,8 @@ class MeshBuilder {
     if (n_conflicts > 0 || lone) mended.reoriented = turned_by_themselves(mended.flipped);
     set_hooks();
     mesh_.vertex_status_.assign(mesh_.points_.size(), 0);
+    if (non_manifold == NonManifold::kSplit) mended.copied = split_pinched(mesh_);
+    refuse_double_edges(non_manifold);
     if (report) *report = std::move(mended);
     return std::move(mesh_);
   }
@@ -279,6 +283,18 @@ class MeshBuilder {
                        std::to_string(twin(bad).idx()) + " have the same four vertices; remove one");
   }
 
+  void refuse_double_edges(NonManifold non_manifold) const {
+    const std::optional<DoubleEdge> edge = find_double_edge(mesh_, policy_);
+    if (!edge) return;
+    throw InvalidInput(
+        "the edge of vertices " + std::to_string(edge->vertices[0].idx()) + " and " +
+        std::to_string(edge->vertices[1].idx()) + " exists twice, once with cell " +
+        std::to_string(edge->cells[0].idx()) + ", once with cell " + std::to_string(edge->cells[1].idx()) +
+        ", and cells go all the way round it; remove the cells of one" +
+        (non_manifold == NonManifold::kSplit ? ", since those of both its vertices connect through faces"
+                                             : ", or split the mesh apart there (--split-nonmanifold)"));
+  }
+
   bool opposite_order(HalfFaceHandle h, HalfFaceHandle m) const {
     const auto a = mesh_.halfface_vertices(h);
     const auto b = mesh_.halfface_vertices(m);
@@ -414,8 +430,8 @@ class MeshBuilder {
 };
 
 TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells, par::Policy policy,
-              BuildReport* report) {
-  return MeshBuilder(std::move(points), cells, policy).run(report);
+              BuildReport* report, NonManifold non_manifold) {
+  return MeshBuilder(std::move(points), cells, policy).run(report, non_manifold);
 }
 
 }  // namespace hfr

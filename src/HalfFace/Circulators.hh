@@ -3,16 +3,21 @@
 #define HFR_HALFFACE_CIRCULATORS_HH
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <iterator>
 #include <ranges>
+#include <type_traits>
 
 #include "HalfFace/TetMesh.hh"
 
 /// Ranges over the things of a mesh and over neighbourhoods. All are views in the sense of C++20, forward,
-/// and none allocates: what a star needs is kept inside the range object (4.7 kB for vertex_vertices, 2.4 kB
+/// and none allocates: what a star needs is kept inside the range object (1 kB for vertex_vertices, 2.4 kB
 /// for other vertex_… ranges, 0.5 kB for rings), so iterators of those are valid while the range object
-/// lives. A range sees the mesh as it is when it is read; writing to the mesh ends its validity.
+/// lives, and a temporary gives none: `for (c : mesh.vertex_cells(v))` and
+/// `const auto star = mesh.vertex_cells(v); star.begin()` compile, `mesh.vertex_cells(v).begin()` does not.
+/// Iterators over the whole mesh (cells(), boundary_edges() …) own what they need. A range sees the mesh as
+/// it is when it is read; writing to the mesh ends its validity.
 namespace hfr {
 
 /// A few items by value: neighbours of something that has at most N of them.
@@ -20,8 +25,10 @@ template <class T, std::size_t N>
 class FixedList {
  public:
   void push_back(T item) { items_[size_++] = item; }
-  const T* begin() const { return items_.data(); }
-  const T* end() const { return items_.data() + size_; }
+  const T* begin() const& { return items_.data(); }
+  const T* end() const& { return items_.data() + size_; }
+  void begin() const&& = delete;  ///< would outlive the list: give it a name
+  void end() const&& = delete;
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   T operator[](std::size_t i) const { return items_[i]; }
@@ -71,27 +78,138 @@ template <class Derived, class Value>
 class PlaceRange : public std::ranges::view_base {
  public:
   using iterator = PlaceIterator<Derived, Value>;
-  iterator begin() const { return {&derived(), 0}; }
-  iterator end() const { return {&derived(), derived().limit()}; }
+  iterator begin() const& { return {&derived(), 0}; }
+  iterator end() const& { return {&derived(), derived().limit()}; }
+  void begin() const&& = delete;  ///< would outlive the range: give it a name
+  void end() const&& = delete;
   bool empty() const { return begin() == end(); }
   /// Number of items, by counting them.
-  std::size_t count() const { return static_cast<std::size_t>(std::ranges::distance(begin(), end())); }
+  std::size_t count() const {
+    std::size_t n = 0;
+    for (iterator i = begin(); i != end(); ++i) ++n;
+    return n;
+  }
 
  private:
   const Derived& derived() const { return static_cast<const Derived&>(*this); }
 };
 
+/// Forward iterator over the things of a mesh that exist, by ascending handle. Owns what it needs.
+template <class H, bool kOnlyBoundary>
+class MeshIterator {
+ public:
+  using value_type = H;
+  using reference = H;
+  using pointer = void;
+  using difference_type = std::ptrdiff_t;
+  using iterator_category = std::input_iterator_tag;
+  using iterator_concept = std::forward_iterator_tag;
+
+  MeshIterator() = default;
+  MeshIterator(const TetMesh& mesh, std::size_t place, std::size_t limit)
+      : mesh_(&mesh), place_(place), limit_(limit) {
+    skip();
+  }
+  H operator*() const { return H(place_); }
+  MeshIterator& operator++() {
+    ++place_;
+    skip();
+    return *this;
+  }
+  MeshIterator operator++(int) {
+    MeshIterator old = *this;
+    ++*this;
+    return old;
+  }
+  friend bool operator==(const MeshIterator& a, const MeshIterator& b) { return a.place_ == b.place_; }
+
+ private:
+  void skip() {
+    while (place_ < limit_ && !wanted(H(place_))) ++place_;
+  }
+  bool wanted(H h) const { return mesh_->exists(h) && (!kOnlyBoundary || mesh_->is_boundary(h)); }
+
+  const TetMesh* mesh_ = nullptr;
+  std::size_t place_ = 0, limit_ = 0;
+};
+
+/// The same for edges and half-edges, cell by cell: one look at a cell tells which edges are its to name.
+template <class H, bool kOnlyBoundary>
+class MeshEdgeIterator {
+ public:
+  using value_type = H;
+  using reference = H;
+  using pointer = void;
+  using difference_type = std::ptrdiff_t;
+  using iterator_category = std::input_iterator_tag;
+  using iterator_concept = std::forward_iterator_tag;
+
+  MeshEdgeIterator() = default;
+  MeshEdgeIterator(const TetMesh& mesh, std::size_t cell, std::size_t n_cells)
+      : mesh_(&mesh), cell_(cell), n_cells_(n_cells) {
+    if (cell_ < n_cells_) left_ = edges_of(cell_);
+    skip();
+  }
+  H operator*() const {
+    const std::size_t edge = 6 * cell_ + static_cast<unsigned>(std::countr_zero(left_));
+    return H(kSides * edge + side_);
+  }
+  MeshEdgeIterator& operator++() {
+    if (++side_ < kSides) return *this;
+    side_ = 0;
+    left_ &= left_ - 1;
+    skip();
+    return *this;
+  }
+  MeshEdgeIterator operator++(int) {
+    MeshEdgeIterator old = *this;
+    ++*this;
+    return old;
+  }
+  friend bool operator==(const MeshEdgeIterator& a, const MeshEdgeIterator& b) {
+    return a.cell_ == b.cell_ && a.left_ == b.left_ && a.side_ == b.side_;
+  }
+
+ private:
+  static constexpr unsigned kSides = std::same_as<H, HalfEdgeHandle> ? 2 : 1;
+
+  void skip() {
+    while (left_ == 0 && cell_ < n_cells_)
+      if (++cell_ < n_cells_) left_ = edges_of(cell_);
+  }
+  unsigned edges_of(std::size_t cell) const {
+    unsigned edges = mesh_->first_edges(CellHandle(cell));
+    if constexpr (kOnlyBoundary)
+      for (unsigned k = 0; k < 6; ++k)
+        if ((edges >> k & 1U) != 0 && !mesh_->is_boundary(EdgeHandle(6 * cell + k))) edges ^= 1U << k;
+    return edges;
+  }
+
+  const TetMesh* mesh_ = nullptr;
+  std::size_t cell_ = 0, n_cells_ = 0;
+  unsigned left_ = 0;  // local edges of the cell, this one and those to come
+  unsigned side_ = 0;
+};
+
 /// Every thing of one kind, or every one on the boundary, by ascending handle.
 template <class H, bool kOnlyBoundary>
-class MeshRange : public PlaceRange<MeshRange<H, kOnlyBoundary>, H> {
+class MeshRange : public std::ranges::view_base {
  public:
+  static constexpr bool kByCell = std::same_as<H, EdgeHandle> || std::same_as<H, HalfEdgeHandle>;
+  using iterator =
+      std::conditional_t<kByCell, MeshEdgeIterator<H, kOnlyBoundary>, MeshIterator<H, kOnlyBoundary>>;
+
+  /// limit: handles end before it; for edges and half-edges, cells.
   MeshRange(const TetMesh& mesh, std::size_t limit) : mesh_(&mesh), limit_(limit) {}
-  std::size_t limit() const { return limit_; }
-  bool has(std::size_t place) const {
-    const H h(place);
-    return mesh_->exists(h) && (!kOnlyBoundary || mesh_->is_boundary(h));
+  iterator begin() const { return {*mesh_, 0, limit_}; }
+  iterator end() const { return {*mesh_, limit_, limit_}; }
+  bool empty() const { return begin() == end(); }
+  /// Number of items, by counting them.
+  std::size_t count() const {
+    std::size_t n = 0;
+    for (iterator i = begin(); i != end(); ++i) ++n;
+    return n;
   }
-  H item(std::size_t place) const { return H(place); }
 
  private:
   const TetMesh* mesh_;
@@ -137,7 +255,8 @@ class StarRange : public PlaceRange<StarRange<Policy>, typename Policy::Value> {
   Star star_;
 };
 
-/// The vertices that share an edge with a vertex, each once, in order of discovery from the hook.
+/// The vertices that share an edge with a vertex, each once, in order of discovery from the hook: those of
+/// its cell, then what each cell adds to the one before.
 class VertexVertices : public PlaceRange<VertexVertices, VertexHandle> {
  public:
   VertexVertices(const TetMesh& mesh, VertexHandle v);
@@ -154,8 +273,7 @@ class VertexVertices : public PlaceRange<VertexVertices, VertexHandle> {
   VertexHandle v_;
   bool scan_ = false;
   std::size_t limit_ = 0;
-  RawArray<VertexHandle, Star::kCapacity + 2>
-      neighbours_;  // a further cell brings at most one further vertex
+  RawArray<VertexHandle, Star::kCapacity + 3> neighbours_;  // three of the first cell, one of each other
 };
 
 /// Forward iterator over a RingRange.
@@ -215,10 +333,16 @@ class RingRange : public std::ranges::view_base {
     const bool kept = mesh.gather_ring(mesh.ring_place(e), ring_);
     n_cells_ = kept ? ring_.size : mesh.start_large_ring(mesh.ring_place(e), ring_);
   }
-  iterator begin() const { return {this, 0}; }
-  iterator end() const { return {this, n_cells_}; }
+  iterator begin() const& { return {this, 0}; }
+  iterator end() const& { return {this, n_cells_}; }
+  void begin() const&& = delete;  ///< would outlive the range: give it a name
+  void end() const&& = delete;
   bool empty() const { return false; }
-  std::size_t count() const { return static_cast<std::size_t>(std::ranges::distance(begin(), end())); }
+  std::size_t count() const {
+    std::size_t n = 0;
+    for (iterator i = begin(); i != end(); ++i) ++n;
+    return n;
+  }
   /// True when the cells go all the way round, false when the edge is on the boundary.
   bool is_closed() const { return ring_.closed; }
 
@@ -343,14 +467,14 @@ inline std::array<VertexHandle, 3> vertices_of(const TetMesh& mesh, HalfFaceHand
 }
 
 inline AllRange<VertexHandle> TetMesh::vertices() const { return {*this, n_vertices()}; }
-inline AllRange<EdgeHandle> TetMesh::edges() const { return {*this, 6 * n_cells()}; }
-inline AllRange<HalfEdgeHandle> TetMesh::halfedges() const { return {*this, 12 * n_cells()}; }
+inline AllRange<EdgeHandle> TetMesh::edges() const { return {*this, n_cells()}; }
+inline AllRange<HalfEdgeHandle> TetMesh::halfedges() const { return {*this, n_cells()}; }
 inline AllRange<FaceHandle> TetMesh::faces() const { return {*this, 4 * n_cells()}; }
 inline AllRange<HalfFaceHandle> TetMesh::halffaces() const { return {*this, 4 * n_cells()}; }
 inline AllRange<CellHandle> TetMesh::cells() const { return {*this, n_cells()}; }
 inline BoundaryRange<VertexHandle> TetMesh::boundary_vertices() const { return {*this, n_vertices()}; }
-inline BoundaryRange<EdgeHandle> TetMesh::boundary_edges() const { return {*this, 6 * n_cells()}; }
-inline BoundaryRange<HalfEdgeHandle> TetMesh::boundary_halfedges() const { return {*this, 12 * n_cells()}; }
+inline BoundaryRange<EdgeHandle> TetMesh::boundary_edges() const { return {*this, n_cells()}; }
+inline BoundaryRange<HalfEdgeHandle> TetMesh::boundary_halfedges() const { return {*this, n_cells()}; }
 inline BoundaryRange<FaceHandle> TetMesh::boundary_faces() const { return {*this, 4 * n_cells()}; }
 inline BoundaryRange<HalfFaceHandle> TetMesh::boundary_halffaces() const { return {*this, 4 * n_cells()}; }
 inline BoundaryRange<CellHandle> TetMesh::boundary_cells() const { return {*this, n_cells()}; }
@@ -401,5 +525,8 @@ inline FixedList<CellHandle, 2> TetMesh::face_cells(FaceHandle f) const {
 }
 
 }  // namespace hfr
+
+template <class H, bool kOnlyBoundary>
+inline constexpr bool std::ranges::enable_borrowed_range<hfr::MeshRange<H, kOnlyBoundary>> = true;
 
 #endif

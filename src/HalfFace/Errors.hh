@@ -38,6 +38,12 @@ class ResourceLimit : public Error {
   using Error::Error;
 };
 
+/// A fault of the library itself: what it made breaks a rule that it keeps. Worth a report.
+class InternalError : public Error {
+ public:
+  using Error::Error;
+};
+
 }  // namespace hfr
 
 /// Precondition of a public function; always on; throws hfr::InvalidInput.

@@ -40,13 +40,16 @@ void require_box(Counts n, Vec3 low, Vec3 high) {
 constexpr std::array<std::array<unsigned, 4>, 6> kKuhn = {
     {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 1, 7, 5}, {0, 4, 7, 6}, {0, 2, 7, 3}}};
 
-std::vector<Tet> kuhn_cells(Counts n) {
+/// Cells of the cubes (i, j, k) with has_cube(j, k), of which there are n_cubes.
+template <class HasCube>
+std::vector<Tet> kuhn_cells(Counts n, std::size_t n_cubes, HasCube&& has_cube) {
   const Index row = n[0] + 1;
   const Index layer = row * (n[1] + 1);
   std::vector<Tet> cells;
-  cells.reserve(std::size_t{6} * n[0] * n[1] * n[2]);
+  cells.reserve(6 * n_cubes);
   for (Index k = 0; k < n[2]; ++k)
-    for (Index j = 0; j < n[1]; ++j)
+    for (Index j = 0; j < n[1]; ++j) {
+      if (!has_cube(j, k)) continue;
       for (Index i = 0; i < n[0]; ++i)
         for (const auto& corners : kKuhn) {
           Tet& cell = cells.emplace_back();
@@ -55,6 +58,7 @@ std::vector<Tet> kuhn_cells(Counts n) {
             cell[c] = (k + (bits >> 2)) * layer + (j + (bits >> 1 & 1)) * row + i + (bits & 1);
           }
         }
+    }
   return cells;
 }
 
@@ -192,7 +196,8 @@ Arrays jittered_box(Counts counts, double jitter, std::uint64_t seed, Vec3 low, 
         }
         mesh.points.push_back(p);
       }
-  mesh.cells = kuhn_cells(counts);
+  mesh.cells =
+      kuhn_cells(counts, std::size_t{counts[0]} * counts[1] * counts[2], [](Index, Index) { return true; });
   return mesh;
 }
 
@@ -310,6 +315,8 @@ Arrays cylinder(Index n_radial, Index n_axial, double radius, double height, dou
 
 Arrays fandisk(Counts counts, double jitter, std::uint64_t seed) {
   constexpr double kLevel = 0.5;
+  require_countable(18.0 * static_cast<double>(counts[0]) * static_cast<double>(counts[1]) *
+                    static_cast<double>(counts[2]));
   const Counts grid = {counts[0], 2 * counts[1], 2 * counts[2]};
   require_box(grid, {0, 0, 0}, {1, 1, 1});
   HFR_REQUIRE(std::isfinite(jitter), "the jitter must be a finite number");
@@ -336,27 +343,25 @@ Arrays fandisk(Counts counts, double jitter, std::uint64_t seed) {
                                           : kLevel + (top - kLevel) * (along.z - 1);
     return {x, r * s, z};
   };
-  Arrays all;
+  // Without the cubes above the low half, and their vertices.
+  Arrays mesh;
+  mesh.cells = kuhn_cells(grid, std::size_t{3} * counts[0] * counts[1] * counts[2],
+                          [&](Index j, Index k) { return j < counts[1] || k < counts[2]; });
+  std::vector<Index> number(
+      (std::size_t{grid[0]} + 1) * (std::size_t{grid[1]} + 1) * (std::size_t{grid[2]} + 1),
+      VertexHandle::kInvalid);
+  for (const Tet& cell : mesh.cells)
+    for (Index v : cell) number[v] = 0;
+  std::size_t v = 0;
   for (Index k = 0; k <= grid[2]; ++k)
     for (Index j = 0; j <= grid[1]; ++j)
-      for (Index i = 0; i <= grid[0]; ++i) all.points.push_back(place({i, j, k}, all.points.size()));
-  // Without the cubes above the low half, and their vertices.
-  const std::vector<Tet> cells = kuhn_cells(grid);
-  std::vector<Index> number(all.points.size(), VertexHandle::kInvalid);
-  Arrays mesh;
-  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-    const std::size_t cube = cell / 6;
-    if (cube / grid[0] % grid[1] >= counts[1] && cube / grid[0] / grid[1] >= counts[2]) continue;
-    mesh.cells.push_back(cells[cell]);
-    for (Index v : cells[cell]) number[v] = 0;
-  }
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] != 0) continue;
-    number[v] = static_cast<Index>(mesh.points.size());
-    mesh.points.push_back(all.points[v]);
-  }
+      for (Index i = 0; i <= grid[0]; ++i, ++v) {
+        if (number[v] != 0) continue;
+        number[v] = static_cast<Index>(mesh.points.size());
+        mesh.points.push_back(place({i, j, k}, v));
+      }
   for (Tet& cell : mesh.cells)
-    for (Index& v : cell) v = number[v];
+    for (Index& corner : cell) corner = number[corner];
   return mesh;
 }
 

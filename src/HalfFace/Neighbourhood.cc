@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Queries of TetMesh that are more than a line.
 #include <algorithm>
+#include <bit>
 
 #include "HalfFace/TetMesh.hh"
 
 namespace hfr {
 
-std::size_t TetMesh::n_edges() const { return edges().count(); }
+std::size_t TetMesh::n_edges() const {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < cells_.size(); ++i)
+    n += static_cast<std::size_t>(std::popcount(first_edges(CellHandle(i))));
+  return n;
+}
 std::size_t TetMesh::n_faces() const { return faces().count(); }
 
 int TetMesh::genus() const {
@@ -72,14 +78,39 @@ bool TetMesh::is_boundary(HalfEdgeHandle e) const {
   return !at.cell.is_valid();
 }
 
+/// True when no cell of the ring is smaller than the one that it is entered by.
+static bool is_first_in_ring(const TetMesh& mesh, RingPlace start) {
+  RingPlace at = mesh.next_in_ring(start);
+  for (; at.cell.is_valid(); at = mesh.next_in_ring(at)) {
+    if (at.cell < start.cell) return false;
+    if (at.cell == start.cell) return true;
+  }
+  for (at = mesh.previous_in_ring(start); at.cell.is_valid(); at = mesh.previous_in_ring(at))
+    if (at.cell < start.cell) return false;
+  return true;
+}
+
+unsigned TetMesh::first_edges(CellHandle c) const {
+  const Cell& k = cell(c);
+  if (!k.v[0].is_valid()) return 0;
+  unsigned smaller = 0;  // corners that a smaller cell lies across from; an invalid mate is larger than any
+  for (unsigned i = 0; i < 4; ++i) smaller |= static_cast<unsigned>(k.mate[i].idx() / 4 < c.idx()) << i;
+  unsigned found = 0;
+  for (unsigned local = 0; local < 6; ++local) {
+    const auto [p, q] = kEdgeOpposite[local];
+    if ((smaller >> p & 1U) != 0 || (smaller >> q & 1U) != 0) continue;
+    if (is_first_in_ring(*this, {c, p, q})) found |= 1U << local;
+  }
+  return found;
+}
+
 bool TetMesh::exists(EdgeHandle e) const {
   const CellHandle c(e.idx() / 6);
   if (!exists(c)) return false;
-  const int local = static_cast<int>(e.idx() % 6);
-  bool smallest = true;
-  const auto go_on = [&](CellHandle d, VertexHandle, VertexHandle) { return smallest = !(d < c); };
-  if (!walk_ring(c, local, go_on) && smallest) walk_ring_back(c, local, go_on);
-  return smallest;
+  const auto [p, q] = kEdgeOpposite[e.idx() % 6];
+  const auto& mate = cell(c).mate;
+  if (mate[p].idx() / 4 < c.idx() || mate[q].idx() / 4 < c.idx()) return false;
+  return is_first_in_ring(*this, {c, p, q});
 }
 
 EdgeHandle TetMesh::edge_in_cell(CellHandle c, int local_edge) const {
@@ -172,6 +203,14 @@ bool TetMesh::is_incident(FaceHandle f, EdgeHandle e) const {
   return std::count(v.begin(), v.end(), ends[0]) + std::count(v.begin(), v.end(), ends[1]) == 2;
 }
 
+std::array<VertexHandle, 3> TetMesh::halfface_vertices(HalfFaceHandle h, VertexHandle from) const {
+  const auto v = halfface_vertices(h);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (v[i] == from) return {v[i], v[(i + 1) % 3], v[(i + 2) % 3]};
+  throw InvalidInput("halfface_vertices: vertex " + std::to_string(from.idx()) +
+                     " is none of the half-face's");
+}
+
 // --- cells ---
 
 std::array<VertexHandle, 4> TetMesh::cell_vertices(CellHandle c, VertexHandle v) const {
@@ -215,10 +254,58 @@ bool TetMesh::is_boundary(VertexHandle v) const {
 
 // --- by vertices ---
 
+/// A cell of both vertices, sought from the hook of a by crossing the face at a that b lies farthest behind.
+/// Takes a few steps where a's cells are positive. An invalid handle says no more than that it was not found
+/// that way.
+static CellHandle walk_towards(const TetMesh& mesh, VertexHandle a, VertexHandle b) {
+  constexpr int kSteps = 16;
+  const Vec3 from = mesh.point(a);
+  const Vec3 direction = mesh.point(b) - from;
+  CellHandle c = mesh.hook(a);
+  for (int step = 0; step < kSteps; ++step) {
+    const Cell& k = mesh.cell(c);
+    if (k.has(b)) return c;
+    const auto& corners = kFaceCorners[k.own_corner(a)];
+    std::array<Vec3, 3> side;
+    for (std::size_t i = 0; i < 3; ++i) side[i] = mesh.point(k.v[corners[i]]) - from;
+    double farthest = 0;
+    HalfFaceHandle exit;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double behind = dot(direction, cross(side[(i + 1) % 3], side[(i + 2) % 3]));
+      if (!(behind > farthest) || !k.mate[corners[i]].is_valid()) continue;
+      farthest = behind;
+      exit = k.mate[corners[i]];
+    }
+    if (!exit.is_valid()) return {};
+    c = cell_of(exit);
+  }
+  return {};
+}
+
+/// The same for two to four vertices: on from the edge of the first two round its ring.
+template <std::size_t N>
+static CellHandle walk_to_cell(const TetMesh& mesh, const std::array<VertexHandle, N>& wanted) {
+  CellHandle c = walk_towards(mesh, wanted[0], wanted[1]);
+  if (!c.is_valid()) c = walk_towards(mesh, wanted[1], wanted[0]);
+  if (N == 2 || !c.is_valid()) return c;
+  const auto corner = [&](VertexHandle v) { return static_cast<std::size_t>(mesh.cell(c).corner(v)); };
+  const int local = kEdgeOfCorners[corner(wanted[0])][corner(wanted[1])];
+  if (local == 6) return {};
+  CellHandle found;
+  const auto seek = [&](CellHandle d, VertexHandle, VertexHandle) {
+    const Cell& k = mesh.cell(d);
+    if (std::all_of(wanted.begin(), wanted.end(), [&](VertexHandle w) { return k.has(w); })) found = d;
+    return !found.is_valid();
+  };
+  if (!mesh.walk_ring(c, local, seek) && !found.is_valid()) mesh.walk_ring_back(c, local, seek);
+  return found;
+}
+
 template <std::size_t N>
 CellHandle TetMesh::find_cell_with(const std::array<VertexHandle, N>& wanted) const {
   const auto exists_here = [&](VertexHandle v) { return exists(v) && hook(v).is_valid(); };
   if (!std::all_of(wanted.begin(), wanted.end(), exists_here)) return {};
+  if (const CellHandle near = walk_to_cell(*this, wanted); near.is_valid()) return near;
   for (VertexHandle v : wanted) {  // should v pinch the mesh, the thing may hang on the others alone
     const StarRange<policy::StarCells> star = vertex_cells(v);
     for (CellHandle c : star) {
@@ -271,25 +358,70 @@ CellHandle TetMesh::find_cell(const std::array<VertexHandle, 4>& wanted) const {
 
 // --- vertices round a vertex ---
 
-VertexVertices::VertexVertices(const TetMesh& mesh, VertexHandle v) : mesh_(&mesh), v_(v) {
-  Star star;
-  if (!mesh.gather_star(v, star)) {
-    scan_ = mesh.hook(v).is_valid();
-    limit_ = scan_ ? 4 * mesh.n_cells() : 0;
-    return;
+/// Fewer handles than there are slots.
+template <class H, std::size_t kSlots>
+class SmallSet {
+ public:
+  SmallSet() { std::fill(slot_.begin(), slot_.end(), H()); }
+  /// 1 when it was not there. Without a branch that depends on the answer, which nobody can foretell.
+  unsigned enter(H h) {
+    std::size_t at = (static_cast<std::uint32_t>(h.idx()) * 0x9e3779b1U >> 16) % kSlots;
+    while (slot_[at].is_valid() && slot_[at] != h) at = (at + 1) % kSlots;
+    const unsigned is_new = slot_[at].is_valid() ? 0 : 1;
+    slot_[at] = h;
+    return is_new;
   }
-  constexpr unsigned kMask = 1023;  // at most a quarter full
-  std::array<std::uint16_t, kMask + 1> slot{};
-  for (int i = 0; i < star.size; ++i) {
-    for (VertexHandle w : mesh.cell(star.cells[static_cast<std::size_t>(i)]).v) {
-      if (w == v) continue;
-      unsigned at = (static_cast<std::uint32_t>(w.idx()) * 0x9e3779b1U >> 16) & kMask;
-      while (slot[at] != 0 && neighbours_[slot[at] - 1U] != w) at = (at + 1) & kMask;
-      if (slot[at] != 0) continue;
-      neighbours_[limit_] = w;
-      slot[at] = static_cast<std::uint16_t>(++limit_);
+
+ private:
+  RawArray<H, kSlots> slot_;
+};
+
+/// The neighbours of v into `out`, where the star has at most `most_cells` cells; 0 where it has more. A cell
+/// has one vertex that the cell which it was entered from has not: the one opposite the face between them.
+template <std::size_t kSlots>
+static std::size_t gather_neighbours(const TetMesh& mesh, VertexHandle v, std::size_t most_cells,
+                                     HalfFaceHandle* entry, VertexHandle* out) {
+  SmallSet<CellHandle, kSlots> cells;
+  SmallSet<VertexHandle, kSlots> neighbours;
+  const CellHandle first = mesh.hook(v);
+  entry[0] = halfface_of(first, mesh.cell(first).own_corner(v));
+  cells.enter(first);
+  std::size_t n_cells = 1;
+  for (std::size_t i = 0; i < n_cells; ++i) {
+    const Cell& k = mesh.cell(cell_of(entry[i]));
+    const unsigned corner = k.own_corner(v);
+    for (unsigned turn = 1; turn < 4; ++turn) {
+      const HalfFaceHandle m = k.mate[(corner + turn) & 3];
+      if (!m.is_valid()) continue;
+      __builtin_prefetch(&mesh.cell(cell_of(m)));  // its turn comes in a few rounds
+      entry[n_cells] = m;                          // kept if its cell is new
+      n_cells += cells.enter(cell_of(m));
+      if (n_cells > most_cells) return 0;
     }
   }
+  std::size_t n = 0;
+  for (VertexHandle w : mesh.cell(first).v) {
+    if (w == v) continue;
+    neighbours.enter(w);
+    out[n++] = w;
+  }
+  for (std::size_t i = 1; i < n_cells; ++i) {
+    out[n] = mesh.halfface_opposite_vertex(entry[i]);
+    n += neighbours.enter(out[n]);
+  }
+  return n;
+}
+
+VertexVertices::VertexVertices(const TetMesh& mesh, VertexHandle v) : mesh_(&mesh), v_(v) {
+  if (!mesh.hook(v).is_valid()) return;
+  constexpr std::size_t kMostInSmall = 64;  // cells; few stars have more, and small tables are soon cleared
+  RawArray<HalfFaceHandle, Star::kCapacity + 1> entry;
+  limit_ = gather_neighbours<128>(mesh, v, kMostInSmall, entry.data(), neighbours_.data());
+  if (limit_ > 0) return;
+  limit_ = gather_neighbours<1024>(mesh, v, Star::kCapacity, entry.data(), neighbours_.data());
+  if (limit_ > 0) return;
+  scan_ = true;
+  limit_ = 4 * mesh.n_cells();
 }
 
 bool VertexVertices::scan_has(std::size_t place) const {

@@ -27,6 +27,11 @@ std::vector<Index> indices(const std::vector<H>& handles) {
 
 }  // namespace
 
+void detail::fail_property_index(std::string_view name, std::size_t i, std::size_t n) {
+  throw InvalidInput("property \"" + std::string(name) + "\" has " + std::to_string(n) +
+                     " values and was asked for number " + std::to_string(i));
+}
+
 void detail::fail_property_type(std::string_view kind, std::string_view name, const std::type_info& holds,
                                 const std::type_info& asked) {
   throw InvalidInput(std::string(kind) + " property \"" + std::string(name) + "\" holds " + type_name(holds) +
@@ -36,8 +41,11 @@ void detail::fail_property_type(std::string_view kind, std::string_view name, co
 void PropertySet::renumber(const TetMesh& of, const std::vector<VertexHandle>& new_vertex,
                            std::size_t n_vertices, const std::vector<CellHandle>& new_cell,
                            std::size_t n_cells) {
-  for (const TupleList* list : {&edges, &halfedges, &faces, &halffaces})
+  for (DenseList* list : {&vertices, &cells}) list->drop_unheld();
+  for (TupleList* list : {&edges, &halfedges, &faces, &halffaces}) {
+    list->drop_unheld();
     for (const auto& p : *list) p->rename(of, new_vertex);
+  }
   if (!vertices.empty()) {
     const std::vector<Index> to = indices(new_vertex);
     for (const auto& p : vertices) p->permute(to, n_vertices);
@@ -52,6 +60,16 @@ std::size_t PropertySet::memory_bytes() const {
   std::size_t sum = vertices.memory_bytes() + cells.memory_bytes() + mesh.memory_bytes();
   for (const TupleList* list : {&edges, &halfedges, &faces, &halffaces}) sum += list->memory_bytes();
   return sum;
+}
+
+void PropertySet::take(PropertySet& saved, std::size_t n_vertices, std::size_t n_cells) {
+  vertices.take(saved.vertices, n_vertices);
+  cells.take(saved.cells, n_cells);
+  edges.take(saved.edges, 0);
+  halfedges.take(saved.halfedges, 0);
+  faces.take(saved.faces, 0);
+  halffaces.take(saved.halffaces, 0);
+  mesh.take(saved.mesh, 0);
 }
 
 }  // namespace hfr

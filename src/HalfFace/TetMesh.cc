@@ -61,6 +61,14 @@ void TetMesh::set_fixed_patch(int label, bool fixed) {
     locks_.patches.erase(label);
 }
 
+void TetMesh::restore(TetMesh saved) {
+  PropertySet mine = std::move(properties_);
+  mine.take(saved.properties_, saved.n_vertices(), saved.n_cells());
+  *this = std::move(saved);
+  properties_ = std::move(mine);
+  outdate_hand_index();
+}
+
 VertexHandle TetMesh::add_vertex(Vec3 p) {
   const VertexHandle v(points_.size());
   points_.push_back(p);

@@ -3,50 +3,21 @@
 #define HFR_HALFFACE_TET_MESH_HH
 
 #include <array>
-#include <atomic>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "HalfFace/Cell.hh"
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Handles.hh"
 #include "HalfFace/Labels.hh"
-#include "HalfFace/Properties.hh"
-#include "HalfFace/RawArray.hh"
+#include "HalfFace/PropertyAccess.hh"
 #include "HalfFace/Vec3.hh"
+#include "Parallel/Atomic.hh"
 #include "Parallel/Parallel.hh"
 
 namespace hfr {
-
-/// One tetrahedron: 32 bytes with 32-bit indices. mate[k] is the half-face that lies on half-face k from the
-/// other side, invalid on the boundary. A deleted cell has invalid vertices.
-struct Cell {
-  std::array<VertexHandle, 4> v;
-  std::array<HalfFaceHandle, 4> mate;
-
-  /// Corner of vertex w; 4 when w is none of this cell's.
-  int corner(VertexHandle w) const {
-    for (int i = 0; i < 4; ++i)
-      if (v[static_cast<std::size_t>(i)] == w) return i;
-    return 4;
-  }
-  /// The same for a vertex that is this cell's, without branches: in a walk over an irregular mesh, nobody
-  /// can foretell the corner.
-  std::uint8_t own_corner(VertexHandle w) const {
-    return static_cast<std::uint8_t>(static_cast<unsigned>(v[1] == w) + 2 * static_cast<unsigned>(v[2] == w) +
-                                     3 * static_cast<unsigned>(v[3] == w));
-  }
-  bool has(VertexHandle w) const { return v[0] == w || v[1] == w || v[2] == w || v[3] == w; }
-};
-
-/// Cells round one vertex, gathered once. Fixed memory, reusable; see TetMesh::gather_star.
-struct Star {
-  static constexpr int kCapacity = 256;
-  int size = 0;
-  RawArray<CellHandle, kCapacity + 1> cells;  ///< in order of discovery from the hook
-  RawArray<std::uint8_t, kCapacity> corners;  ///< corner of the vertex in each cell
-  RawArray<CellHandle, 2 * kCapacity> slot;   ///< hash table of them while they are gathered
-};
 
 /// Old handle → new one, by index; invalid where it is gone.
 struct GarbageMap {
@@ -60,22 +31,6 @@ struct GarbageOptions {
 };
 
 struct ReorderOptions;
-
-/// A cell on a walk round an edge a→b: with p and q the corners that are not on the edge, in the order that
-/// makes (a, b, p, q) positive. The next cell counter-clockwise lies behind the face opposite p, the one
-/// before behind that opposite q.
-struct RingPlace {
-  CellHandle cell;
-  std::uint8_t p = 0, q = 0;
-};
-
-/// Cells round one edge, gathered once. Fixed memory, reusable; see TetMesh::gather_ring.
-struct Ring {
-  static constexpr int kCapacity = 63;
-  int size = 0;
-  bool closed = false;  ///< the cells go all the way round
-  RawArray<RingPlace, kCapacity> places;
-};
 
 // What the queries below return; all are C++20 views that do not allocate, see Circulators.hh.
 template <class T, std::size_t N>
@@ -107,18 +62,23 @@ struct RingBothHalfFaces;
 /// Tetrahedral mesh with four implicit half-faces a cell.
 /// Invariant: mate(mate(h)) == h inside, and mates see their three vertices in opposite order.
 /// Reading is thread-safe.
-class TetMesh {
+class TetMesh : public PropertyAccess<TetMesh> {
  public:
   // --- sizes; handles run from 0 to n-1, deleted ones included until collect_garbage() ---
   std::size_t n_vertices() const { return points_.size(); }
   std::size_t n_cells() const { return cells_.size(); }
   std::size_t n_logical_vertices() const { return points_.size() - n_deleted_vertices_; }
   std::size_t n_logical_cells() const { return cells_.size() - free_cells_.size(); }
+  // What follows is there as long as a cell has it, so all of it is logical.
   std::size_t n_edges() const;  ///< by counting: O(n)
   std::size_t n_faces() const;  ///< by counting: O(n)
   std::size_t n_halfedges() const { return 2 * n_edges(); }
   /// Half-faces that have a cell: the outer side of a boundary face is not stored.
   std::size_t n_halffaces() const { return 4 * n_logical_cells(); }
+  std::size_t n_logical_edges() const { return n_edges(); }
+  std::size_t n_logical_faces() const { return n_faces(); }
+  std::size_t n_logical_halfedges() const { return n_halfedges(); }
+  std::size_t n_logical_halffaces() const { return n_halffaces(); }
   /// 1 - (vertices - edges + faces - cells): 0 for a solid ball. O(n).
   int genus() const;
   std::size_t memory_bytes() const;  ///< heap memory of everything, capacity included
@@ -147,6 +107,9 @@ class TetMesh {
   }
   bool exists(EdgeHandle e) const;
   bool exists(HalfEdgeHandle e) const { return exists(edge_handle(e)); }
+  /// The local edges of c whose ring has no smaller cell, a bit each: the edges that have their handles from
+  /// c. 0 for a deleted cell. O(rings) of those that no neighbour of c is smaller for.
+  unsigned first_edges(CellHandle c) const;
 
   // --- round a vertex: the cells that connect to its hook through faces at the vertex ---
   /// In order of discovery from the hook. O(star); O(mesh) for a vertex with more than Star::kCapacity cells,
@@ -280,6 +243,8 @@ class TetMesh {
     const auto& f = kFaceCorners[h.idx() % 4];
     return {k.v[f[0]], k.v[f[1]], k.v[f[2]]};
   }
+  /// The same, beginning with `from`; throws InvalidInput when that is none of them.
+  std::array<VertexHandle, 3> halfface_vertices(HalfFaceHandle h, VertexHandle from) const;
   VertexHandle halfface_opposite_vertex(HalfFaceHandle h) const { return cells_[h.idx() / 4].v[h.idx() % 4]; }
 
   // --- vertices ---
@@ -292,6 +257,11 @@ class TetMesh {
   /// A cell of the vertex; invalid when no cell uses it.
   CellHandle hook(VertexHandle v) const { return hook_[v.idx()]; }
   bool is_deleted(VertexHandle v) const { return (vertex_status_[v.idx()] & kDeleted) != 0; }
+  // Edges and faces go with their last cell. A handle that is no longer the canonical one counts as deleted.
+  bool is_deleted(EdgeHandle e) const { return !exists(e); }
+  bool is_deleted(HalfEdgeHandle e) const { return !exists(e); }
+  bool is_deleted(FaceHandle f) const { return !exists(f); }
+  bool is_deleted(HalfFaceHandle h) const { return !exists(h); }
   /// A fixed vertex is neither moved nor removed by any operator.
   bool is_fixed(VertexHandle v) const { return (vertex_status_[v.idx()] & kFixed) != 0; }
   void set_fixed(VertexHandle v, bool fixed = true) { set_bit(vertex_status_[v.idx()], kFixed, fixed); }
@@ -331,40 +301,7 @@ class TetMesh {
   const Labels& labels() const { return labels_; }
   Labels& labels() { return labels_; }
 
-  // --- properties; the same name gives the same values, another type throws InvalidInput ---
-  template <class T>
-  VertexProperty<T> request_vertex_property(std::string_view name, const T& default_value = T()) {
-    return VertexProperty<T>(
-        PropertySet::request_dense<T>(properties_.vertices, name, default_value, n_vertices()));
-  }
-  template <class T>
-  CellProperty<T> request_cell_property(std::string_view name, const T& default_value = T()) {
-    return CellProperty<T>(PropertySet::request_dense<T>(properties_.cells, name, default_value, n_cells()));
-  }
-  template <class T>
-  EdgeProperty<T> request_edge_property(std::string_view name, const T& default_value = T()) {
-    return EdgeProperty<T>(
-        PropertySet::request_tuples<2, T, AnyOrder>(properties_.edges, name, default_value));
-  }
-  template <class T>
-  HalfEdgeProperty<T> request_halfedge_property(std::string_view name, const T& default_value = T()) {
-    return HalfEdgeProperty<T>(
-        PropertySet::request_tuples<2, T, CyclicOrder>(properties_.halfedges, name, default_value));
-  }
-  template <class T>
-  FaceProperty<T> request_face_property(std::string_view name, const T& default_value = T()) {
-    return FaceProperty<T>(
-        PropertySet::request_tuples<3, T, AnyOrder>(properties_.faces, name, default_value));
-  }
-  template <class T>
-  HalfFaceProperty<T> request_halfface_property(std::string_view name, const T& default_value = T()) {
-    return HalfFaceProperty<T>(
-        PropertySet::request_tuples<3, T, CyclicOrder>(properties_.halffaces, name, default_value));
-  }
-  template <class T>
-  MeshProperty<T> request_mesh_property(std::string_view name, const T& default_value = T()) {
-    return MeshProperty<T>(PropertySet::request_single<T>(properties_.mesh, name, default_value));
-  }
+  // --- properties: request_…_property and get_…_property are of PropertyAccess ---
   /// By kind: names(), remove(name).
   PropertySet& properties() { return properties_; }
   const PropertySet& properties() const { return properties_; }
@@ -442,24 +379,59 @@ class TetMesh {
   /// The same walk in the other direction (clockwise about a→b), again starting with c itself.
   template <class Visit>
   bool walk_ring_back(CellHandle c, int edge, Visit&& visit) const;
-  /// True when some cell has both vertices.
+  /// True when a cell that vertex_cells(a) shows has both vertices, or a has more than Star::kCapacity cells.
   bool has_edge(VertexHandle a, VertexHandle b, Star& scratch) const;
-  /// True when some cell has all three vertices.
+  /// The same for all three vertices.
   bool has_face(VertexHandle a, VertexHandle b, VertexHandle c, Star& scratch) const;
 
   /// Gives every vertex and cell that is not deleted a handle without gaps, in the old order. Labels and
   /// locks of faces and edges that no cell has any more are dropped.
   GarbageMap collect_garbage(GarbageOptions options = {});
 
-  // --- by hand, one at a time; the first call after building or low-level writing costs O(n) ---
-  /// Appends a cell and links it with its neighbours. Throws InvalidInput, leaving the mesh as it was, when a
-  /// vertex does not exist or comes twice, when a face has two cells already, or when the order contradicts a
-  /// neighbour.
+  /// Becomes `saved`, a copy of this mesh at an earlier time. Unlike an assignment it keeps the handles of
+  /// properties valid: they name the values of that time. Properties that came since are left with their
+  /// defaults, those that were removed since come back.
+  void restore(TetMesh saved);
+
+  // --- by hand, one at a time ---
+  /// Appends a cell and links it with its neighbours. The first call after building or other writing makes a
+  /// table of all faces: O(n). Throws InvalidInput, leaving the mesh as it was, when a vertex does not exist
+  /// or comes twice, when a face has two cells already, or when the order contradicts a neighbour.
   CellHandle add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, VertexHandle v3);
   /// Deleted things keep their handles until collect_garbage(); labels of edges and faces that vanish go at
-  /// once.
+  /// once. O(1), but for
+  ///  - a vertex that loses its hook and has no neighbour of c at it: then the cells of all vertices are
+  ///    counted, once until other writing;
+  ///  - a labelled or fixed edge or face that vanishes: O(number of these).
   void delete_cell(CellHandle c);
   void delete_vertex(VertexHandle v);  ///< and every cell that has it
+  /// Cuts every cell of the edge, face or cell at a new vertex: at `at`, or at the barycenter. The parts have
+  /// the region, status and properties of the whole; so have the parts of a labelled or fixed edge or face
+  /// its label, lock and properties. The new vertex has the data of the nearest end or corner. A part keeps
+  /// the handle of each cell. O(cells that are cut); no geometry is looked at.
+  VertexHandle split_edge(EdgeHandle e, std::optional<Vec3> at = {});
+  VertexHandle split_face(FaceHandle f, std::optional<Vec3> at = {});
+  VertexHandle split_cell(CellHandle c, std::optional<Vec3> at = {});
+  /// Joins the beginning of the half-edge with its end, which it returns: cells of the edge go, the other
+  /// cells of the beginning have the end instead, and what was attached to edges and faces goes along; where
+  /// two become one, the value at the end stays. Invalid, and nothing changed, unless is_collapse_ok(e).
+  /// Cells may become inverted: no geometry is looked at.
+  VertexHandle collapse_edge(HalfEdgeHandle e);
+  /// True when a collapse leaves a manifold (the link condition) and loses no constraint: the beginning is
+  /// neither fixed, by itself or with an edge, a face or a patch, nor labelled; no two labels would meet on
+  /// one edge or face; and a label of the edge, or of a face at it, is also on another at the beginning. The
+  /// stars of both ends connect through faces and have at most Star::kCapacity cells. The first call after
+  /// other writing counts the cells of all vertices.
+  bool is_collapse_ok(HalfEdgeHandle e);
+  /// Room for n in all, so that adding moves nothing meanwhile.
+  void reserve_vertices(std::size_t n);
+  void reserve_cells(std::size_t n);
+  /// An empty mesh; properties go, too.
+  void clear() { *this = TetMesh(); }
+  /// Exchanges the handles of two things, with all that is attached. O(star) and O(labels and properties of
+  /// edges and faces) for vertices, O(1) for cells.
+  void swap_vertices(VertexHandle a, VertexHandle b);
+  void swap_cells(CellHandle a, CellHandle b);
 
   // --- low-level writing, for operators and builders; nothing is checked ---
   VertexHandle add_vertex(Vec3 p);
@@ -508,11 +480,25 @@ class TetMesh {
     std::unordered_map<std::array<VertexHandle, 3>, HalfFaceHandle, TupleHash> face;  // one half-face of each
     std::vector<Index> n_cells;                                                       // per vertex
   };
+  enum HandIndexState : std::uint8_t { kVoid, kCounts, kCountsAndFaces };
   void outdate_hand_index() {  // operators write from several threads at once
-    const std::atomic_ref<bool> valid(hand_index_valid_);
-    if (valid.load(std::memory_order_relaxed)) valid.store(false, std::memory_order_relaxed);
+    const auto state = par::atomic(hand_index_state_);
+    if (state.load(std::memory_order_relaxed) != kVoid) state.store(kVoid, std::memory_order_relaxed);
   }
+  void count_cells();
   void make_hand_index();
+  void outdate_hand_faces() {
+    if (hand_index_state_ == kCountsAndFaces) hand_index_state_ = kCounts;
+  }
+  template <std::size_t N>
+  bool any_cell_has(const std::array<VertexHandle, N>& vertices);
+  std::vector<CellHandle> cells_of(VertexHandle v);
+  bool gather_whole_star(VertexHandle v, Star& star);
+  CellHandle take_slot(CellHandle like);
+  VertexHandle split(std::span<const CellHandle> parents, std::span<const VertexHandle> simplex, Vec3 at);
+  void split_labels(const Cell& parent, std::span<const VertexHandle> simplex, VertexHandle middle);
+  bool labels_can_join(const Star& star, VertexHandle v, VertexHandle w) const;
+  void join_labels(const Star& star, VertexHandle v, VertexHandle w);
   void grow_cells(std::size_t n);
   void drop_labels_of_nothing(const Cell& dead);
 
@@ -531,13 +517,21 @@ class TetMesh {
   Locks locks_;
   PropertySet properties_;
   HandIndex hand_index_;
-  bool hand_index_valid_ = false;
+  HandIndexState hand_index_state_ = kVoid;
 };
 
 /// What build() had to mend.
 struct BuildReport {
   bool flipped = false;                ///< the file orders every cell the other way round
   std::vector<CellHandle> reoriented;  ///< cells whose order contradicted their neighbours', or the whole's
+  /// With NonManifold::kSplit: the vertices after the given ones, each by the one that it is a copy of.
+  std::vector<VertexHandle> copied;
+};
+
+/// What build() does at vertices whose cells do not connect through faces.
+enum class NonManifold : std::uint8_t {
+  kKeep,  ///< nothing, unless an edge would break the kernel's rule: then the input is refused
+  kSplit  ///< one part keeps the vertex, that of the smallest cell; each other one gets a copy of it
 };
 
 /// Builds the connectivity of a mesh from arrays: n points, m cells of four 0-based point indices in either
@@ -545,10 +539,11 @@ struct BuildReport {
 /// make them inverted: that is the truth about them. The whole is flipped when most cells are then negative;
 /// a component that connects to the rest through no face, and most of whose cells are negative, is turned by
 /// itself. Handles equal array indices. Throws InvalidInput for an index out of range, a repeated vertex in a
-/// cell, a coordinate that is not finite, a face with three cells, a cell given twice, or cells that cannot
-/// be oriented alike; ResourceLimit for more cells than an index can count.
+/// cell, a coordinate that is not finite, a face with three cells, a cell given twice, cells that cannot be
+/// oriented alike, or an edge that cells go all the way round and that others have, too
+/// (Rule::kDuplicateEdge); ResourceLimit for more cells than an index can count.
 TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells, par::Policy policy = {},
-              BuildReport* report = nullptr);
+              BuildReport* report = nullptr, NonManifold non_manifold = NonManifold::kKeep);
 
 template <class Visit>
 bool TetMesh::walk_ring(CellHandle c, int edge, Visit&& visit) const {

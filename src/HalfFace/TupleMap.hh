@@ -114,6 +114,18 @@ class TupleMap {
     return true;
   }
 
+  /// Puts the entry of `vertices` under others, which have none; it keeps its place in the order: O(1). False
+  /// when there was none.
+  bool rekey(const std::array<VertexHandle, N>& vertices, const std::array<VertexHandle, N>& others) {
+    const auto found = position_.find(Order::key(vertices));
+    if (found == position_.end()) return false;
+    const std::size_t at = found->second;
+    position_.erase(found);
+    position_[Order::key(others)] = at;
+    entries_[at].vertices = others;
+    return true;
+  }
+
   void clear() {
     entries_.clear();
     position_.clear();

@@ -259,6 +259,80 @@ TEST(BuildRefuses, CellTwice) {
               testing::HasSubstr("same four vertices"));
 }
 
+/// Rings of three cells each round the edge (0, 1), on vertices of their own; the last without its third cell
+/// if `open`.
+generate::Arrays rings_on_one_edge(int n, bool open) {
+  generate::Arrays mesh;
+  mesh.points = {{0, 0, -1}, {0, 0, 1}};
+  for (int r = 0; r < n; ++r) {
+    const auto first = static_cast<Index>(mesh.points.size());
+    mesh.points.insert(mesh.points.end(), {{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}});
+    for (Index i = 0; i < 3; ++i) mesh.cells.push_back({0, 1, first + i, first + (i + 1) % 3});
+  }
+  if (open) mesh.cells.pop_back();
+  return mesh;
+}
+
+TEST(BuildRefuses, EdgeThatCellsGoRoundTwice) {
+  for (const bool open : {false, true}) {
+    const generate::Arrays mesh = rings_on_one_edge(2, open);
+    for (const int threads : {1, 3})
+      EXPECT_THAT(message_of([&] {
+                    build(mesh.points, mesh.cells, {threads, 1});
+                  }),
+                  testing::AllOf(testing::HasSubstr("the edge of vertices 0 and 1 exists twice"),
+                                 testing::HasSubstr("cell 0"), testing::HasSubstr("cell 3"),
+                                 testing::HasSubstr("--split-nonmanifold")));
+  }
+}
+
+TEST(BuildSplits, EdgeThatCellsGoRoundTwice) {
+  const generate::Arrays mesh = rings_on_one_edge(3, true);
+  BuildReport report;
+  const TetMesh split = build(mesh.points, mesh.cells, {}, &report, NonManifold::kSplit);
+  EXPECT_EQ(check(split), Ok);
+  EXPECT_EQ(report.copied, (std::vector{VertexHandle(0), VertexHandle(1), VertexHandle(0), VertexHandle(1)}));
+  EXPECT_EQ(split.n_vertices(), mesh.points.size() + 4);
+  for (std::size_t c = 0; c < split.n_cells(); ++c)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::size_t v = split.cell(CellHandle(c)).v[k].idx();
+      const std::size_t given = v < mesh.points.size() ? v : report.copied[v - mesh.points.size()].idx();
+      EXPECT_EQ(given, mesh.cells[c][k]);
+      EXPECT_EQ(split.point(VertexHandle(v)), mesh.points[given]);
+    }
+}
+
+TEST(BuildSplits, CellsThatTouchInAVertexOrAnEdgeAndNothingElse) {
+  generate::Arrays box = generate::box({3, 3, 3});
+  BuildReport report;
+  build(box.points, box.cells, {}, &report, NonManifold::kSplit);
+  EXPECT_TRUE(report.copied.empty());
+  const auto n = static_cast<Index>(box.points.size());
+  box.points.insert(box.points.end(), {{-1, -1, 0}, {-1, 0, -1}, {0, -1, -1}, {2, 2, 2}, {2, 2, 3}});
+  box.cells.push_back({0, n, n + 1, n + 2});                // at a corner
+  box.cells.push_back({box.cells[0][0], 1, n + 3, n + 4});  // along an edge of the box
+  ASSERT_NE(check(build(box.points, box.cells)), Ok);
+  const TetMesh split = build(box.points, box.cells, {}, &report, NonManifold::kSplit);
+  EXPECT_EQ(check(split), Ok);
+  EXPECT_GE(report.copied.size(), 2U);
+}
+
+TEST(BuildRefuses, EdgeOfWhichBothEndsConnectRoundIt) {
+  // An icosahedron's cells of which two were given other corners: the cells of vertices 0 and 4 connect.
+  std::vector<Vec3> points(13);
+  for (std::size_t i = 0; i < 13; ++i) {
+    const double x = static_cast<double>(i);
+    points[i] = {x, x * x, x * x * x};
+  }
+  const std::vector<std::array<Index, 4>> cells = {
+      {0, 1, 2, 3},  {0, 1, 3, 4},  {0, 1, 4, 5},   {0, 1, 5, 6},    {0, 1, 6, 2},
+      {0, 4, 3, 7},  {0, 3, 2, 8},  {0, 2, 6, 9},   {0, 6, 5, 10},   {0, 5, 4, 11},
+      {0, 12, 7, 8}, {0, 12, 8, 9}, {0, 12, 9, 10}, {0, 12, 10, 11}, {0, 12, 11, 7},
+      {0, 8, 7, 3},  {0, 9, 4, 2},  {0, 10, 9, 6},  {0, 11, 10, 5},  {0, 7, 11, 4}};
+  EXPECT_THAT(message_of([&] { build(points, cells); }),
+              testing::HasSubstr("the edge of vertices 0 and 4 exists twice, once with cell 1"));
+}
+
 TEST(Build, EmptyMeshAndMeshWithoutCells) {
   EXPECT_EQ(build({}, {}).n_cells(), 0U);
   const TetMesh mesh = build({{0, 0, 0}, {1, 1, 1}}, {});

@@ -104,6 +104,34 @@ TEST(DeleteCell, EveryCellInRandomOrder) {
   }
 }
 
+TEST(DeleteCell, AfterLowLevelWritingHashesNoFaces) {
+  TetMesh mesh = test::kuhn_box(10);
+  mesh.mutable_cell(CellHandle(0));  // as an operator writes
+  const std::size_t before = mesh.memory_bytes();
+  mesh.delete_cell(CellHandle(mesh.n_cells() / 2));
+  EXPECT_LT(mesh.memory_bytes() - before, 64U) << "a table over the whole mesh was made";
+  EXPECT_EQ(check(mesh, structure()), Ok);
+  for (std::size_t i : shuffled(mesh.n_cells(), 3)) {
+    if (mesh.is_deleted(CellHandle(i))) continue;
+    if (i % 16 == 0) mesh.mutable_cell(CellHandle(i));
+    mesh.delete_cell(CellHandle(i));
+    if (i % 32 != 0) continue;
+    ASSERT_EQ(check(mesh, structure()), Ok) << check(mesh, structure());
+  }
+  EXPECT_EQ(unused_vertices(mesh).size(), mesh.n_vertices());
+}
+
+TEST(DeleteCell, KeepsTheLabelOfAnEdgeThatAnotherPartOfTheMeshHas) {
+  // Two cells that have the edge 0-1 in common and no face.
+  const std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+  TetMesh mesh = build(points, std::vector<Corners>{{0, 1, 2, 3}, {0, 1, 4, 5}});
+  mesh.labels().edges.set({V(0), V(1)}, 1);
+  mesh.delete_cell(CellHandle(0));
+  EXPECT_EQ(mesh.labels().edges.size(), 1U);
+  mesh.delete_cell(CellHandle(1));
+  EXPECT_TRUE(mesh.labels().edges.empty());
+}
+
 TEST(DeleteVertex, TakesItsCellsAlongAlsoThoseThatTouchInItAlone) {
   const std::vector<Vec3> points = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0}, {0, 0, 1},
                                     {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};

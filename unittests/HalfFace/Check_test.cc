@@ -112,12 +112,21 @@ void append_ring(std::vector<Vec3>& points, std::vector<test::Corners>& cells) {
 }
 
 TEST(Check, EdgeMadeTwice) {
-  std::vector<Vec3> points = {{0, 0, -1}, {0, 0, 1}};
+  std::vector<Vec3> points = {{0, 0, -1}, {0, 0, 1}, {0, 0, -1}, {0, 0, 1}};
   std::vector<test::Corners> cells;
   append_ring(points, cells);
   EXPECT_EQ(check(build(points, cells)), Ok);
   append_ring(points, cells);
-  const CheckResult result = check(build(points, cells));
+  for (std::size_t i = 3; i < 6; ++i) cells[i][0] = 2, cells[i][1] = 3;
+  TetMesh mesh = build(points, cells);
+  EXPECT_EQ(check(mesh), Ok);
+  for (std::size_t i = 3; i < 6; ++i) {  // build() would refuse it
+    mesh.mutable_cell(CellHandle(i)).v[0] = VertexHandle(0);
+    mesh.mutable_cell(CellHandle(i)).v[1] = VertexHandle(1);
+  }
+  mesh.set_hook(VertexHandle(2), CellHandle());
+  mesh.set_hook(VertexHandle(3), CellHandle());
+  const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kDuplicateEdge);
   EXPECT_EQ(result.vertices, (std::vector{VertexHandle(0), VertexHandle(1)}));
   EXPECT_EQ(result.cells, (std::vector{CellHandle(0), CellHandle(3)}));

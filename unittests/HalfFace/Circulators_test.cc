@@ -3,6 +3,7 @@
 #include "HalfFace/Circulators.hh"
 
 #include <gtest/gtest.h>
+#include "HalfFace/EdgeList.hh"
 
 #include <ranges>
 
@@ -27,6 +28,22 @@ static_assert(View<StarRange<policy::StarEdges>> && View<StarRange<policy::StarF
 static_assert(View<RingRange<policy::RingCells>> && View<RingRange<policy::RingFaces>>);
 static_assert(View<RingRange<policy::RingHalfFaces>> && View<RingRange<policy::RingBothHalfFaces>>);
 static_assert(std::ranges::forward_range<FixedList<CellHandle, 4>>);
+
+// Iterators point into the range object: a temporary one gives none. Those over the whole mesh stand alone.
+template <class Range>
+concept BeginsAsTemporary = requires(Range&& range) {
+  std::forward<Range>(range).begin();
+  *std::forward<Range>(range).begin();
+};
+template <class Range>
+concept DanglesNever = BeginsAsTemporary<Range> && std::ranges::borrowed_range<Range>;
+template <class Range>
+concept RefusesTemporaries =
+    !BeginsAsTemporary<Range> && BeginsAsTemporary<Range&> && !std::ranges::borrowed_range<Range>;
+static_assert(RefusesTemporaries<StarRange<policy::StarCells>> && RefusesTemporaries<VertexVertices>);
+static_assert(RefusesTemporaries<RingRange<policy::RingCells>>);
+static_assert(RefusesTemporaries<FixedList<CellHandle, 4>>);
+static_assert(DanglesNever<AllRange<CellHandle>> && DanglesNever<BoundaryRange<EdgeHandle>>);
 
 template <class Range>
 auto unique_set(Range&& range) {
@@ -277,6 +294,34 @@ TEST_P(Circulators, BoundaryRanges) {
   }
 }
 
+TEST_P(Circulators, EdgesOfACellThatAreItsToName) {
+  for (CellHandle c : mesh().cells())
+    for (unsigned k = 0; k < 6; ++k)
+      EXPECT_EQ((mesh().first_edges(c) >> k & 1U) != 0, mesh().exists(EdgeHandle(6 * c.idx() + k)));
+  const EdgeList list(mesh());
+  EXPECT_EQ(vector_of(list), vector_of(mesh().edges()));
+  EXPECT_EQ(list.size(), mesh().n_edges());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    EXPECT_EQ(list.vertices(i), mesh().edge_vertices(list[i]));
+    EXPECT_EQ(list.index(list[i]), i);
+  }
+  EXPECT_EQ(list.index(EdgeHandle()), list.size());
+  EXPECT_EQ(vector_of(EdgeList(mesh(), {3, 1})), vector_of(list));
+}
+
+TEST_P(Circulators, DeletedAndLogicalNumbers) {
+  TetMesh torn = mesh();
+  torn.delete_cell(*torn.cells().begin());
+  std::size_t edges = 0, faces = 0;
+  for (std::size_t i = 0; i < 6 * torn.n_cells(); ++i) edges += torn.is_deleted(EdgeHandle(i)) ? 0 : 1;
+  for (std::size_t i = 0; i < 4 * torn.n_cells(); ++i) faces += torn.is_deleted(FaceHandle(i)) ? 0 : 1;
+  EXPECT_EQ(edges, torn.n_logical_edges());
+  EXPECT_EQ(faces, torn.n_logical_faces());
+  EXPECT_EQ(torn.n_logical_halfedges(), 2 * edges);
+  EXPECT_EQ(torn.n_logical_halffaces(), 4 * torn.n_logical_cells());
+  EXPECT_TRUE(torn.is_deleted(HalfFaceHandle(0)) && torn.is_deleted(HalfEdgeHandle(0)));
+}
+
 TEST_P(Circulators, FindingByVertices) {
   const VertexHandle last(mesh().n_vertices() - 1);
   for (const auto& [edge, cells] : oracle.edges()) {
@@ -385,6 +430,20 @@ TEST(EmptyMesh, AllRangesAreEmpty) {
   EXPECT_TRUE(mesh.vertices().empty() && mesh.edges().empty() && mesh.faces().empty() &&
               mesh.cells().empty());
   EXPECT_EQ(mesh.n_edges() + mesh.n_faces(), 0U);
+}
+
+TEST(Ranges, OfNeighboursServeAsTemporariesInLoopsAndAlgorithms) {
+  const TetMesh mesh = test::kuhn_box(2);
+  const VertexHandle centre(13);
+  std::size_t n = 0;
+  for (CellHandle c : mesh.vertex_cells(centre)) n += mesh.cell(c).has(centre) ? 1 : 0;
+  EXPECT_EQ(n, 24U);
+  for ([[maybe_unused]] CellHandle c : mesh.cell_cells(CellHandle(0))) ++n;
+  EXPECT_GT(n, 24U);
+  EXPECT_EQ(std::ranges::count_if(mesh.vertex_cells(centre), [](CellHandle) { return true; }), 24);
+  const auto first = std::ranges::find_if(mesh.boundary_edges(),
+                                          [&](EdgeHandle e) { return mesh.edge_vertices(e)[0] != centre; });
+  EXPECT_TRUE(mesh.is_boundary(*first));
 }
 
 #if !defined(__clang__) || __clang_major__ >= 16  // older ones reject the standard views of libstdc++

@@ -101,6 +101,75 @@ TEST(Property, RemovedKeepsItsValuesForWhoHoldsThem) {
   EXPECT_NO_THROW(mesh.request_cell_property<double>("p"));
 }
 
+TEST(Property, GettingMakesNone) {
+  TetMesh mesh = test::kuhn_box(1);
+  mesh.request_vertex_property<double>("heat", 2.0);
+  mesh.request_edge_property<int>("crease", 1);
+  EXPECT_FALSE(mesh.get_vertex_property<double>("haet").has_value());
+  EXPECT_FALSE(mesh.get_cell_property<double>("heat").has_value());
+  EXPECT_FALSE(mesh.get_face_property<int>("crease") || mesh.get_halfface_property<int>("crease") ||
+               mesh.get_halfedge_property<int>("crease") || mesh.get_mesh_property<int>("crease"));
+  EXPECT_EQ(mesh.properties().vertices.names().size(), 1U);
+  ASSERT_TRUE(mesh.get_vertex_property<double>("heat").has_value());
+  (*mesh.get_vertex_property<double>("heat"))[VertexHandle(1)] = 5;
+  EXPECT_EQ(mesh.request_vertex_property<double>("heat")[VertexHandle(1)], 5);
+  EXPECT_THROW(static_cast<void>(mesh.get_vertex_property<int>("heat")), InvalidInput);
+}
+
+TEST(Property, OfAConstMeshIsReadOnly) {
+  TetMesh mesh = test::kuhn_box(1);
+  mesh.request_cell_property<int>("n", 1)[CellHandle(2)] = 8;
+  mesh.request_edge_property<int>("crease", 1);
+  *mesh.request_mesh_property<int>("version") = 3;
+  const TetMesh& fixed = mesh;
+  const auto n = fixed.get_cell_property<int>("n");
+  ASSERT_TRUE(n.has_value());
+  auto copy = *n;
+  static_assert(std::same_as<decltype(copy[CellHandle(2)]), const int&>);
+  static_assert(!std::is_convertible_v<CellProperty<const int>, CellProperty<int>>);
+  static_assert(std::is_convertible_v<CellProperty<int>, CellProperty<const int>>);
+  EXPECT_EQ(copy[CellHandle(2)], 8);
+  EXPECT_EQ(copy.values().size(), mesh.n_cells());
+  EXPECT_EQ(fixed.get_edge_property<int>("crease")->get({VertexHandle(0), VertexHandle(1)}), 1);
+  EXPECT_EQ(**fixed.get_mesh_property<int>("version"), 3);
+  EXPECT_FALSE(fixed.get_cell_property<int>("m").has_value());
+}
+
+TEST(Property, AtChecksTheHandle) {
+  TetMesh mesh = test::kuhn_box(1);
+  auto n = mesh.request_cell_property<int>("n", 1);
+  n.at(CellHandle(2)) = 4;
+  EXPECT_EQ(std::as_const(n).at(CellHandle(2)), 4);
+  EXPECT_THROW(n.at(CellHandle(mesh.n_cells())), InvalidInput);
+  EXPECT_THROW(n.at(CellHandle()), InvalidInput);
+}
+
+TEST(Property, WithoutANameFollowsTheMeshAndGoesWithItsLastHandle) {
+  TetMesh mesh = test::single_cell();
+  const std::size_t before = mesh.memory_bytes();
+  {
+    auto mark = mesh.request_vertex_property<int>();
+    auto other = mesh.request_vertex_property<int>();
+    mark[VertexHandle(2)] = 7;
+    EXPECT_EQ(other[VertexHandle(2)], 0) << "each is one of its own";
+    const VertexHandle v = mesh.add_vertex({1, 1, 1});
+    EXPECT_EQ(mark[v], 0);
+    mesh.delete_vertex(v);
+    mesh.collect_garbage();
+    EXPECT_EQ(mark.size(), 4U);
+    EXPECT_EQ(mark[VertexHandle(2)], 7);
+    EXPECT_TRUE(mesh.properties().vertices.names().empty());
+    TetMesh copy = mesh;
+    EXPECT_FALSE(copy.properties().vertices.empty()) << "restore() brings the values back";
+    copy.collect_garbage();
+    EXPECT_TRUE(copy.properties().vertices.empty());
+    EXPECT_FALSE(copy.get_vertex_property<int>("").has_value());
+  }
+  mesh.collect_garbage();
+  EXPECT_TRUE(mesh.properties().vertices.empty());
+  EXPECT_LE(mesh.properties().memory_bytes(), before);
+}
+
 TEST(TupleMap, ErasedEntryGivesItsPlaceToTheLastOne) {
   const auto edge = [](Index a, Index b) { return std::array{VertexHandle(a), VertexHandle(b)}; };
   TupleMap<2, int> map;
@@ -311,6 +380,49 @@ TEST(CellStatus, BitsAreIndependent) {
   EXPECT_TRUE(mesh.is_fixed(c));
   EXPECT_FALSE(mesh.is_selected(c) || mesh.is_tagged(c));
   EXPECT_FALSE(mesh.is_fixed(CellHandle(0)));
+}
+
+TEST(Property, HandlesNameTheValuesOfThatTimeAfterAMeshWasRestored) {
+  TetMesh mesh = test::kuhn_box(2);
+  auto height = mesh.request_vertex_property<double>("height", 1.5);
+  auto flag = mesh.request_cell_property<bool>("flag");
+  auto crease = mesh.request_edge_property<int>("crease");
+  auto title = mesh.request_mesh_property<std::string>("title");
+  auto first = mesh.request_cell_property<int>();
+  auto second = mesh.request_cell_property<int>();
+  const EdgeHandle e = mesh.edge_in_cell(CellHandle(3), 2);
+  first[CellHandle(3)] = 1;
+  second[CellHandle(3)] = 2;
+  height[VertexHandle(4)] = 7;
+  flag[CellHandle(3)] = true;
+  crease.set(mesh, e, 5);
+  *title = "then";
+  const TetMesh then = mesh;
+
+  auto late = mesh.request_cell_property<int>("late", -1);
+  height[mesh.add_vertex({9, 9, 9})] = 8;
+  height[VertexHandle(4)] = 2;
+  crease.set(mesh, e, 6);
+  *title = "now";
+  mesh.delete_cell(CellHandle(3));
+  mesh.collect_garbage();
+  late.fill(3);
+
+  mesh.restore(then);
+  EXPECT_EQ(check(mesh), Ok);
+  ASSERT_EQ(height.size(), then.n_vertices());
+  ASSERT_EQ(flag.size(), then.n_cells());
+  ASSERT_EQ(late.size(), then.n_cells());
+  EXPECT_EQ(height[VertexHandle(4)], 7);
+  EXPECT_TRUE(flag[CellHandle(3)]);
+  EXPECT_EQ(crease.get(mesh, e), 5);
+  EXPECT_EQ(*title, "then");
+  EXPECT_EQ(first[CellHandle(3)], 1);
+  EXPECT_EQ(second[CellHandle(3)], 2);
+  EXPECT_EQ(late[CellHandle(0)], -1);
+  height[VertexHandle(4)] = 11;  // the handle and the mesh mean the same values
+  EXPECT_EQ(mesh.request_vertex_property<double>("height")[VertexHandle(4)], 11);
+  EXPECT_EQ(std::as_const(mesh).points().size(), then.points().size());
 }
 
 }  // namespace

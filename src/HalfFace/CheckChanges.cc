@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Quick tests that a sound place passes, and for the few places that do not, slow ones that name what is
+// wrong. The quick one of a vertex goes by Euler's formula: cells that connect through faces round a vertex
+// make a connected surface of triangles, its link. Of a closed one with T triangles V - T/2 is at most 2, of
+// one with B edges on its boundary V - (T + B)/2 at most 1. Where the different vertices alone make up that
+// number, the link has each of them once: every edge of the vertex has one ring of cells.
+#include "HalfFace/CheckChanges.hh"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "HalfFace/RawArray.hh"
+
+namespace hfr {
+namespace {
+
+constexpr double kVertexNanoseconds = 500;
+
+/// The vertices of cell c that are not v, in the order that makes (v, x, y, z) positive.
+std::array<VertexHandle, 3> seen_from(const Cell& cell, VertexHandle v) {
+  const auto& f = kFaceCorners[static_cast<std::size_t>(cell.corner(v))];
+  return {cell.v[f[0]], cell.v[f[1]], cell.v[f[2]]};
+}
+
+/// A set of at most half as many keys as there is room for.
+template <std::size_t kRoom>
+class SmallSet {
+ public:
+  explicit SmallSet(unsigned n_keys) {
+    while (mask_ + 1 < 2 * n_keys) mask_ = 2 * mask_ + 1;
+    std::fill_n(slots_.begin(), mask_ + 1, kEmpty);
+  }
+  /// False when it was there.
+  bool insert(std::uint64_t key) {
+    const unsigned at = place(key);
+    if (slots_[at] == key) return false;
+    slots_[at] = key;
+    return true;
+  }
+  bool has(std::uint64_t key) const { return slots_[place(key)] == key; }
+
+ private:
+  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+  unsigned place(std::uint64_t key) const {
+    auto at = static_cast<unsigned>(key * 0x9e3779b97f4a7c15ULL >> 40) & mask_;
+    while (slots_[at] != kEmpty && slots_[at] != key) at = (at + 1) & mask_;
+    return at;
+  }
+  unsigned mask_ = 31;
+  RawArray<std::uint64_t, kRoom> slots_;
+};
+
+/// How far the cells of a vertex are from a manifold, by their vertices alone.
+struct Defects {
+  std::size_t components = 0;  ///< sets of cells that connect through faces of the vertex, beyond the first
+  std::size_t fans = 0;        ///< the same at its edges, summed up
+  std::size_t crowds = 0;      ///< faces with more than two cells
+};
+
+class ChangeChecker {
+ public:
+  ChangeChecker(const TetMesh& mesh, const TetMesh& before, par::Policy policy)
+      : mesh_(mesh), before_(before), policy_(policy) {}
+
+  CheckResult run() {
+    mark();
+    if (!arrays_fit() || !cells_fit()) return named(Rule::kDuplicateFace);
+    const std::vector<VertexHandle> doubtful = vertices_in_doubt();
+    if (doubtful.empty()) return {};
+    const auto now = defects_of(mesh_, doubtful);
+    const auto once = defects_of(before_, doubtful);
+    for (std::size_t i = 0; i < doubtful.size(); ++i) {
+      const VertexHandle v = doubtful[i];
+      if (now[i].crowds > 0) return named(Rule::kDuplicateFace);
+      if (now[i].fans > once[i].fans)
+        return offence(Rule::kDuplicateEdge, v, "an edge has more fans or rings of cells than it had");
+      if (now[i].components > once[i].components)
+        return offence(Rule::kNonManifoldVertex, v, "fewer of its cells connect through faces than did");
+    }
+    return {};
+  }
+
+ private:
+  /// What check() has to say, which a quick test has found to be wrong.
+  CheckResult named(Rule last) const {
+    CheckResult result = check(mesh_, {last, policy_});
+    if (result) result = offence(Rule::kFreeList, VertexHandle(), "cells do not fit those that were changed");
+    return result;
+  }
+  static CheckResult offence(Rule rule, VertexHandle v, const char* what) {
+    CheckResult result;
+    result.rule = rule;
+    if (v.is_valid()) result.vertices = {v};
+    result.message = (v.is_valid() ? "at vertex " + std::to_string(v.idx()) + " " : std::string()) + what;
+    return result;
+  }
+
+  bool is_changed(std::size_t c) const {
+    return c >= before_.n_cells() || mesh_.cell(CellHandle(c)).v != before_.cell(CellHandle(c)).v;
+  }
+
+  /// Marks the vertices of changed cells, as they are and as they were.
+  void mark() {
+    near_.assign(mesh_.n_vertices(), 0);
+    const auto changed =
+        par::compact<Index>(policy_, mesh_.n_cells(), [&](std::size_t i) { return is_changed(i); });
+    const auto see = [&](const TetMesh& of, CellHandle c) {
+      for (VertexHandle v : of.cell(c).v)
+        if (v.idx() < near_.size()) near_[v.idx()] = 1;
+    };
+    for (Index c : changed) {
+      see(mesh_, CellHandle(c));
+      if (c < before_.n_cells()) see(before_, CellHandle(c));
+    }
+  }
+
+  /// The free list holds the deleted cells, and handles were not renumbered.
+  bool arrays_fit() const {
+    if (mesh_.n_cells() < before_.n_cells() || mesh_.n_vertices() < before_.n_vertices()) return false;
+    const std::size_t n_deleted = par::reduce(
+        policy_, mesh_.n_cells(), std::size_t{0},
+        [&](std::size_t i) -> std::size_t { return mesh_.is_deleted(CellHandle(i)) ? 1 : 0; },
+        [](std::size_t a, std::size_t b) { return a + b; });
+    std::vector<CellHandle> free = mesh_.free_cells();
+    std::sort(free.begin(), free.end());
+    if (free.size() != n_deleted || std::adjacent_find(free.begin(), free.end()) != free.end()) return false;
+    return std::all_of(free.begin(), free.end(),
+                       [&](CellHandle c) { return c.idx() < mesh_.n_cells() && mesh_.is_deleted(c); });
+  }
+
+  /// Cells that are new, or share a face with one that is or was there, fit their vertices and mates.
+  bool cells_fit() const {
+    return par::reduce(
+        policy_, mesh_.n_cells(), true,
+        [&](std::size_t i) {
+          if (mesh_.is_deleted(CellHandle(i))) return true;
+          int n_near = 0;
+          for (VertexHandle v : mesh_.cell(CellHandle(i)).v) {
+            if (v.idx() >= near_.size()) return false;
+            n_near += near_[v.idx()];
+          }
+          return n_near < 3 || cell_fits(CellHandle(i));
+        },
+        [](bool a, bool b) { return a && b; });
+  }
+  bool cell_fits(CellHandle c) const {
+    const Cell& k = mesh_.cell(c);
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (mesh_.is_deleted(k.v[i]) || !mesh_.hook(k.v[i]).is_valid()) return false;
+      for (std::size_t j = 0; j < i; ++j)
+        if (k.v[i] == k.v[j]) return false;
+      const HalfFaceHandle m = k.mate[i];
+      if (!m.is_valid()) continue;
+      const CellHandle other = cell_of(m);
+      if (other.idx() >= mesh_.n_cells() || mesh_.is_deleted(other) || other == c) return false;
+      const HalfFaceHandle h = halfface_of(c, static_cast<int>(i));
+      if (mesh_.opposite_halfface(m) != h) return false;
+      auto mine = CyclicOrder::key(mesh_.halfface_vertices(h));
+      const auto theirs = CyclicOrder::key(mesh_.halfface_vertices(m));
+      std::swap(mine[1], mine[2]);
+      if (mine != theirs) return false;
+    }
+    return true;
+  }
+
+  /// Of the marked ones, those that the quick test does not prove sound, ascending.
+  std::vector<VertexHandle> vertices_in_doubt() const {
+    std::vector<std::uint32_t> n_cells_of(mesh_.n_vertices(), 0);
+    for (std::size_t i = 0; i < mesh_.n_cells(); ++i)
+      if (!mesh_.is_deleted(CellHandle(i)))
+        for (VertexHandle v : mesh_.cell(CellHandle(i)).v) ++n_cells_of[v.idx()];
+    std::vector<VertexHandle> doubtful;
+    for (Index v : par::compact<Index>(
+             policy_.for_items_of(kVertexNanoseconds), near_.size(),
+             [&](std::size_t i) { return near_[i] != 0 && !is_sound(VertexHandle(i), n_cells_of[i]); }))
+      doubtful.push_back(VertexHandle(v));
+    return doubtful;
+  }
+
+  bool is_sound(VertexHandle v, std::uint32_t n_cells) const {
+    const CellHandle hook = mesh_.hook(v);
+    if (n_cells == 0) return !hook.is_valid();
+    if (hook.idx() >= mesh_.n_cells() || !mesh_.cell(hook).has(v)) return false;
+    Star star;
+    if (!mesh_.gather_star(v, star) || static_cast<std::uint32_t>(star.size) != n_cells) return false;
+    SmallSet<2048> vertices(3 * n_cells), edges(3 * n_cells);
+    std::uint32_t n_vertices = 0, n_open = 0;
+    const auto key = [](VertexHandle a, VertexHandle b) {
+      return static_cast<std::uint64_t>(a.idx()) << 32 ^ static_cast<std::uint64_t>(b.idx());
+    };
+    for (int i = 0; i < star.size; ++i) {
+      const auto t = seen_from(mesh_.cell(star.cells[static_cast<std::size_t>(i)]), v);
+      for (std::size_t k = 0; k < 3; ++k) {
+        n_vertices += vertices.insert(t[k].idx()) ? 1 : 0;
+        if (!edges.insert(key(t[k], t[(k + 1) % 3]))) return false;
+      }
+    }
+    for (int i = 0; i < star.size; ++i) {
+      const Cell& cell = mesh_.cell(star.cells[static_cast<std::size_t>(i)]);
+      const auto t = seen_from(cell, v);
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (cell.mate[static_cast<std::size_t>(cell.corner(t[(k + 2) % 3]))].is_valid()) continue;
+        ++n_open;
+        if (edges.has(key(t[(k + 1) % 3], t[k]))) return false;
+      }
+    }
+    if (n_open > 0) return 2 * n_vertices == 2 + n_cells + n_open;
+    return n_cells >= 4 && 2 * n_vertices == 4 + n_cells;
+  }
+
+  /// Of the cells round each of the vertices, which are ascending.
+  static std::vector<Defects> defects_of(const TetMesh& mesh, const std::vector<VertexHandle>& vertices) {
+    std::vector<std::vector<std::array<VertexHandle, 3>>> links(vertices.size());
+    for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+      const Cell& cell = mesh.cell(CellHandle(i));
+      if (!cell.v[0].is_valid()) continue;
+      for (VertexHandle v : cell.v) {
+        const auto at = std::lower_bound(vertices.begin(), vertices.end(), v);
+        if (at != vertices.end() && *at == v)
+          links[static_cast<std::size_t>(at - vertices.begin())].push_back(seen_from(cell, v));
+      }
+    }
+    std::vector<Defects> all;
+    for (const auto& link : links) all.push_back(defects(link));
+    return all;
+  }
+
+  static Defects defects(const std::vector<std::array<VertexHandle, 3>>& link) {
+    // Triangles joined across edges, and corners joined across the edges at their vertex.
+    std::vector<std::size_t> triangle(link.size()), corner(3 * link.size());
+    for (std::size_t i = 0; i < triangle.size(); ++i) triangle[i] = i;
+    for (std::size_t i = 0; i < corner.size(); ++i) corner[i] = i;
+    const auto join = [](std::vector<std::size_t>& parent, std::size_t a, std::size_t b) {
+      while (parent[a] != a) a = parent[a];
+      while (parent[b] != b) b = parent[b];
+      parent[std::max(a, b)] = std::min(a, b);
+      return a != b;
+    };
+    Defects found;
+    std::size_t n_triangles = link.size(), n_corners = corner.size();
+    std::map<std::array<VertexHandle, 2>, std::vector<std::size_t>> at_edge;  // 3 · triangle + side
+    std::set<VertexHandle> vertices;
+    for (std::size_t i = 0; i < link.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        vertices.insert(link[i][k]);
+        at_edge[AnyOrder::key(std::array<VertexHandle, 2>{link[i][k], link[i][(k + 1) % 3]})].push_back(
+            3 * i + k);
+      }
+    }
+    for (const auto& [ends, sides] : at_edge) {
+      if (sides.size() > 2) ++found.crowds;
+      for (std::size_t s = 1; s < sides.size(); ++s) {
+        n_triangles -= join(triangle, sides[0] / 3, sides[s] / 3) ? 1 : 0;
+        for (std::size_t a = 0; a < 2; ++a) {
+          const auto corner_at = [&](std::size_t side) { return side / 3 * 3 + (side % 3 + a) % 3; };
+          const VertexHandle w = link[sides[0] / 3][(sides[0] % 3 + a) % 3];
+          const auto there = [&](std::size_t side) {
+            const std::size_t first = corner_at(side);
+            if (link[first / 3][first % 3] == w) return first;
+            return side / 3 * 3 + (side % 3 + 1 - a) % 3;
+          };
+          n_corners -= join(corner, there(sides[0]), there(sides[s])) ? 1 : 0;
+        }
+      }
+    }
+    found.components = n_triangles > 0 ? n_triangles - 1 : 0;
+    found.fans = n_corners - vertices.size();
+    return found;
+  }
+
+  const TetMesh& mesh_;
+  const TetMesh& before_;
+  par::Policy policy_;
+  std::vector<std::uint8_t> near_;
+};
+
+}  // namespace
+
+CheckResult check_changes(const TetMesh& mesh, const TetMesh& before, par::Policy policy) {
+  return ChangeChecker(mesh, before, policy).run();
+}
+
+}  // namespace hfr
