@@ -52,16 +52,20 @@ KERNEL void count_flags(__global const uchar* flags, uint n, __global uint* sums
   if (get_local_id(0) == 0) sums[get_group_id(0)] = sum;
 }
 
-// Exclusive prefix sums of `n_rows` rows of n sums each, in place; the totals go to counters[first + row].
+// Exclusive prefix sums of `n_rows` rows of n sums each, in place, a work-group a row; the totals go to
+// counters[first + row].
 KERNEL void scan_sums(__global uint* sums, uint n, uint n_rows, __global uint* counters, uint first) {
-  for (uint row = (uint)get_global_id(0); row < n_rows; row += (uint)get_global_size(0)) {
-    uint sum = 0;
-    for (uint i = 0; i < n; ++i) {
-      const uint value = sums[row * n + i];
-      sums[row * n + i] = sum;
-      sum += value;
+  __local uint tile[HFR_LOCAL];
+  for (uint row = (uint)get_group_id(0); row < n_rows; row += (uint)get_num_groups(0)) {
+    uint at = 0;
+    for (uint begin = 0; begin < n; begin += HFR_LOCAL) {
+      const uint i = begin + (uint)get_local_id(0);
+      uint total;
+      const uint before = scan_tile(tile, i < n ? sums[row * n + i] : 0, &total);
+      if (i < n) sums[row * n + i] = at + before;
+      at += total;
     }
-    counters[first + row] = sum;
+    if (get_local_id(0) == 0) counters[first + row] = at;
   }
 }
 

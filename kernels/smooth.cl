@@ -3,6 +3,7 @@
 // share no cell.
 #include "candidates.h"
 #include "common.cl"
+#include "damage.h"
 #include "newton_step.h"
 
 // Smallest decision value of the star with the vertex moved by x, or anything <= floor once it is no better.
@@ -70,6 +71,14 @@ static double quality_with(__global const cell_t* cells, __global const double* 
   return decision_of(p[0], p[1], p[2], p[3]);
 }
 
+// Cell c with vertex v at x added to what is wrong with a star.
+static hfr_damage damage_with(hfr_damage sum, __global const cell_t* cells, __global const double* points,
+                              uint c, uint v, hfr_real3 x) {
+  hfr_real3 p[4];
+  for (int k = 0; k < 4; ++k) p[k] = cells[c].v[k] == v ? x : point_of(points, cells[c].v[k]);
+  return hfr_damage_with(sum, p[0], p[1], p[2], p[3]);
+}
+
 // Moves one vertex where its star gets better; 1 when it moved. use_newton: Newton's method on stars whose
 // cells are all positive, the candidate search on the others; else the candidate search on all.
 static uint smooth_vertex(__global const cell_t* cells, __global double* points, __global double* quality,
@@ -101,6 +110,15 @@ static uint smooth_vertex(__global const cell_t* cells, __global double* points,
     more_invalid += (int)!(q > 0.0) - (int)!(quality[link[k] / 4] > 0.0);
   }
   if (!(new_worst > old_worst) || more_invalid > 0) return 0;
+  if (!(old_worst > 0.0)) {
+    hfr_damage before = hfr_no_damage();
+    hfr_damage after = hfr_no_damage();
+    for (uint k = 0; k < n; ++k) {
+      before = damage_with(before, cells, points, link[k] / 4, v, origin);
+      after = damage_with(after, cells, points, link[k] / 4, v, target);
+    }
+    if (!hfr_damage_may_become(before, after)) return 0;
+  }
   points[3 * (size_t)v] = target.x;
   points[3 * (size_t)v + 1] = target.y;
   points[3 * (size_t)v + 2] = target.z;

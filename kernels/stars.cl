@@ -72,11 +72,12 @@ KERNEL void gather_links(__global const cell_t* cells, uint n_cells, __global co
 }
 
 // Sorts every star, and counts for every vertex the corners of its cells that hold a vertex of smaller
-// number. Those with none begin the colouring.
+// number. Those with none begin the colouring. Nothing of it where a star is too large to be smoothed here.
 KERNEL void prepare_colours(__global const cell_t* cells, __global const uint* vertices,
                             __global const uint* number, __global const uint* begin,
                             __global const uint* star_size, __global uint* counters, __global uint* links,
                             __global uint* waits, __global uint* level) {
+  if (counters[HFR_BIG_STARS] > 0) return;
   FOR_EACH(i, counters[HFR_VERTICES]) {
     __global uint* link = links + begin[i];
     const uint v = vertices[i];
@@ -97,31 +98,57 @@ KERNEL void prepare_colours(__global const cell_t* cells, __global const uint* v
   }
 }
 
+// Work-items that share a vertex in colour_level(): a level has a few hundred vertices, and what takes time
+// is waiting for the cells of a star, so they are read side by side.
+#if HFR_LOCAL < 32
+#define TEAM 1
+#else
+#define TEAM 32
+#endif
+#define TEAMS (HFR_LOCAL / TEAM)
+
 // Colours the vertices of one level and finds those of the next.
 KERNEL void colour_level(__global const cell_t* cells, __global const uint* vertices,
                          __global const uint* number, __global const uint* begin,
                          __global const uint* star_size, __global const uint* links, uint step,
                          __global const uint* level, __global uint* next_level, __global uint* counters,
                          __global uint* waits, __global uchar* colour) {
+  // Colours that the neighbours of a team's vertex have: a bit each, in two words because OpenCL 1.2 has no
+  // atomic_or of 64 bits.
+  __local uint low[TEAMS];
+  __local uint high[TEAMS];
+  const uint team = (uint)get_local_id(0) / TEAM;
+  const uint lane = (uint)get_local_id(0) % TEAM;
   const uint n_level = counters[HFR_LEVEL + step % 3];
   if (get_global_id(0) == 0) counters[HFR_LEVEL + (step + 2) % 3] = 0;
   uint n_done = 0;
-  FOR_EACH(at, n_level) {
-    const uint i = level[at];
+  for (uint at = (uint)get_group_id(0) * TEAMS; at < n_level; at += (uint)get_num_groups(0) * TEAMS) {
+    const uint has_vertex = at + team < n_level;
+    const uint i = has_vertex ? level[at + team] : 0;
     const uint v = vertices[i];
     __global const uint* link = links + begin[i];
-    const uint n = star_size[v];
-    ulong used = 0;
-    for (uint k = 0; k < n; ++k) {
-      for (uint j = 0; j < 4; ++j) used |= 1UL << colour[cells[link[k] / 4].v[j]];
+    const uint n = has_vertex ? star_size[v] : 0;
+    if (lane == 0) low[team] = high[team] = 0;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    ulong seen = 0;
+    for (uint k = lane; k < n; k += TEAM) {
+      for (uint j = 0; j < 4; ++j) {
+        const uint u = cells[link[k] / 4].v[j];
+        if (u != v) seen |= 1UL << colour[u];
+      }
     }
-    used &= ~(1UL << NO_COLOUR);
-    uint first = 0;
-    while (used >> first & 1) ++first;
-    colour[v] = (uchar)first;
-    atomic_inc(&counters[HFR_COLOUR_SIZE + first]);
-    ++n_done;
-    for (uint k = 0; k < n; ++k) {
+    atomic_or(&low[team], (uint)seen);
+    atomic_or(&high[team], (uint)(seen >> 32));
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (lane == 0 && has_vertex) {
+      const ulong used = ((ulong)high[team] << 32 | low[team]) & ~(1UL << NO_COLOUR);
+      uint first = 0;
+      while (used >> first & 1) ++first;
+      colour[v] = (uchar)first;
+      atomic_inc(&counters[HFR_COLOUR_SIZE + first]);
+      ++n_done;
+    }
+    for (uint k = lane; k < n; k += TEAM) {
       for (uint j = 0; j < 4; ++j) {
         const uint u = cells[link[k] / 4].v[j];
         if (u <= v || number[u] == INVALID) continue;
@@ -129,6 +156,7 @@ KERNEL void colour_level(__global const cell_t* cells, __global const uint* vert
           next_level[atomic_inc(&counters[HFR_LEVEL + (step + 1) % 3])] = number[u];
       }
     }
+    barrier(CLK_LOCAL_MEM_FENCE);
   }
   if (n_done) atomic_add(&counters[HFR_COLOURED], n_done);
 }

@@ -478,7 +478,7 @@ void DeviceMesh::Impl::gather_stars() {
   queue.launch("prepare_colours", cells, vertices, number, begin, star_size, counters, moved, cursor, level);
 }
 
-/// Counters once every vertex has its colour.
+/// Counters once every vertex has its colour, or once it is known that a star is too large.
 DeviceMesh::Impl::Counters DeviceMesh::Impl::colour() {
   cl_uint step = 0;
   for (;;) {
@@ -487,6 +487,7 @@ DeviceMesh::Impl::Counters DeviceMesh::Impl::colour() {
                    step % 2 == 0 ? level : next_level, step % 2 == 0 ? next_level : level, counters, cursor,
                    colours);
     const Counters block = read_counters();
+    if (block[HFR_BIG_STARS] > 0) return block;
     if (block[HFR_COLOURED] == block[HFR_VERTICES]) {
       queue.launch("begin_colours", counters, colour_begin, colour_cursor);
       queue.launch("group_colours", vertices, colours, counters, colour_cursor, grouped);

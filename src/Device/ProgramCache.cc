@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Device/ProgramCache.hh"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -43,20 +44,35 @@ bool is_writable_folder(const fs::path& folder) {
   return true;
 }
 
+bool is_private_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder.parent_path(), error);
+  mkdir(folder.c_str(), S_IRWXU);  // where it is there already, what follows says whose it is
+  struct stat above {
+  }, info{};
+  if (stat(folder.parent_path().c_str(), &above) != 0 || lstat(folder.c_str(), &info) != 0) return false;
+  constexpr mode_t kOthersWrite = S_IWGRP | S_IWOTH;
+  const bool may_be_moved = (above.st_mode & kOthersWrite) != 0 && (above.st_mode & S_ISVTX) == 0;
+  const bool above_is_safe = !may_be_moved && (above.st_uid == geteuid() || above.st_uid == 0);
+  return above_is_safe && S_ISDIR(info.st_mode) && info.st_uid == geteuid() &&
+         (info.st_mode & kOthersWrite) == 0;
+}
+
 fs::path cache_folder() {
-  std::vector<fs::path> places;
-  const auto add = [&](const char* variable, const char* below) {
+  const auto value_of = [](const char* variable) {
     const char* value = std::getenv(variable);
-    if (value && *value) places.push_back(fs::path(value) / below);
+    return fs::path(value ? value : "");
   };
-  add("HFR_CACHE_DIR", "");
-  add("XDG_CACHE_HOME", "hfremesh");
-  add("HOME", ".cache/hfremesh");
+  const fs::path named = value_of("HFR_CACHE_DIR");
+  if (!named.empty() && is_writable_folder(named)) return named;
+  std::vector<fs::path> places;
+  if (const fs::path cache = value_of("XDG_CACHE_HOME"); !cache.empty()) places.push_back(cache / "hfremesh");
+  if (const fs::path home = value_of("HOME"); !home.empty()) places.push_back(home / ".cache/hfremesh");
   std::error_code error;
   const fs::path temporary = fs::temp_directory_path(error);
-  if (!error) places.push_back(temporary / ("hfremesh-" + std::to_string(getuid())));
+  if (!error) places.push_back(temporary / ("hfremesh-" + std::to_string(geteuid())));
   for (const fs::path& place : places)
-    if (is_writable_folder(place)) return place;
+    if (is_private_folder(place) && is_writable_folder(place)) return place;
   return {};
 }
 

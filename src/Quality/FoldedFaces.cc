@@ -9,6 +9,8 @@
 namespace hfr {
 namespace {
 
+constexpr double kVertexNanoseconds = 1'000;
+
 struct Corner {
   VertexHandle vertex;
   HalfFaceHandle face;
@@ -75,20 +77,28 @@ std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy
   std::sort(corners.begin(), corners.end(), [](const Corner& x, const Corner& y) {
     return x.vertex < y.vertex || (x.vertex == y.vertex && x.face < y.face);
   });
-  std::vector<HalfFaceHandle> folded;
-  for (std::size_t begin = 0; begin < corners.size();) {
-    const VertexHandle v = corners[begin].vertex;
-    std::size_t end = begin;
-    while (end < corners.size() && corners[end].vertex == v) ++end;
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t j = i + 1; j < end; ++j) {
-        if (!fold(mesh, v, corners[i].face, corners[j].face)) continue;
-        folded.push_back(corners[i].face);
-        folded.push_back(corners[j].face);
+  std::vector<std::size_t> first;  // corner of each vertex
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (i == 0 || corners[i].vertex != corners[i - 1].vertex) first.push_back(i);
+  first.push_back(corners.size());
+  const std::size_t n_vertices = first.size() - 1;
+  const int n_parts = par::thread_count(policy.for_items_of(kVertexNanoseconds), n_vertices);
+  std::vector<std::vector<HalfFaceHandle>> found(static_cast<std::size_t>(n_parts));
+  par::parts(n_parts, [&](int part) {
+    auto& mine = found[static_cast<std::size_t>(part)];
+    const std::size_t end = par::part_begin(n_vertices, n_parts, part + 1);
+    for (std::size_t v = par::part_begin(n_vertices, n_parts, part); v < end; ++v) {
+      for (std::size_t i = first[v]; i < first[v + 1]; ++i) {
+        for (std::size_t j = i + 1; j < first[v + 1]; ++j) {
+          if (!fold(mesh, corners[i].vertex, corners[i].face, corners[j].face)) continue;
+          mine.push_back(corners[i].face);
+          mine.push_back(corners[j].face);
+        }
       }
     }
-    begin = end;
-  }
+  });
+  std::vector<HalfFaceHandle> folded;
+  for (const auto& part : found) folded.insert(folded.end(), part.begin(), part.end());
   std::sort(folded.begin(), folded.end());
   folded.erase(std::unique(folded.begin(), folded.end()), folded.end());
   return folded;

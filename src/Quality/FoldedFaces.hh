@@ -10,8 +10,9 @@
 namespace hfr {
 
 /// Boundary faces that lie on or go through another one with which they share a vertex or an edge, ascending.
-/// While the boundary stays as it is, no mesh inside of it is free of inverted and flat cells there, unless
-/// the faces are the two sides of a slit. Faces that meet without sharing a vertex are not looked for.
+/// That alone proves nothing of the cells: the faces may be the two sides of a slit, and a boundary that goes
+/// through itself may be filled by positive cells. See unfillable_faces(). Faces that meet without sharing a
+/// vertex are not looked for.
 std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy = {});
 
 }  // namespace hfr

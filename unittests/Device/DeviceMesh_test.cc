@@ -17,6 +17,7 @@
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/LimitMeshes.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothNewton.hh"
 #include "Operators/VertexRemoval.hh"
@@ -239,6 +240,47 @@ TEST_P(OnDevice, VertexIsRemovedFromAStarOfUpTo256CellsAsOnTheHost) {
     device_->download(there.mesh, there.work);
     expect_same(host, there);
     EXPECT_EQ(check(there.mesh), Ok);
+  }
+}
+
+TEST_P(OnDevice, StarsOfUpTo256CellsAreSmoothedAndLargerOnesLeftToTheHost) {
+  for (const Index n :
+       {Index{86}, Index{128}, Index{129}, Index{2000}}) {  // 2n cells at the ends of the edge
+    TetMesh mesh = built(hub(n));
+    mesh.set_point(VertexHandle(0), {0.3, 0.2, 0.6});
+    Stand host(std::move(mesh));
+    Stand there = host;
+    device_->upload(there.mesh, there.work);
+    const auto counts = device_->smooth({2, 0, 0}, true, there.work.clock);
+    ASSERT_EQ(counts.has_value(), n <= 128);
+    if (counts) {
+      const Worklist list(host.mesh, kSerial, [](CellHandle) { return true; });
+      const auto vertices = vertex_seeds(host.mesh, list, host.work.frozen, kSerial);
+      EXPECT_EQ(counts->winners,
+                smooth_pass(host.mesh, host.work, NewtonSearch{}, VolumeLength{}, vertices, kSerial).winners);
+      EXPECT_GT(counts->winners, 0U);
+    }
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
+  }
+}
+
+TEST_P(OnDevice, SixtyThreeColoursAreSmoothedAndMoreLeftToTheHost) {
+  for (const Index n : {Index{63}, Index{64}, Index{70}}) {
+    Stand host(built(neighbourly(n)));
+    std::fill(host.work.frozen.begin(), host.work.frozen.end(), 0);  // as if none were on the boundary
+    Stand there = host;
+    device_->upload(there.mesh, there.work);
+    const auto counts = device_->smooth({2, 0, 0}, false, there.work.clock);
+    ASSERT_EQ(counts.has_value(), n <= 63) << n;
+    if (counts) {
+      const auto all = all_vertices(host.mesh);
+      EXPECT_EQ(counts->winners,
+                smooth_pass(host.mesh, host.work, CandidateSearch{}, VolumeLength{}, all, kSerial).winners);
+      EXPECT_GT(counts->winners, 0U);
+    }
+    device_->download(there.mesh, there.work);
+    expect_same(host, there);
   }
 }
 
