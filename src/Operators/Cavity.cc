@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "Quality/Damage.hh"
+
 namespace hfr {
 namespace {
 
@@ -95,7 +97,7 @@ bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
         if (!m.is_valid() || m < h) continue;
         const auto first = cavity.dead.begin() + static_cast<std::ptrdiff_t>(cavity.n_dead_first);
         const auto other = std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m));
-        // What an interface is labelled with is the surface's to keep.
+        // See find_heirs() for what an interface is labelled with.
         const bool is_first = std::find(cavity.dead.begin(), first, c) != first;
         const bool inside = other != cavity.dead.end() && is_first == (other < first);
         const auto face = mesh.halfface_vertices(h);
@@ -111,37 +113,123 @@ bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
   return !cavity.removed.is_valid() || labels.vertex(cavity.removed) == 0;
 }
 
-/// True when some cell has all the vertices. Each of them is asked: the star of a vertex whose cells do not
-/// connect through faces is only known in part.
-bool exists(const TetMesh& mesh, const std::array<VertexHandle, 2>& edge, Star& scratch) {
-  return mesh.has_edge(edge[0], edge[1], scratch) || mesh.has_edge(edge[1], edge[0], scratch);
+/// False only when it is sure that no cell has all the vertices.
+template <std::size_t N>
+bool may_exist(const TetMesh& mesh, const std::array<VertexHandle, N>& wanted, const StarKnowledge& known,
+               Star& scratch) {
+  const auto has_all = [&](CellHandle c) {
+    const Cell& cell = mesh.cell(c);
+    return std::all_of(wanted.begin(), wanted.end(), [&](VertexHandle v) { return cell.has(v); });
+  };
+  for (VertexHandle v : wanted) {
+    if (!mesh.hook(v).is_valid()) return false;
+    if (known.pinched) {
+      const std::span<const CellHandle> all = known.pinched->cells(v);
+      if (!all.empty()) return std::any_of(all.begin(), all.end(), has_all);
+    }
+    if (!mesh.gather_star(v, scratch)) continue;  // too large
+    const std::span<const CellHandle> star(scratch.cells.data(), static_cast<std::size_t>(scratch.size));
+    if (std::any_of(star.begin(), star.end(), has_all)) return true;
+    const bool is_all =
+        !known.star_size.empty() && known.star_size[v.idx()] == static_cast<std::uint32_t>(scratch.size);
+    if (is_all) return false;
+  }
+  if (!known.star_size.empty()) return true;
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i)
+    if (!mesh.is_deleted(CellHandle(i)) && has_all(CellHandle(i))) return true;
+  return false;
 }
-bool exists(const TetMesh& mesh, const std::array<VertexHandle, 3>& face, Star& scratch) {
-  return mesh.has_face(face[0], face[1], face[2], scratch) ||
-         mesh.has_face(face[1], face[2], face[0], scratch) ||
-         mesh.has_face(face[2], face[0], face[1], scratch);
+
+bool has_face_of_three_cells(const Cavity& cavity) {
+  FixedVector<std::array<VertexHandle, 3>, 4 * Cavity::kCapacity> faces;
+  for (const Tet& t : cavity.born)
+    for (const auto& f : kFaceCorners) faces.push_back(AnyOrder::key<3>({t[f[0]], t[f[1]], t[f[2]]}));
+  std::sort(faces.begin(), faces.end());
+  for (std::size_t i = 2; i < faces.size(); ++i)
+    if (faces[i] == faces[i - 2]) return true;
+  return false;
+}
+
+/// Number of born cells with these vertices.
+template <std::size_t N>
+int n_born_with(const Cavity& cavity, const std::array<VertexHandle, N>& wanted) {
+  int n = 0;
+  for (const Tet& t : cavity.born)
+    n += std::all_of(wanted.begin(), wanted.end(),
+                     [&](VertexHandle v) { return std::find(t.begin(), t.end(), v) != t.end(); })
+             ? 1
+             : 0;
+  return n;
+}
+
+/// Appends the faces into which the new vertex cuts one that goes; n_sides born cells have each.
+bool append_heirs(const Cavity& cavity, const std::array<VertexHandle, 3>& parent, int n_sides, Heirs& out) {
+  constexpr std::size_t kNone = 3;
+  if (!cavity.new_vertex || out.size() + 3 > 96) return false;
+  std::size_t missing = kNone;
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<VertexHandle, 3> child = parent;
+    child[k] = Cavity::kNewVertex;
+    if (n_born_with(cavity, child) == n_sides) {
+      out.push_back({parent, child});
+      continue;
+    }
+    if (missing != kNone) return false;
+    missing = k;
+  }
+  // The child at an edge may be missing only where the new vertex lies on the edge.
+  return missing == kNone ||
+         n_born_with<2>(cavity, {parent[(missing + 1) % 3], parent[(missing + 2) % 3]}) == 0;
 }
 
 }  // namespace
 
-bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch) {
-  if (cavity.moved.is_valid()) return true;
-  if (mesh.has_regions()) {
-    for (std::size_t i = 0; i < cavity.dead.size(); ++i) {
-      const std::size_t first = i < cavity.n_dead_first ? 0 : cavity.n_dead_first;
-      if (mesh.region(cavity.dead[i]) != mesh.region(cavity.dead[first])) return false;
+bool find_heirs(const TetMesh& mesh, const Cavity& cavity, Heirs& out) {
+  out.clear();
+  const Labels& labels = mesh.labels();
+  const Locks& locks = mesh.locks();
+  if (cavity.surface_is_held || (labels.faces.empty() && locks.faces.empty())) return true;
+  const auto first = cavity.dead.begin() + static_cast<std::ptrdiff_t>(cavity.n_dead_first);
+  for (const CellHandle* c = cavity.dead.begin(); c != cavity.dead.end(); ++c) {
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle m = mesh.opposite_halfface(halfface_of(*c, k));
+      // A face between the regions once, from the first.
+      if (m.is_valid() &&
+          (c >= first || std::find(first, cavity.dead.end(), cell_of(m)) == cavity.dead.end()))
+        continue;
+      const auto face = mesh.halfface_vertices(halfface_of(*c, k));
+      const std::size_t at = labels.faces.position(face);
+      const bool is_labelled = at != labels.faces.size();
+      const bool is_fixed = locks.faces.find(face) != nullptr ||
+                            (is_labelled && locks.patches.contains(labels.faces.entries()[at].value));
+      if ((!is_labelled && !is_fixed) || n_born_with(cavity, face) > 0) continue;
+      if (is_fixed || !append_heirs(cavity, labels.faces.entries()[at].vertices, m.is_valid() ? 2 : 1, out))
+        return false;
     }
   }
-  if (!labels_survive(mesh, cavity)) return false;
-  if (!check_links) return true;
-  if (!is_ball(mesh, cavity)) return false;
+  return true;
+}
 
+void inherit_labels(TetMesh& mesh, std::span<const Heir> heirs, VertexHandle new_vertex) {
+  auto& faces = mesh.labels().faces;
+  for (std::size_t i = 0; i < heirs.size(); ++i) {
+    const auto& parent = heirs[i].parent;
+    const int label = *faces.find(parent);
+    auto child = heirs[i].child;
+    std::replace(child.begin(), child.end(), Cavity::kNewVertex, new_vertex);
+    if (i + 1 == heirs.size() || heirs[i + 1].parent != parent) faces.erase_unordered(parent);
+    faces.set(child, label);
+  }
+}
+
+bool makes_twice(const TetMesh& mesh, const Cavity& cavity, Star& scratch, const StarKnowledge& known) {
+  if (has_face_of_three_cells(cavity)) return true;
   const auto before = dead_tets(mesh, cavity);
   const SimplexSet<2> old_edges = edges_of(before);
   const SimplexSet<3> old_faces = faces_of(before);
   for (const auto& edge : edges_of(cavity.born)) {
     if (old_edges.has(edge) || edge[1] == Cavity::kNewVertex) continue;
-    if (exists(mesh, edge, scratch)) return false;
+    if (may_exist(mesh, edge, known, scratch)) return true;
   }
   for (const auto& face : faces_of(cavity.born)) {
     if (old_faces.has(face) || face[2] == Cavity::kNewVertex) continue;
@@ -149,9 +237,36 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
     if (!old_edges.has({face[0], face[1]}) || !old_edges.has({face[0], face[2]}) ||
         !old_edges.has({face[1], face[2]}))
       continue;
-    if (exists(mesh, face, scratch)) return false;
+    if (may_exist(mesh, face, known, scratch)) return true;
   }
-  return true;
+  return false;
+}
+
+bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch,
+                const StarKnowledge& known) {
+  if (cavity.moved.is_valid()) return true;
+  if (mesh.has_regions()) {
+    for (std::size_t i = 0; i < cavity.dead.size(); ++i) {
+      const std::size_t first = i < cavity.n_dead_first ? 0 : cavity.n_dead_first;
+      if (mesh.region(cavity.dead[i]) != mesh.region(cavity.dead[first])) return false;
+    }
+  }
+  Heirs heirs;
+  if (!labels_survive(mesh, cavity) || !find_heirs(mesh, cavity, heirs)) return false;
+  return !check_links || (is_ball(mesh, cavity) && !makes_twice(mesh, cavity, scratch, known));
+}
+
+bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells) {
+  Damage before, after;
+  for (CellHandle c : cells) {
+    before.add(mesh, c);
+    if (cavity.moved.is_valid()) after.add(mesh, c, cavity.moved, cavity.target);
+  }
+  const auto at = [&](VertexHandle v) {
+    return v == Cavity::kNewVertex ? *cavity.new_vertex : mesh.point(v);
+  };
+  for (const Tet& t : cavity.born) after.add(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
+  return !before.may_become(after);
 }
 
 VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity) {
@@ -169,22 +284,20 @@ VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity) {
   return nearest;
 }
 
-std::size_t created_simplices(const TetMesh& mesh, const Cavity& cavity, std::span<Simplex> out) {
-  if (cavity.moved.is_valid() || cavity.new_vertex) return 0;
+std::vector<Simplex> created_simplices(const TetMesh& mesh, const Cavity& cavity) {
+  std::vector<Simplex> created;
+  if (cavity.moved.is_valid()) return created;
   const auto before = dead_tets(mesh, cavity);
-  std::size_t n = 0;
-  const auto emit = [&](const Simplex& simplex) {
-    if (n < out.size()) out[n++] = simplex;
-  };
   const SimplexSet<2> old_edges = edges_of(before);
   for (const auto& edge : edges_of(cavity.born))
-    if (!old_edges.has(edge)) emit({edge[0], edge[1], VertexHandle()});
+    if (edge[1] != Cavity::kNewVertex && !old_edges.has(edge))
+      created.push_back({edge[0], edge[1], VertexHandle()});
   const SimplexSet<3> old_faces = faces_of(before);
   for (const auto& face : faces_of(cavity.born))
-    if (!old_faces.has(face) && old_edges.has({face[0], face[1]}) && old_edges.has({face[0], face[2]}) &&
-        old_edges.has({face[1], face[2]}))
-      emit(face);
-  return n;
+    if (face[2] != Cavity::kNewVertex && !old_faces.has(face) && old_edges.has({face[0], face[1]}) &&
+        old_edges.has({face[0], face[2]}) && old_edges.has({face[1], face[2]}))
+      created.push_back(face);
+  return created;
 }
 
 }  // namespace hfr

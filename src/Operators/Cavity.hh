@@ -3,10 +3,13 @@
 #define HFR_OPERATORS_CAVITY_HH
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Operators/PinchedStars.hh"
 
 namespace hfr {
 
@@ -59,11 +62,14 @@ struct Cavity {
   Vec3 target;                     ///< of `moved`
   /// Where dead cells lie in two regions, as many of `dead` and `born` belong to the first and stand first.
   std::size_t n_dead_first = 0, n_born_first = 0;
+  /// Somebody holds the surface (SurfaceMesh) and writes the labels of its faces; nobody else looks at them.
+  bool surface_is_held = false;
 
   void clear() {
     dead.clear();
     born.clear();
     n_dead_first = n_born_first = 0;
+    surface_is_held = false;
     removed.reset();
     new_vertex.reset();
     moved.reset();
@@ -87,10 +93,37 @@ inline std::array<CavityPart, 2> parts_of(const Cavity& cavity) {
 /// go:
 ///  - all dead cells lie in one region, or in two as the cavity says,
 ///  - no face between dead cells of one region is labelled or fixed, and no such edge is lost,
+///  - a labelled face of the boundary or between the regions that goes is cut by the new vertex into faces
+///    that can take its label (see find_heirs()), and none that is fixed goes,
 ///  - the outer faces are a sphere and no edge or face would exist twice (the full link condition; it can
-///  only
-///    fail where cells are inverted or the boundary meets itself, so callers leave it out elsewhere).
-bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch);
+///    only fail where cells are inverted or the boundary meets itself, so callers leave it out elsewhere).
+/// `known` is what the last of these is asked of; see makes_twice().
+bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch,
+                const StarKnowledge& known = {});
+
+/// The last part of the link condition by itself: true when an edge or face that the cavity creates exists
+/// already, or when it makes a face of three cells. What no vertex can tell counts as existing; without
+/// `known` it is looked for in the whole mesh.
+bool makes_twice(const TetMesh& mesh, const Cavity& cavity, Star& scratch, const StarKnowledge& known = {});
+
+/// A labelled face that goes with the cavity, and a born one that lies on it and takes its label; both with
+/// their vertices as the label names them.
+struct Heir {
+  std::array<VertexHandle, 3> parent, child;
+};
+using Heirs = FixedVector<Heir, 96>;
+/// The heirs of the labelled faces of the boundary, and of those between the two regions, that no born cell
+/// has; none where the surface is held. A face has heirs when the new vertex cuts it: into three, or into two
+/// where an edge of it goes too. False when one has none, is fixed, or there are too many.
+bool find_heirs(const TetMesh& mesh, const Cavity& cavity, Heirs& out);
+/// Takes the labels from the parents to the children, in which `new_vertex` stands in for
+/// Cavity::kNewVertex; parents' labels go. The heirs of a parent stand together.
+void inherit_labels(TetMesh& mesh, std::span<const Heir> heirs, VertexHandle new_vertex);
+
+/// True when the change would leave `cells`, the dead ones or those of the vertex that moves, more damaged
+/// than they are: more of them inverted, more inverted or flat, or more overlap while no fewer are inverted.
+/// A worst cell that rises must not pay for itself so; see kernels/damage.h.
+bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells);
 
 /// Of the dead cells' vertices the one nearest to the new vertex, which inherits its data. Needs a new
 /// vertex.
@@ -99,9 +132,9 @@ VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity);
 /// An edge or a face (third vertex invalid for an edge), vertices ascending.
 using Simplex = std::array<VertexHandle, 3>;
 
-/// What the cavity creates that none of its dead cells has: edges, or, when it creates none, faces. Two
-/// cavities that create the same simplex must not be committed together.
-std::size_t created_simplices(const TetMesh& mesh, const Cavity& cavity, std::span<Simplex> out);
+/// What the cavity creates that none of its dead cells has: edges, and faces with none of these; what has the
+/// new vertex is left out. Two cavities that create the same simplex must not be committed together.
+std::vector<Simplex> created_simplices(const TetMesh& mesh, const Cavity& cavity);
 
 }  // namespace hfr
 

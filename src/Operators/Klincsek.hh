@@ -23,6 +23,7 @@ class RingTriangulation {
   template <class Value>
   double solve(double floor, Value&& value) {
     double result = floor;
+    if (n_ < 2) return result;  // no side; g++ fears that best_[0] is read then
     HFR_KLINCSEK(n_, HFR_MAX_RING, best_.data(), apex_.data(), floor, value, result);
     return result;
   }

@@ -28,7 +28,8 @@ static_assert(kBlock == kLowestBlock);
 
 }  // namespace
 
-/// Values and gradients of the functions that hold a step back, in the order of the cells. Up to the next
+/// Values and gradients of the functions that hold a step back, in the order of the cells; of more than
+/// kCapacity, those of the first cells: whether a step is taken is asked of all cells. Up to the next
 /// multiple of kBlock, the values are infinite.
 struct detail::MaxMinSlopes {
   static constexpr std::size_t kCapacity = 384;
@@ -340,7 +341,7 @@ hfr_real3 to_kernel(Vec3 a) { return {a.x, a.y, a.z}; }
 }  // namespace
 
 void MaxMinForm::add(Vec3 a, Vec3 b, Vec3 c) {
-  HFR_ASSERT(!full());
+  blocks_.reserve(size_ / kBlock + 1);
   Block& block = blocks_[size_ / kBlock];
   const std::size_t i = size_++ % kBlock;
   put(to_kernel(a - origin_), block.px[0][i], block.py[0][i], block.pz[0][i]);

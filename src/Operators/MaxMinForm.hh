@@ -5,9 +5,8 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "HalfFace/RawArray.hh"
+#include "HalfFace/SpillArray.hh"
 #include "HalfFace/TetMesh.hh"
-#include "Operators/Cavity.hh"
 #include "Quality/Metrics.hh"
 
 namespace hfr {
@@ -52,9 +51,9 @@ class MaxMinForm {
     axis_ = axis;
   }
 
-  /// Adds the cell (a, b, c, point); positive in this order.
+  /// Adds the cell (a, b, c, point); positive in this order. Cells beyond Star::kCapacity take memory from
+  /// the heap.
   void add(Vec3 a, Vec3 b, Vec3 c);
-  bool full() const { return size_ == Star::kCapacity; }
 
   /// Place at which the smallest sin² is as large as a non-smooth steepest ascent from `start` takes it;
   /// `start` itself when some cell is not positive there, or nothing is gained.
@@ -76,7 +75,7 @@ class MaxMinForm {
   double unit_ = 0;
   std::size_t size_ = 0;
   std::size_t asked_first_ = 0;  // block with which worst() begins: the one that ended it last time
-  RawArray<Block, Star::kCapacity / Block::kSize> blocks_;
+  SpillArray<Block, Star::kCapacity / Block::kSize> blocks_;
 };
 
 }  // namespace hfr

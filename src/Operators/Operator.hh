@@ -6,6 +6,7 @@
 #include <concepts>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <type_traits>
 
 #include "HalfFace/TetMesh.hh"
@@ -37,7 +38,9 @@ struct PlanBase {
 ///    The writing is the scheduler's, because the mates of a cavity's outer faces depend on the other
 ///    cavities of the same round.
 ///  - identity: vertices that name the seed whatever the storage order, for priorities among equals.
-///  - metric: gives the decision value of a cell.
+///  - metric: gives the decision value of a cell. Rounds write the qualities of the cells that they make with
+///    it, so an operator that measures nothing holds the metric that the workspace's qualities are in.
+/// A seed may lie on the boundary: what has no mate has none afterwards. A cavity has one new vertex at most.
 template <class Op>
 concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
     std::is_trivially_copyable_v<typename Op::Plan> &&
@@ -50,6 +53,11 @@ concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
   { plan.seed } -> std::convertible_to<typename Op::Seed>;
   op.metric;
 };
+
+/// What a plan says of its cavity and the cavity does not hold; empty where they agree. Rounds hand out slots
+/// by the plan and write by the cavity, so builds with assertions stop where the two differ. `scope` is that
+/// of the plan's seed.
+std::string_view disagreement(const PlanBase& plan, const Cavity& cavity, std::span<const CellHandle> scope);
 
 /// What identity() of an operator on an edge gives: its ends in ascending order, then two invalid handles.
 inline Tet edge_identity(const TetMesh& mesh, EdgeHandle edge) {
@@ -75,6 +83,10 @@ std::vector<std::uint32_t> star_sizes(const TetMesh& mesh);
 /// True when the cells of v do not connect through faces, or are too many for a Star: an operator that walks
 /// its star would miss some. `star_size`: all cells of v.
 bool is_pinched(const TetMesh& mesh, VertexHandle v, std::uint32_t star_size, Star& scratch);
+/// Per-vertex byte: 1 where the vertex is pinched; empty when none is. Walks only stars of which one cell
+/// does not show that they are in one piece: on an ordered mesh, few.
+std::vector<std::uint8_t> pinched_vertices(const TetMesh& mesh, std::span<const std::uint32_t> star_size,
+                                           par::Policy policy = {});
 /// constrained_vertices() and those that are pinched. Walks every star; a run asks for the few vertices that
 /// it comes upon instead.
 std::vector<std::uint8_t> frozen_vertices(const TetMesh& mesh, par::Policy policy = {});

@@ -131,12 +131,15 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
     new_vertex = mesh.add_vertex(*cavity.new_vertex);
     mesh.copy_vertex_data(nearest_vertex(mesh, cavity), new_vertex);
   }
+  Heirs heirs;
+  find_heirs(mesh, cavity, heirs);
   std::vector<OuterFace> notes;
   write_cells(mesh, cavity, slots, new_vertex, notes);
   for (const OuterFace& note : notes)
     if (note.behind.is_valid()) mesh.set_mate(note.behind, note.after);
   for (std::size_t i = slots.size(); i-- > 0;)
     for (VertexHandle v : mesh.cell(slots[i]).v) mesh.set_hook(v, slots[i]);
+  inherit_labels(mesh, heirs, new_vertex);
   if (cavity.removed.is_valid()) mesh.mark_deleted(cavity.removed);
 }
 

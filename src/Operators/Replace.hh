@@ -38,8 +38,18 @@ bool apply(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
   if (!plan) return false;
   Cavity cavity;
   op.commit(mesh, *plan, cavity);
+#ifndef NDEBUG
+  Scope scope;
+  op.scope(mesh, plan->seed, scope);
+  HFR_ASSERT(disagreement(*plan, cavity, scope).empty());
+#endif
   Star scratch;
   if (!admissible(mesh, cavity, true, scratch)) return false;
+  if (!(plan->old_worst > 0)) {
+    Scope cells;
+    op.scope(mesh, plan->seed, cells);
+    if (worsens_damage(mesh, cavity, cells)) return false;
+  }
   replace(mesh, cavity);
   return true;
 }

@@ -21,7 +21,8 @@ struct Move {
 
 /// What all smoothing operators share: seed, scope, commit. `Search` finds the place:
 /// std::optional<Move> search(mesh, v, link, metric, quality), where `link` holds the half-face opposite v of
-/// each cell of the star and `quality` the decision value per cell.
+/// each cell of the star, of any size, and `quality` the decision value per cell. As an operator of a round
+/// it leaves a vertex of more than Star::kCapacity cells alone; smooth_pass() moves that, too.
 template <class Search, class Metric>
 struct Smooth {
   using Seed = VertexHandle;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "HalfFace/SpillArray.hh"
 #include "Operators/Metrics.hh"
 
 namespace hfr {
@@ -12,15 +13,16 @@ template <class Metric>
 std::optional<Move> LaplacianSearch::operator()(const TetMesh& mesh, VertexHandle v,
                                                 std::span<const HalfFaceHandle> link, const Metric& metric,
                                                 std::span<const double> quality) const {
-  FixedVector<VertexHandle, 3 * Star::kCapacity> neighbours;
+  SpillArray<VertexHandle, 3 * Star::kCapacity> neighbours(3 * link.size());
+  VertexHandle* end = neighbours.data();
   for (HalfFaceHandle h : link)
-    for (VertexHandle w : mesh.halfface_vertices(h)) neighbours.push_back(w);
-  std::sort(neighbours.begin(), neighbours.end());
-  const VertexHandle* const end = std::unique(neighbours.begin(), neighbours.end());
-  const auto n = static_cast<double>(end - neighbours.begin());
+    for (VertexHandle w : mesh.halfface_vertices(h)) *end++ = w;
+  std::sort(neighbours.data(), end);
+  end = std::unique(neighbours.data(), end);
+  const auto n = static_cast<double>(end - neighbours.data());
   const Vec3 origin = mesh.point(v);
   Vec3 offset;
-  for (const VertexHandle* w = neighbours.begin(); w != end; ++w) offset = offset + (mesh.point(*w) - origin);
+  for (const VertexHandle* w = neighbours.data(); w != end; ++w) offset = offset + (mesh.point(*w) - origin);
   Move move;
   move.target = origin + (step / n) * offset;
   move.old_worst = worst_of(link, quality);

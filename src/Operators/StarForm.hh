@@ -6,9 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "HalfFace/RawArray.hh"
+#include "HalfFace/SpillArray.hh"
 #include "HalfFace/TetMesh.hh"
-#include "Operators/Cavity.hh"
 #include "kernels/newton_step.h"
 
 namespace hfr {
@@ -16,14 +15,15 @@ namespace hfr {
 inline hfr_real3 to_kernel(Vec3 a) { return hfr_make3(a.x, a.y, a.z); }
 
 /// Volume-length of a vertex's star as a function of where the vertex stands, relative to its present place.
-/// Kept as one array a coefficient, so that the searches work on several cells or places an instruction (see
-/// with_widest_vectors()).
+/// Kept as one row a coefficient in blocks of a few cells, so that the searches work on several cells or
+/// places an instruction (see with_widest_vectors()). A star of more than Star::kCapacity cells takes memory
+/// from the heap.
 class StarForm {
  public:
   static constexpr std::size_t kTrials = 16;
   using Trials = std::array<double, kTrials>;
 
-  /// link: the half-face opposite v of each cell of the star, at most Star::kCapacity.
+  /// link: the half-face opposite v of each cell of the star, any number.
   StarForm(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link);
 
   std::size_t size() const { return size_; }
@@ -42,20 +42,21 @@ class StarForm {
   /// in the order of the cells.
   hfr_newton_share newton(hfr_real3 x, double m_max) const;
 
-  /// Coefficients as in hfr_star_cell. Up to the next multiple of kBlock, the last cell is repeated.
   static constexpr std::size_t kBlock = 8;
-  struct Coefficients {
-    using Array = RawArray<double, Star::kCapacity>;
-    alignas(64) Array normal_x;
-    Array normal_y, normal_z, det, sum_x, sum_y, sum_z, sum2;
+  /// Coefficients of a few cells, as in hfr_star_cell. The last block is filled up with the last cell.
+  struct Block {
+    alignas(64) double normal_x[kBlock];
+    double normal_y[kBlock], normal_z[kBlock], det[kBlock];
+    double sum_x[kBlock], sum_y[kBlock], sum_z[kBlock], sum2[kBlock];
   };
 
  private:
-  std::size_t padded() const { return (size_ + kBlock - 1) / kBlock * kBlock; }
+  std::size_t n_blocks() const { return (size_ + kBlock - 1) / kBlock; }
 
-  Coefficients cells_;
   std::size_t size_ = 0;
-  FixedVector<std::uint8_t, Star::kCapacity> order_;  // in which worst() asks
+  std::size_t n_ordered_ = 0;  // size_ once worst() was asked
+  SpillArray<Block, Star::kCapacity / kBlock> blocks_;
+  SpillArray<std::uint32_t, Star::kCapacity> order_;  // in which worst() asks
 };
 static_assert(Star::kCapacity % StarForm::kBlock == 0);
 

@@ -99,9 +99,9 @@ std::optional<Vec3> newton_step(std::span<const hfr_star_cell> cells, Vec3 x, do
 }  // namespace
 
 Vec3 unfold(const StarForm& star, int steps) {
-  FixedVector<hfr_star_cell, Star::kCapacity> list;
-  for (std::size_t i = 0; i < star.size(); ++i) list.push_back(star.cell(i));
-  const std::span<const hfr_star_cell> cells = list;
+  SpillArray<hfr_star_cell, Star::kCapacity> list(star.size());
+  for (std::size_t i = 0; i < star.size(); ++i) list[i] = star.cell(i);
+  const std::span<const hfr_star_cell> cells(list.data(), star.size());
   Vec3 place;
   if (cells.empty()) return place;
   double lowest = 0;

@@ -3,7 +3,6 @@
 #define HFR_SCHEDULER_ROUND_HH
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <limits>
@@ -15,6 +14,8 @@
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Operator.hh"
 #include "Operators/Replace.hh"
+#include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 #include "Parallel/Parallel.hh"
 #include "Scheduler/ChunkedArray.hh"
 #include "Scheduler/Rank.hh"
@@ -26,7 +27,8 @@ namespace hfr {
 struct RoundOptions {
   par::Policy policy;
   /// Hold the full link condition, also among the winners of the round. Needed while any cell is inverted or
-  /// flat; elsewhere a cluster whose cells stay positive cannot break it.
+  /// flat; elsewhere a cluster whose cells stay positive cannot break it. Where it has two vertices that are
+  /// pinched (Workspace::pinched), what would come twice is refused in any case.
   bool check_links = true;
   std::uint64_t seed = 1;
   /// Rank by the exact worst cell, as the paper's ASSIGNMENT does, instead of by buckets of it. Neighbours
@@ -111,6 +113,7 @@ class Round {
     std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_pieces));
     std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_pieces), 0);
     const bool check = needs_admission();
+    pinched_stars_ = PinchedStars(mesh_, work_.pinched, options_.policy);
     par::Policy pieces = options_.policy;
     pieces.serial_below = 0;
     par::for_each_dynamic(pieces, static_cast<std::size_t>(n_pieces), 1, [&](std::size_t piece) {
@@ -123,13 +126,7 @@ class Round {
         visit_seeds(i, [&](typename Op::Seed seed) {
           ++n;
           const std::optional<Plan> plan = op.evaluate(mesh_, seed);
-          if (!plan) return;
-          if (check) {
-            op.commit(mesh_, *plan, cavity);
-            if (!admissible(mesh_, cavity, options_.check_links, scratch)) return;
-            if (options_.check_links && makes_more_invalid(op, cavity)) return;
-          }
-          mine.push_back(*plan);
+          if (plan && may_be_committed(op, *plan, check, cavity, scratch)) mine.push_back(*plan);
         });
       }
       n_seeds[piece] = n;
@@ -142,21 +139,47 @@ class Round {
   bool needs_admission() const {
     const Labels& labels = mesh_.labels();
     return options_.check_links || mesh_.has_regions() || !labels.faces.empty() || !labels.edges.empty() ||
-           !labels.vertices.empty() || !mesh_.locks().empty();
+           !labels.vertices.empty() || !mesh_.locks().empty() || !work_.pinched.empty();
   }
 
-  /// A worst cell that rises must not pay for itself with more inverted or flat cells.
-  bool makes_more_invalid(const Op& op, const Cavity& cavity) const {
+  bool may_be_committed(const Op& op, const Plan& plan, bool check, Cavity& cavity, Star& scratch) const {
+    const bool damaged = !(plan.old_worst > 0);
+    if (!check && !damaged) return true;
+    op.commit(mesh_, plan, cavity);
+    if (cavity.moved.is_valid() && !work_.pinched.empty() && work_.pinched[cavity.moved.idx()]) return false;
+    const StarKnowledge known{work_.star_size, &pinched_stars_};
+    if (!admissible(mesh_, cavity, options_.check_links, scratch, known)) return false;
+    if (!options_.check_links && holds_links(cavity) && makes_twice(mesh_, cavity, scratch, known))
+      return false;
+    return !((damaged || options_.check_links) && worsens_damage(op, plan, cavity));
+  }
+
+  bool holds_links(const Cavity& cavity) const {
+    return options_.check_links || work_.has_two_pinched(mesh_, cavity.dead);
+  }
+
+  /// By the metric as well as by the volumes of the cells.
+  bool worsens_damage(const Op& op, const Plan& plan, const Cavity& cavity) const {
+    Scope star;
+    if (cavity.moved.is_valid()) op.scope(mesh_, plan.seed, star);
+    using Cells = std::span<const CellHandle>;
+    const Cells cells = cavity.moved.is_valid() ? Cells(star) : Cells(cavity.dead);
     std::ptrdiff_t more = 0;
-    for (const Tet& t : cavity.born) {
-      const auto at = [&](std::size_t i) {
-        return t[i] == Cavity::kNewVertex ? *cavity.new_vertex : mesh_.point(t[i]);
+    const auto is_invalid = [&](const Tet& t) {
+      const auto at = [&](VertexHandle v) {
+        return v == Cavity::kNewVertex ? *cavity.new_vertex
+               : v == cavity.moved     ? cavity.target
+                                       : mesh_.point(v);
       };
-      if (!(op.metric(at(0), at(1), at(2), at(3)) > 0)) ++more;
-    }
-    for (CellHandle c : cavity.dead)
+      return !(op.metric(at(t[0]), at(t[1]), at(t[2]), at(t[3])) > 0);
+    };
+    for (CellHandle c : cells) {
       if (!(work_.quality[c.idx()] > 0)) --more;
-    return more > 0;
+      if (cavity.moved.is_valid() && is_invalid(mesh_.cell(c).v)) ++more;
+    }
+    for (const Tet& t : cavity.born)
+      if (is_invalid(t)) ++more;
+    return more > 0 || hfr::worsens_damage(mesh_, cavity, cells);
   }
 
   std::uint64_t key(const Plan& plan, const Tet& identity) const {
@@ -187,7 +210,7 @@ class Round {
     });
     std::size_t sub_rounds = 1;
     std::vector<std::uint32_t> ranks;
-    if (options_.check_links) {
+    if (options_.check_links || !work_.pinched.empty()) {
       Cavity cavity;
       std::unordered_set<std::uint64_t> created;
       ranks = select_by_marking(scopes_, work_.claim, [&](std::size_t i) {
@@ -234,18 +257,16 @@ class Round {
   /// round.
   bool creates_nothing_twice(const Op& op, const Plan& plan, Cavity& cavity,
                              std::unordered_set<std::uint64_t>& created) const {
-    if (!options_.check_links) return true;
     op.commit(mesh_, plan, cavity);
-    std::array<Simplex, 512> simplices;
-    const std::size_t n = created_simplices(mesh_, cavity, simplices);
-    std::array<std::uint64_t, 512> hashes;
-    for (std::size_t i = 0; i < n; ++i) {
+    if (!holds_links(cavity)) return true;
+    std::vector<std::uint64_t> hashes;
+    for (const Simplex& simplex : created_simplices(mesh_, cavity)) {
       std::uint64_t h = 0;
-      for (VertexHandle v : simplices[i]) h = mix64(h ^ v.idx()) + 0x9e3779b97f4a7c15ULL;
+      for (VertexHandle v : simplex) h = mix64(h ^ v.idx()) + 0x9e3779b97f4a7c15ULL;
       if (created.contains(h)) return false;
-      hashes[i] = h;
+      hashes.push_back(h);
     }
-    created.insert(hashes.begin(), hashes.begin() + static_cast<std::ptrdiff_t>(n));
+    created.insert(hashes.begin(), hashes.end());
     return true;
   }
 
@@ -254,6 +275,8 @@ class Round {
     const std::size_t n = winners_.size();
     const int n_parts = par::thread_count(options_.policy.for_items_of(kCommitNanoseconds), n);
     std::vector<Notes> notes(static_cast<std::size_t>(n_parts));
+    std::vector<std::vector<Inheritance>> inheritances(static_cast<std::size_t>(n_parts));
+    const bool has_labels = !mesh_.labels().faces.empty();
     const auto for_winners = [&](auto&& body) {
       par::parts(n_parts, [&](int part) {
         const std::size_t end = par::part_begin(n, n_parts, part + 1);
@@ -267,12 +290,14 @@ class Round {
       for (std::size_t w = par::part_begin(n, n_parts, part); w < end; ++w) {
         Winner& winner = winners_[w];
         op.commit(mesh_, candidates_[winner.candidate], cavity);
+        HFR_ASSERT(disagreement(candidates_[winner.candidate], cavity, scopes_[winner.rank]).empty());
         winner.removed = cavity.removed;
         if (cavity.moved.is_valid()) {
           mesh_.set_point(cavity.moved, cavity.target);
           continue;
         }
         count_stars(cavity, winner.new_vertex);
+        if (has_labels) note_heirs(cavity, winner.new_vertex, inheritances[static_cast<std::size_t>(part)]);
         std::vector<OuterFace>& mine =
             room_for(4 * cavity.dead.size(), notes[static_cast<std::size_t>(part)]);
         const std::size_t first = mine.size();
@@ -282,6 +307,33 @@ class Round {
     });
     for_winners([&](std::size_t, std::size_t w) { mend_mates(w); });
     refresh(op, for_winners);
+    for (const auto& part : inheritances)  // in rank order
+      for (const Inheritance& one : part) inherit_labels(mesh_, one.heirs, one.new_vertex);
+    freeze_new_vertices();
+  }
+
+  /// Labels that go over to the faces of one winner.
+  struct Inheritance {
+    std::vector<Heir> heirs;
+    VertexHandle new_vertex;
+  };
+
+  void note_heirs(const Cavity& cavity, VertexHandle new_vertex, std::vector<Inheritance>& out) const {
+    Heirs heirs;
+    find_heirs(mesh_, cavity, heirs);
+    if (!heirs.empty()) out.push_back({{heirs.begin(), heirs.end()}, new_vertex});
+  }
+
+  /// A new vertex of the surface must stay, as constrained_vertices() has it for the others.
+  void freeze_new_vertices() {
+    for (std::size_t w = 0; w < winners_.size(); ++w) {
+      const VertexHandle v = winners_[w].new_vertex;
+      if (!v.is_valid()) continue;
+      for (CellHandle c : slots_of(w))
+        for (HalfFaceHandle h : mesh_.cell_halffaces(c))
+          if (mesh_.is_constrained(h) && mesh_.halfface_opposite_vertex(h) != v && mesh_.cell(c).has(v))
+            work_.frozen[v.idx()] = 1;
+    }
   }
 
   /// Outer faces of a part's winners, in pieces that never grow beyond what they were made for.
@@ -299,7 +351,8 @@ class Round {
   /// Keeps star_size right; winners share vertices.
   void count_stars(const Cavity& cavity, VertexHandle new_vertex) {
     const auto add = [&](VertexHandle v, std::uint32_t n) {
-      std::atomic_ref(work_.star_size[v.idx()]).fetch_add(n, std::memory_order_relaxed);
+      par::before_shared_access();
+      par::atomic(work_.star_size[v.idx()]).fetch_add(n, std::memory_order_relaxed);
     };
     for (CellHandle c : cavity.dead)
       for (VertexHandle v : mesh_.cell(c).v) add(v, static_cast<std::uint32_t>(-1));
@@ -372,7 +425,8 @@ class Round {
   template <class ForWinners>
   void refresh(const Op& op, ForWinners&& for_winners) {
     const auto store = [](auto& place, auto value) {  // several winners may write the same value
-      std::atomic_ref(place).store(value, std::memory_order_relaxed);
+      par::before_shared_access();
+      par::atomic(place).store(value, std::memory_order_relaxed);
     };
     for_winners([&](std::size_t, std::size_t w) {
       const Winner& winner = winners_[w];
@@ -408,9 +462,12 @@ class Round {
   }
 
   void lower_hook(VertexHandle v, CellHandle c) {
-    std::atomic_ref hook(mesh_.mutable_hook(v));
+    const auto hook = par::atomic(mesh_.mutable_hook(v));
+    par::before_shared_access();
     CellHandle now = hook.load(std::memory_order_relaxed);
-    while (c < now && !hook.compare_exchange_weak(now, c, std::memory_order_relaxed)) {
+    while (c < now) {
+      par::before_shared_access();
+      if (hook.compare_exchange_weak(now, c, std::memory_order_relaxed)) return;
     }
   }
 
@@ -420,7 +477,8 @@ class Round {
   ChunkedArray<Plan> candidates_;
   std::vector<Tet> identities_;
   std::vector<par::KeyIndex> keys_, scratch_;
-  ScopeList scopes_;  // of the candidates, by rank
+  PinchedStars pinched_stars_;  // before the round
+  ScopeList scopes_;            // of the candidates, by rank
   std::vector<Winner> winners_;
   std::vector<CellHandle> slots_, freed_;
 };

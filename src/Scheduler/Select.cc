@@ -4,7 +4,9 @@
 #include "Scheduler/Select.hh"
 
 #include <algorithm>
-#include <atomic>
+
+#include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr {
 namespace {
@@ -12,13 +14,16 @@ namespace {
 enum class State : std::uint8_t { kUndecided, kWon, kLost };
 
 std::uint32_t holder(std::span<std::uint32_t> claim, CellHandle c) {
-  return std::atomic_ref(claim[c.idx()]).load(std::memory_order_relaxed);
+  return par::atomic(claim[c.idx()]).load(std::memory_order_relaxed);
 }
 
 void lower(std::uint32_t& claim, std::uint32_t number) {
-  std::atomic_ref shared(claim);
+  const auto shared = par::atomic(claim);
+  par::before_shared_access();
   std::uint32_t now = shared.load(std::memory_order_relaxed);
-  while (number < now && !shared.compare_exchange_weak(now, number, std::memory_order_relaxed)) {
+  while (number < now) {
+    par::before_shared_access();
+    if (shared.compare_exchange_weak(now, number, std::memory_order_relaxed)) return;
   }
 }
 
@@ -61,15 +66,19 @@ std::vector<std::uint32_t> select_by_claims(par::Policy policy, const ScopeList&
       if (state[i] == State::kWon) return;
       const auto cells = scopes[i];
       const bool lost = std::any_of(cells.begin(), cells.end(), [&](CellHandle c) {
+        par::before_shared_access();
         const std::uint32_t other = holder(claim, c);
-        return other != i && other != kUnclaimed &&
-               std::atomic_ref(state[other]).load(std::memory_order_relaxed) == State::kWon;
+        if (other == i || other == kUnclaimed) return false;
+        par::before_shared_access();
+        return par::atomic(state[other]).load(std::memory_order_relaxed) == State::kWon;
       });
       if (!lost) return;
-      std::atomic_ref(state[i]).store(State::kLost, std::memory_order_relaxed);
+      par::before_shared_access();
+      par::atomic(state[i]).store(State::kLost, std::memory_order_relaxed);
       for (CellHandle c : cells) {
         std::uint32_t mine = i;
-        std::atomic_ref(claim[c.idx()]).compare_exchange_strong(mine, kUnclaimed, std::memory_order_relaxed);
+        par::before_shared_access();
+        par::atomic(claim[c.idx()]).compare_exchange_strong(mine, kUnclaimed, std::memory_order_relaxed);
       }
     });
     const auto left = par::compact<std::uint32_t>(

@@ -3,11 +3,13 @@
 #define HFR_SCHEDULER_SMOOTH_PASS_HH
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <span>
 
 #include "Operators/Smooth.hh"
+#include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
+#include "Quality/Damage.hh"
 #include "Scheduler/StarTable.hh"
 #include "Scheduler/VertexColours.hh"
 #include "Scheduler/Workspace.hh"
@@ -24,16 +26,21 @@ constexpr double vertex_nanoseconds() {
     return 2'000;
 }
 
-/// True when more cells of the star would be inverted or flat with v at x than are now.
+/// True when with v at x more cells of the star would be invalid by the metric than are now, or the star
+/// would be more damaged.
 template <class Metric>
-bool makes_more_invalid(const TetMesh& mesh, const Workspace& work, const Metric& metric, VertexHandle v,
-                        std::span<const HalfFaceHandle> link, Vec3 x) {
+bool worsens_damage(const TetMesh& mesh, const Workspace& work, const Metric& metric, VertexHandle v,
+                    std::span<const HalfFaceHandle> link, Vec3 x) {
   std::ptrdiff_t more = 0;
+  Damage before, after;
   for (HalfFaceHandle h : link) {
-    if (!(quality_with(mesh, cell_of(h), v, x, metric) > 0)) ++more;
-    if (!(work.quality[cell_of(h).idx()] > 0)) --more;
+    const CellHandle c = cell_of(h);
+    if (!(quality_with(mesh, c, v, x, metric) > 0)) ++more;
+    if (!(work.quality[c.idx()] > 0)) --more;
+    before.add(mesh, c);
+    after.add(mesh, c, v, x);
   }
-  return more > 0;
+  return more > 0 || !before.may_become(after);
 }
 
 /// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and
@@ -67,15 +74,17 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
       const VertexHandle v = vertices[i];
       const std::optional<Move> move = search(mesh, v, link, metric, std::span<const double>(work.quality));
       if (!move) return;
-      if (!(move->old_worst > 0) && makes_more_invalid(mesh, work, metric, v, link, move->target)) return;
+      if (!(move->old_worst > 0) && worsens_damage(mesh, work, metric, v, link, move->target)) return;
       mesh.set_point(v, move->target);
       moved[i] = 1;
       for (HalfFaceHandle h : link) {
         const CellHandle c = cell_of(h);
         work.quality[c.idx()] = quality_with(mesh, c, v, move->target, metric);
         work.pending[c.idx()] = 0xff;
-        for (VertexHandle u : mesh.cell(c).v)  // neighbours may share u: all write the same value
-          std::atomic_ref(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
+        for (VertexHandle u : mesh.cell(c).v) {  // neighbours may share u: all write the same value
+          par::before_shared_access();
+          par::atomic(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
+        }
       }
     });
   }

@@ -15,8 +15,8 @@ namespace hfr {
 /// thrown away after (the paper's "generated at the time of use").
 class StarTable {
  public:
-  /// `vertices` ascending; `star_size` as star_sizes() has it. A star is left empty when it has more than
-  /// Star::kCapacity cells.
+  /// `vertices` ascending; `star_size` as star_sizes() has it, of any size. Only a vertex that no cell has
+  /// has an empty star.
   StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices,
             std::span<const std::uint32_t> star_size, par::Policy policy = {});
 
@@ -28,7 +28,9 @@ class StarTable {
 
  private:
   void walk_stars(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
-  void sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
+  /// The stars of the vertices with these numbers.
+  void sweep_cells(const TetMesh& mesh, std::span<const VertexHandle> vertices,
+                   std::span<const std::uint32_t> numbers, par::Policy policy);
 
   std::vector<std::size_t> begin_;
   std::vector<HalfFaceHandle> links_;

@@ -2,8 +2,10 @@
 #include "Scheduler/VertexColours.hh"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
+
+#include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr {
 namespace {
@@ -23,6 +25,7 @@ class FirstFit {
 
   void serially() {
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      if (stars_.link(i).empty()) continue;
       std::uint64_t used = 0;
       for (HalfFaceHandle h : stars_.link(i))
         for (VertexHandle u : mesh_.cell(cell_of(h)).v) used |= std::uint64_t{1} << colour_[u.idx()];
@@ -48,8 +51,10 @@ class FirstFit {
       par::parts(n_parts, [&](int part) {
         std::uint8_t found = 0;
         for (std::size_t i = part_of(part); i < part_of(part + 1); ++i) {
-          std::atomic_ref mark(marked_[vertices_[i].idx()]);
+          const auto mark = par::atomic(marked_[vertices_[i].idx()]);
+          par::before_shared_access();
           if (!mark.load()) continue;
+          par::before_shared_access();
           mark.store(0);
           look<std::memory_order_seq_cst>(i, vertices_[i].idx() + 1);
           found = 1;
@@ -69,25 +74,30 @@ class FirstFit {
   /// and still sees an old colour is marked again.
   template <std::memory_order kOrder>
   void look(std::size_t i, std::size_t beyond) {
+    if (stars_.link(i).empty()) return;
     const VertexHandle v = vertices_[i];
     std::uint8_t* const colours = colour_.data();
     std::uint64_t used = 0;
     VertexHandle last = v;
     for (HalfFaceHandle h : stars_.link(i)) {
+      par::before_shared_access();
       for (VertexHandle u : mesh_.cell(cell_of(h)).v) {
-        const std::uint8_t theirs = std::atomic_ref(colours[u.idx()]).load(kOrder);
+        const std::uint8_t theirs = par::atomic(colours[u.idx()]).load(kOrder);
         used |= std::uint64_t{1} << (u < v ? theirs : kNone);  // no jump: half would go either way
         last = std::max(last, u);
       }
     }
-    std::atomic_ref mine(colours[v.idx()]);
+    const auto mine = par::atomic(colours[v.idx()]);
     const std::uint8_t colour = first_free(used);
     if (mine.load(kOrder) == colour) return;
+    par::before_shared_access();
     mine.store(colour, kOrder);
     if (last.idx() < beyond) return;
-    for (HalfFaceHandle h : stars_.link(i))
+    for (HalfFaceHandle h : stars_.link(i)) {
+      par::before_shared_access();
       for (VertexHandle u : mesh_.cell(cell_of(h)).v)
-        if (u.idx() >= beyond) std::atomic_ref(marked_[u.idx()]).store(1, kOrder);
+        if (u.idx() >= beyond) par::atomic(marked_[u.idx()]).store(1, kOrder);
+    }
   }
 
   const TetMesh& mesh_;
@@ -113,6 +123,7 @@ std::vector<std::vector<std::uint32_t>> colour_vertices(const TetMesh& mesh,
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     const std::uint8_t colour = fit.colour(i);
     const auto number = static_cast<std::uint32_t>(i);
+    if (stars.link(i).empty()) continue;
     if (colour == kNone) {
       alone.push_back(number);
       continue;

@@ -14,7 +14,8 @@
 
 namespace hfr {
 
-/// What rounds keep about the mesh between them: 13 bytes a cell, 9 a vertex.
+/// What rounds keep about the mesh between them: 13 bytes a cell, 9 a vertex, and one more where some vertex
+/// is pinched.
 struct Workspace {
   std::vector<double> quality;        ///< per cell slot: decision value in the metric of the stage
   std::vector<std::uint32_t> claim;   ///< per cell slot: the winner that holds it in this round; see select()
@@ -22,9 +23,12 @@ struct Workspace {
   std::vector<std::uint8_t> frozen;   ///< per vertex; see constrained_vertices()
   std::vector<std::uint32_t> star_size;  ///< per vertex: number of its cells
   std::vector<std::uint32_t> changed;    ///< per vertex: clock of the last change of its star
-  std::uint32_t clock = 1;               ///< counts rounds
-  std::vector<Index> touched;            ///< cell slots written since clear_touched(), some more than once
-  bool all_touched = true;               ///< more than are worth a list
+  /// Per vertex: 1 where a walk round it misses some of its cells (see is_pinched()); empty when there is no
+  /// such vertex. Rounds make none.
+  std::vector<std::uint8_t> pinched;
+  std::uint32_t clock = 1;     ///< counts rounds
+  std::vector<Index> touched;  ///< cell slots written since clear_touched(), some more than once
+  bool all_touched = true;     ///< more than are worth a list
 
   /// Sizes everything for the mesh, all cells pending. Qualities are left to set_qualities().
   void attach(const TetMesh& mesh, par::Policy policy) {
@@ -37,6 +41,7 @@ struct Workspace {
     pending.assign(mesh.n_cells(), 0xff);
     frozen = constrained_vertices(mesh, policy);
     star_size = star_sizes(mesh);
+    pinched = pinched_vertices(mesh, star_size, policy);
     changed.assign(mesh.n_vertices(), clock);
   }
 
@@ -48,6 +53,21 @@ struct Workspace {
     frozen.resize(mesh.n_vertices(), 0);
     star_size.resize(mesh.n_vertices(), 0);
     changed.resize(mesh.n_vertices(), clock);
+    if (!pinched.empty()) pinched.resize(mesh.n_vertices(), 0);
+  }
+
+  /// True when an edge between vertices of these cells may exist although no cell near them has it, even
+  /// where all cells are positive: two parts of the mesh that lie over one another may share both its ends.
+  bool has_two_pinched(const TetMesh& mesh, std::span<const CellHandle> cells) const {
+    if (pinched.empty()) return false;
+    VertexHandle first;
+    for (CellHandle c : cells)
+      for (VertexHandle v : mesh.cell(c).v) {
+        if (!pinched[v.idx()] || v == first) continue;
+        if (first.is_valid()) return true;
+        first = v;
+      }
+    return false;
   }
 
   void touch(std::span<const CellHandle> cells) {

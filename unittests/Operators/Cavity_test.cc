@@ -62,6 +62,72 @@ TEST(Admissible, SwapThatWouldMakeAnEdgeTwiceIsRefused) {
   EXPECT_NE(check(mesh).rule, Ok) << "without the link condition the mesh falls apart";
 }
 
+/// Two cells on triangle (0, 1, 2) with apexes 3 and 4, and others that no face connects to them: one with
+/// both apexes if `joined`, else one with each.
+TetMesh pair_with_parts_at_its_apexes(bool joined) {
+  std::vector<Vec3> points = {{1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}, {0, 0, 0.2}, {0, 0, -0.2}};
+  points.insert(points.end(), {{5, 0, 0}, {5, 1, 0}, {6, 0, 1}, {-5, 0, 0}, {-5, 1, 0}, {-6, 0, 1}});
+  std::vector<Corners> cells = {{0, 1, 2, 3}, {0, 2, 1, 4}};
+  if (joined)
+    cells.push_back({3, 4, 5, 6});
+  else
+    cells.insert(cells.end(), {{3, 5, 6, 7}, {4, 8, 9, 10}});
+  return build(points, cells);
+}
+
+TEST(Admissible, EdgeThatOnlyAPartBehindItsEndsHasIsFound) {
+  for (const bool joined : {true, false}) {
+    const TetMesh mesh = pair_with_parts_at_its_apexes(joined);
+    ASSERT_EQ(check(mesh), Rule::kNonManifoldVertex);
+    const Cavity swap = swap_of(mesh, halfface_between(mesh, C(0), C(1)));
+    Star scratch;
+    EXPECT_EQ(admissible(mesh, swap, true, scratch), !joined) << "looked for in the whole mesh";
+    const auto star_size = star_sizes(mesh);
+    EXPECT_FALSE(admissible(mesh, swap, true, scratch, {star_size})) << "neither end is known in full";
+    const auto pinched = pinched_vertices(mesh, star_size);
+    ASSERT_EQ(std::count(pinched.begin(), pinched.end(), 1), 2);
+    const PinchedStars stars(mesh, pinched, {});
+    EXPECT_EQ(stars.cells(V(3)).size(), 2U);
+    EXPECT_TRUE(stars.cells(V(0)).empty());
+    EXPECT_EQ(admissible(mesh, swap, true, scratch, {star_size, &stars}), !joined);
+  }
+}
+
+TEST(PinchedVertices, AreThoseThatAWalkMisses) {
+  for (const int threads : {1, 3}) {
+    const TetMesh box = jittered(5, 0.3, 3);
+    EXPECT_TRUE(pinched_vertices(box, star_sizes(box), {threads, 1}).empty());
+    const TetMesh mesh = pair_with_parts_at_its_apexes(true);
+    const auto star_size = star_sizes(mesh);
+    const auto pinched = pinched_vertices(mesh, star_size, {threads, 1});
+    ASSERT_EQ(pinched.size(), mesh.n_vertices());
+    Star star;
+    for (std::size_t i = 0; i < pinched.size(); ++i)
+      EXPECT_EQ(pinched[i] != 0, star_size[i] > 0 && is_pinched(mesh, V(i), star_size[i], star)) << i;
+  }
+}
+
+TEST(Admissible, VertexOfTooManyCellsIsJudgedByTheOtherEnd) {
+  // 0 and 1 have 300 cells round their edge; a pair of cells on 0 wants the edge from 0 to a far vertex.
+  std::vector<Vec3> points = {{0, 0, -1}, {0, 0, 1}};
+  std::vector<Corners> cells;
+  constexpr Index kCells = 300;
+  for (Index i = 0; i < kCells; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCells;
+    points.push_back({std::cos(angle), std::sin(angle), 0});
+    cells.push_back({0, 1, 2 + i, 2 + (i + 1) % kCells});
+  }
+  const auto far = static_cast<Index>(points.size());
+  points.push_back({1.3, 0.02, 0.3});
+  cells.push_back({1, 3, 2, far});
+  const TetMesh mesh = build(points, cells);
+  const auto star_size = star_sizes(mesh);
+  ASSERT_GT(star_size[0], static_cast<std::uint32_t>(Star::kCapacity));
+  const Cavity swap = swap_of(mesh, halfface_between(mesh, C(0), C(kCells)));
+  Star scratch;
+  EXPECT_TRUE(admissible(mesh, swap, true, scratch, {star_size})) << "the far vertex knows all its cells";
+}
+
 TEST(Admissible, SwapOfAnInvertedPairIsBetterByItsCellsAndYetRefused) {
   // Found by search: evaluate() alone would take it.
   Engine engine(10);
@@ -238,12 +304,10 @@ TEST(AdmissibleProperty, LinkConditionAgreesWithBruteForceInShuffledMeshes) {
     const std::size_t twice = made_twice(mesh, cavity, made);
     ASSERT_EQ(is_admissible(mesh, cavity), twice == 0);
     ++outcomes[twice];
-    std::array<Simplex, 512> created;
-    const std::size_t n = created_simplices(mesh, cavity, created);
     std::set<Key> listed;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (const Simplex& simplex : created_simplices(mesh, cavity)) {
       Key key;
-      for (VertexHandle v : created[i])
+      for (VertexHandle v : simplex)
         if (v.is_valid()) key.push_back(v);
       EXPECT_TRUE(made.contains(key));
       listed.insert(key);

@@ -225,7 +225,7 @@ TEST(MaxMinFormProperty, AscentIsTheScalarOneToTheLastBit) {
       int moved = 0;
       for (int round = 0; round < 200; ++round) {
         const bool alike = round % 20 == 0;
-        const std::size_t n = alike ? 250 : 1 + engine() % 45;
+        const std::size_t n = alike ? (round % 40 == 0 ? 300 : 250) : 1 + engine() % 45;
         const Vec3 at = random_point(engine, -3, 3);
         const double size = round % 5 == 0 ? 1e-40 : round % 5 == 1 ? 1e40 : 0.7;
         const Vec3 direction = random_point(engine, -1, 1);
@@ -252,7 +252,7 @@ TEST(MaxMinFormProperty, AscentIsTheScalarOneToTheLastBit) {
       EXPECT_GT(moved, 100);
     }
   }
-  EXPECT_GT(n_full, 20) << "no form has more slopes than there is room for";
+  EXPECT_GT(n_full, 10) << "no form has more slopes than there is room for";
   EXPECT_GT(n_nan, 20) << "no cell is so small that its angles are NaN";
 }
 

@@ -76,7 +76,7 @@ class OperatorProperty : public testing::TestWithParam<double> {};  // of the ji
 
 TEST_P(OperatorProperty, EdgeRemovalKeepsTheMeshWhole) {
   const auto make = [](const auto& quality, const auto&) { return EdgeRemoval<VolumeLength>{{}, quality}; };
-  const Tally tally = apply_everywhere(GetParam(), 6, make, all_edges);
+  const Tally tally = apply_everywhere(GetParam(), 8, make, all_edges);
   EXPECT_GT(tally.accepted, 200);
   EXPECT_GT(tally.from_inverted, GetParam() > 0.4 ? 30 : -1);
 }

@@ -142,5 +142,179 @@ TEST(OwnOperator, SplitsEveryCellOfABoxInOneRound) {
   }
 }
 
+/// Splits an edge of the boundary at its middle, with all its cells.
+struct SplitBoundaryEdge {
+  using Seed = EdgeHandle;
+  struct Plan : PlanBase {
+    EdgeHandle seed;
+  };
+  VolumeLength metric;
+
+  void scope(const TetMesh& mesh, Seed seed, Scope& out) const {
+    out.clear();
+    for (CellHandle c : mesh.edge_cells(seed)) out.push_back(c);
+  }
+  std::optional<Plan> evaluate(const TetMesh& mesh, Seed seed) const {
+    Plan plan;
+    plan.seed = seed;
+    plan.new_worst = 1;  // wanted for its own sake
+    for (CellHandle c : mesh.edge_cells(seed)) plan.n_dead += c.is_valid() ? 1 : 0;
+    plan.n_born = 2 * plan.n_dead;
+    plan.adds_vertex = true;
+    return plan;
+  }
+  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+    out.clear();
+    const auto [a, b] = mesh.edge_vertices(plan.seed);
+    for (CellHandle c : mesh.edge_cells(plan.seed)) out.dead.push_back(c);
+    for (CellHandle c : out.dead)
+      for (VertexHandle end : {a, b}) {
+        Tet half = mesh.cell(c).v;
+        std::replace(half.begin(), half.end(), end, Cavity::kNewVertex);
+        out.born.push_back(half);
+      }
+    out.new_vertex = 0.5 * (mesh.point(a) + mesh.point(b));
+  }
+  Tet identity(const TetMesh& mesh, Seed seed) const { return edge_identity(mesh, seed); }
+};
+static_assert(LocalOperator<SplitBoundaryEdge>);
+
+/// A box whose boundary faces are labelled by their side, 1 to 6.
+TetMesh box_with_labelled_sides(Index n) {
+  TetMesh mesh = built(generate::box({n, n, n}));
+  for (HalfFaceHandle h : mesh.halffaces()) {
+    if (!mesh.is_boundary(h)) continue;
+    const auto f = mesh.halfface_vertices(h);
+    for (int i = 0; i < 3; ++i)
+      for (const double side : {0.0, 1.0})
+        if (mesh.point(f[0])[i] == side && mesh.point(f[1])[i] == side && mesh.point(f[2])[i] == side)
+          mesh.labels().faces.set(f, 1 + 2 * i + static_cast<int>(side));
+  }
+  return mesh;
+}
+
+void expect_sides_labelled(const TetMesh& mesh) {
+  std::size_t n = 0;
+  for (HalfFaceHandle h : mesh.halffaces()) {
+    if (!mesh.is_boundary(h)) continue;
+    ++n;
+    const auto f = mesh.halfface_vertices(h);
+    const int* const label = mesh.labels().faces.find(f);
+    ASSERT_NE(label, nullptr);
+    const int i = (*label - 1) / 2;
+    const double side = (*label - 1) % 2;
+    for (VertexHandle v : f) EXPECT_EQ(mesh.point(v)[i], side);
+  }
+  EXPECT_EQ(mesh.labels().faces.size(), n) << "and nothing else is labelled";
+}
+
+std::vector<EdgeHandle> boundary_edges(const TetMesh& mesh) {
+  std::vector<EdgeHandle> edges;
+  for (EdgeHandle e : mesh.edges())
+    if (mesh.is_boundary(e)) edges.push_back(e);
+  return edges;
+}
+
+TEST(OwnOperator, FacesOfSplitBoundaryEdgesInheritTheirLabels) {
+  TetMesh one;
+  for (const int threads : {1, 2, 5}) {
+    TetMesh mesh = box_with_labelled_sides(4);
+    const double before = volume(mesh);
+    const std::size_t n_labels = mesh.labels().faces.size();
+    Workspace work;
+    work.attach(mesh, {});
+    std::size_t winners = 0;
+    for (int i = 0; i < 4; ++i) {
+      work.set_qualities(mesh, VolumeLength{}, {});
+      Round<SplitBoundaryEdge> round(mesh, work, {{threads, 1}, true, 1});
+      winners += round.run(SplitBoundaryEdge{}, boundary_edges(mesh)).winners;
+      ASSERT_EQ(check(mesh), Ok);
+      expect_sides_labelled(mesh);
+    }
+    EXPECT_GT(winners, 200U);
+    EXPECT_EQ(mesh.labels().faces.size(), n_labels + 2 * winners);
+    EXPECT_NEAR(volume(mesh), before, 1e-12);
+    for (VertexHandle v : mesh.vertices())
+      EXPECT_EQ(work.frozen[v.idx()] != 0, mesh.is_boundary(v)) << "a new vertex of the surface must stay";
+    if (threads == 1)
+      one = mesh;
+    else
+      EXPECT_TRUE(identical(one, mesh));
+  }
+}
+
+TEST(OwnOperator, ByItselfASplitKeepsLabelsToo) {
+  TetMesh mesh = box_with_labelled_sides(2);
+  for (EdgeHandle e : boundary_edges(mesh)) {
+    if (mesh.is_deleted(C(e.idx() / 6)) || !mesh.exists(e) || !mesh.is_boundary(e)) continue;
+    EXPECT_TRUE(apply(SplitBoundaryEdge{}, mesh, e));
+    ASSERT_EQ(check(mesh), Ok);
+  }
+  expect_sides_labelled(mesh);
+}
+
+TEST(OwnOperator, FixedFacesAndEdgesAreNotSplit) {
+  TetMesh mesh = box_with_labelled_sides(2);
+  mesh.set_fixed_patch(1);
+  std::size_t n_split = 0;
+  for (EdgeHandle e : boundary_edges(mesh)) {
+    if (!mesh.exists(e) || !mesh.is_boundary(e)) continue;
+    const auto [a, b] = mesh.edge_vertices(e);
+    const bool on_patch = mesh.point(a).x == 0 && mesh.point(b).x == 0;
+    const bool done = apply(SplitBoundaryEdge{}, mesh, e);
+    EXPECT_EQ(done, !on_patch);
+    n_split += done ? 1 : 0;
+  }
+  EXPECT_GT(n_split, 10U);
+  expect_sides_labelled(mesh);
+}
+
+/// The 2-2 swap of a flat pair of boundary faces, which no new vertex cuts.
+struct SwapOnBoundary {
+  using Seed = EdgeHandle;
+  struct Plan : PlanBase {
+    EdgeHandle seed;
+  };
+  VolumeLength metric;
+
+  void scope(const TetMesh& mesh, Seed seed, Scope& out) const {
+    out.clear();
+    for (CellHandle c : mesh.edge_cells(seed)) out.push_back(c);
+  }
+  std::optional<Plan> evaluate(const TetMesh&, Seed seed) const {
+    Plan plan;
+    plan.seed = seed;
+    plan.new_worst = 1;
+    plan.n_dead = plan.n_born = 2;
+    return plan;
+  }
+  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+    Scope cells;
+    scope(mesh, plan.seed, cells);
+    const auto [a, b] = mesh.edge_vertices(plan.seed);
+    out.clear();
+    for (CellHandle c : cells) out.dead.push_back(c);
+    VertexHandle far;
+    for (VertexHandle v : mesh.cell(cells[1]).v)
+      if (!mesh.cell(cells[0]).has(v)) far = v;
+    for (VertexHandle end : {a, b}) {
+      Tet t = mesh.cell(cells[0]).v;
+      std::replace(t.begin(), t.end(), end, far);
+      out.born.push_back(t);
+    }
+  }
+  Tet identity(const TetMesh& mesh, Seed seed) const { return edge_identity(mesh, seed); }
+};
+
+TEST(OwnOperator, LabelledFacesThatNothingInheritsFromDoNotGo) {
+  for (const bool labelled : {false, true}) {
+    TetMesh mesh = build({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 1}},
+                         std::vector<Corners>{{0, 2, 1, 4}, {0, 1, 3, 4}});
+    if (labelled) mesh.labels().faces.set({V(0), V(1), V(2)}, 5);
+    EXPECT_EQ(apply(SwapOnBoundary{}, mesh, mesh.find_edge(V(0), V(1))), !labelled);
+    EXPECT_EQ(check(mesh), Ok);
+  }
+}
+
 }  // namespace
 }  // namespace hfr::test

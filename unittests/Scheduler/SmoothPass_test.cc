@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "HalfFace/Check.hh"
-#include "Operators/Clusters.hh"
+#include "Operators/LimitMeshes.hh"
+#include "Operators/Metrics.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothLaplacian.hh"
+#include "Operators/SmoothMaxMin.hh"
 #include "Operators/SmoothNewton.hh"
 
 namespace hfr::test {
@@ -73,6 +75,38 @@ TEST(SmoothPass, BoundaryStaysAndStampsFollowTheMoves) {
   EXPECT_EQ(run.counts.seeds, 125U);
 }
 
+/// Moves vertex 0, which has 2·n_ring cells, back from where it spoils them.
+template <class Search, class Metric>
+void expect_hub_moves(Index n_ring, const Search& search, const Metric& metric) {
+  TetMesh mesh = built(hub(n_ring));
+  mesh.set_point(V(0), {0.3, 0.2, 0.6});
+  Workspace work;
+  work.attach(mesh, {});
+  work.set_qualities(mesh, metric, {});
+  ASSERT_EQ(work.star_size[0], 2 * n_ring);
+  const auto star_worst = [&] {
+    double worst = std::numeric_limits<double>::infinity();
+    for (CellHandle c : mesh.vertex_cells(V(0))) worst = std::min(worst, work.quality[c.idx()]);
+    return worst;
+  };
+  const double before = star_worst();
+  EXPECT_GT(before, 0);
+  const RoundCounts counts = smooth_pass(mesh, work, search, metric, std::vector<VertexHandle>{V(0)}, {});
+  EXPECT_EQ(counts.winners, 1U) << n_ring << " cells in the ring";
+  EXPECT_GT(star_worst(), before);
+  EXPECT_EQ(work.quality, qualities(mesh, metric));
+}
+
+TEST(SmoothPass, VertexOfMoreThan256CellsMovesByEverySearch) {
+  for (const Index n : {Index{128}, Index{129}, Index{300}}) {  // 256, 258 and 600 cells
+    expect_hub_moves(n, NewtonSearch{}, VolumeLength{});
+    expect_hub_moves(n, CandidateSearch{}, VolumeLength{});
+    expect_hub_moves(n, MaxMinSearch{}, MinSine2{});
+    expect_hub_moves(n, MaxMinSearch{}, MinDihedral{});
+    expect_hub_moves(n, LaplacianSearch{}, VolumeLength{});
+  }
+}
+
 TEST(SmoothPass, TaubinsTwoStepsAreGuardedToo) {
   TetMesh mesh = jittered(6, 0.3, 6);
   Workspace work;
@@ -90,6 +124,32 @@ TEST(SmoothPass, TaubinsTwoStepsAreGuardedToo) {
       worst = now;
     }
   }
+}
+
+TEST(SmoothPass, InvertedAndFlatCellsNeverBecomeMore) {
+  std::size_t winners = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    TetMesh mesh = jittered(4, 0.9, seed);
+    for (VertexHandle v : mesh.vertices()) {
+      const Vec3 p = mesh.point(v);
+      mesh.set_point(v, {std::round(12 * p.x), std::round(12 * p.y), std::round(12 * p.z)});
+    }
+    Workspace work;
+    work.attach(mesh, {});
+    work.set_qualities(mesh, Untangling{1e-3}, {});
+    std::vector<VertexHandle> vertices;
+    for (VertexHandle v : mesh.vertices())
+      if (!work.frozen[v.idx()]) vertices.push_back(v);
+    for (int i = 0; i < 5; ++i) {
+      Damage before, after;
+      for (CellHandle c : mesh.cells()) before.add(mesh, c);
+      winners += smooth_pass(mesh, work, CandidateSearch{}, Untangling{1e-3}, vertices, {}).winners;
+      for (CellHandle c : mesh.cells()) after.add(mesh, c);
+      EXPECT_LE(after.n_inverted(), before.n_inverted());
+      EXPECT_LE(after.n_invalid(), before.n_invalid());
+    }
+  }
+  EXPECT_GT(winners, 200U);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "Operators/Clusters.hh"
+#include "Operators/LimitMeshes.hh"
 #include "Scheduler/Seeds.hh"
 
 namespace hfr::test {
@@ -52,25 +52,19 @@ TEST(StarTable, AnyNumberOfThreadsMakesTheSame) {
   }
 }
 
-TEST(StarTable, StarsTooLargeToHoldAreLeftEmptyByBothBuilders) {
-  const Index n = 150;  // 300 cells round vertex 0
-  std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
-  std::vector<Corners> cells;
-  for (Index i = 0; i < n; ++i) {
-    const double angle = 2 * std::numbers::pi * i / n;
-    points.push_back({std::cos(angle), std::sin(angle), 0});
-    cells.push_back({0, 3 + i, 3 + (i + 1) % n, 1});
-    cells.push_back({0, 3 + (i + 1) % n, 3 + i, 2});
-  }
-  const TetMesh mesh = build(points, cells);
+TEST(StarTable, StarsOfAnySizeAreThereFromBothBuilders) {
+  const TetMesh mesh = built(hub(150));  // vertices 0 … 3 have 300 and 450 cells
+  const auto sizes = star_sizes(mesh);
+  ASSERT_EQ(sizes[0], 300U);
   const auto all = all_vertices(mesh);
-  const StarTable bulk(mesh, all, star_sizes(mesh));
-  EXPECT_TRUE(bulk.link(0).empty());
-  for (std::size_t i = 1; i < all.size(); ++i) expect_link(mesh, all[i], bulk.link(i));
-  const std::vector<VertexHandle> few = {V(0), V(5)};
-  const StarTable table(mesh, few, star_sizes(mesh));
-  EXPECT_TRUE(table.link(0).empty());
-  expect_link(mesh, V(5), table.link(1));
+  const std::vector<VertexHandle> few = {V(0), V(2), V(5), V(9)};
+  ASSERT_LT(few.size(), mesh.n_vertices() / 16);
+  for (const int threads : {1, 4, 7, 16}) {
+    const StarTable bulk(mesh, all, sizes, {threads, /*serial_below=*/1});
+    for (std::size_t i = 0; i < all.size(); ++i) expect_link(mesh, all[i], bulk.link(i));
+    const StarTable table(mesh, few, sizes, {threads, /*serial_below=*/1});
+    for (std::size_t i = 0; i < few.size(); ++i) expect_link(mesh, few[i], table.link(i));
+  }
 }
 
 TEST(StarTable, PinchedVertexHasTheCellsOfAllItsPartsAndIsNotForRemoval) {
@@ -137,6 +131,58 @@ TEST(Colouring, AnyNumberOfThreadsGivesTheFirstFit) {
         ASSERT_EQ(colour_vertices(mesh, vertices, stars, {threads, /*serial_below=*/1}), first_fit)
             << threads;
   }
+}
+
+TEST(Colouring, VerticesOfMoreThan256CellsTakePartForAnyNumberOfThreads) {
+  const TetMesh mesh = built(hub(150));
+  const auto sizes = star_sizes(mesh);
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+    const auto all = all_vertices(mesh);
+    const auto vertices = std::span(all).subspan(first);
+    const StarTable stars(mesh, vertices, sizes);
+    const auto first_fit = colour_vertices(mesh, vertices, stars);
+    std::vector<std::size_t> colour(mesh.n_vertices(), first_fit.size());
+    for (std::size_t g = 0; g < first_fit.size(); ++g)
+      for (std::uint32_t i : first_fit[g]) colour[vertices[i].idx()] = g;
+    for (CellHandle c : mesh.cells())
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+          const std::size_t ours = colour[mesh.cell(c).v[i].idx()];
+          EXPECT_TRUE(ours == first_fit.size() || ours != colour[mesh.cell(c).v[j].idx()]);
+        }
+    for (const int threads : {4, 7, 8, 16})
+      for (int repetition = 0; repetition < 20; ++repetition)
+        ASSERT_EQ(colour_vertices(mesh, vertices, stars, {threads, /*serial_below=*/1}), first_fit);
+  }
+}
+
+TEST(Colouring, WhatHasNoStarHasNoPartInIt) {
+  generate::Arrays arrays = generate::box({3, 3, 3});
+  arrays.points.push_back({2, 2, 2});  // no cell uses it
+  const TetMesh mesh = built(arrays);
+  std::vector<VertexHandle> all;
+  for (std::size_t i = 0; i < mesh.n_vertices(); ++i) all.push_back(V(i));
+  const StarTable stars(mesh, all, star_sizes(mesh));
+  ASSERT_TRUE(stars.link(all.size() - 1).empty());
+  for (const int threads : {1, 4, 16}) {
+    std::size_t n = 0;
+    for (const auto& group : colour_vertices(mesh, all, stars, {threads, /*serial_below=*/1})) {
+      n += group.size();
+      for (std::uint32_t i : group) EXPECT_FALSE(stars.link(i).empty());
+    }
+    EXPECT_EQ(n, all.size() - 1);
+  }
+}
+
+TEST(Colouring, WhatNeedsMoreThan63ColoursMovesAlone) {
+  const TetMesh mesh = built(neighbourly(70));
+  const auto all = all_vertices(mesh);
+  const StarTable stars(mesh, all, star_sizes(mesh));
+  const auto groups = colour_vertices(mesh, all, stars);
+  ASSERT_EQ(groups.size(), 70U);
+  for (std::uint32_t i = 0; i < 70; ++i) EXPECT_EQ(groups[i], std::vector<std::uint32_t>{i});
+  for (const int threads : {4, 7, 16})
+    ASSERT_EQ(colour_vertices(mesh, all, stars, {threads, /*serial_below=*/1}), groups);
 }
 
 }  // namespace
