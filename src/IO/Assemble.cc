@@ -2,7 +2,12 @@
 #include "IO/Assemble.hh"
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
+#include <set>
 #include <string_view>
+#include <tuple>
+#include <utility>
 
 #include "IO/FieldProperties.hh"
 
@@ -56,10 +61,111 @@ void detach(const TupleMap<N, int>& map, const std::vector<Index>& new_index,
   }
 }
 
+/// What became of triangles and edges at vertices that were copied.
+class Copies {
+ public:
+  Copies(const TetMesh& mesh, const std::vector<VertexHandle>& copied)
+      : copied_(copied), n_given_(mesh.n_vertices() - copied.size()), is_split_(n_given_, 0) {
+    for (VertexHandle v : copied) is_split_[v.idx()] = 1;
+    for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+      const auto& v = mesh.cell(CellHandle(c)).v;
+      for (const auto& f : kFaceCorners) note<3>({v[f[0]], v[f[1]], v[f[2]]}, triangles_);
+      for (const auto& e : kEdgeCorners) note<2>({v[e[0]], v[e[1]]}, edges_);
+    }
+  }
+
+  /// Replaces every item by those that its cells have now, in the direction of the item.
+  void follow(std::vector<std::array<Index, 3>>& items, std::vector<int>& labels) const {
+    follow(items, labels, triangles_);
+  }
+  void follow(std::vector<std::array<Index, 2>>& items, std::vector<int>& labels) const {
+    follow(items, labels, edges_);
+  }
+
+ private:
+  /// By the given vertices, ascending: what the cells have, in the same order.
+  template <std::size_t N>
+  using Now = std::map<std::array<Index, N>, std::set<std::array<Index, N>>>;
+
+  Index given(Index v) const { return v < n_given_ ? v : copied_[v - n_given_].idx(); }
+
+  template <std::size_t N>
+  void note(const std::array<VertexHandle, N>& vertices, Now<N>& now) {
+    std::array<std::pair<Index, Index>, N> pairs;  // given, now
+    bool any = false;
+    for (std::size_t k = 0; k < N; ++k) {
+      pairs[k] = {given(vertices[k].idx()), vertices[k].idx()};
+      any = any || is_split_[pairs[k].first] != 0;
+    }
+    if (!any) return;
+    std::sort(pairs.begin(), pairs.end());
+    std::array<Index, N> key, value;
+    for (std::size_t k = 0; k < N; ++k) std::tie(key[k], value[k]) = pairs[k];
+    now[key].insert(value);
+  }
+
+  template <std::size_t N>
+  void follow(std::vector<std::array<Index, N>>& items, std::vector<int>& labels, const Now<N>& now) const {
+    std::vector<std::array<Index, N>> new_items;
+    std::vector<int> new_labels;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      std::array<Index, N> key = items[i];
+      std::sort(key.begin(), key.end());
+      const auto at = now.find(key);
+      const auto add = [&](const std::array<Index, N>& item) {
+        new_items.push_back(item);
+        if (!labels.empty()) new_labels.push_back(i < labels.size() ? labels[i] : 0);
+      };
+      if (at == now.end()) {
+        add(items[i]);
+        continue;
+      }
+      for (const auto& value : at->second) {
+        std::array<Index, N> item = items[i];
+        for (Index& v : item)
+          v = value[static_cast<std::size_t>(std::find(key.begin(), key.end(), v) - key.begin())];
+        add(item);
+      }
+    }
+    items = std::move(new_items);
+    labels = std::move(new_labels);
+  }
+
+  const std::vector<VertexHandle>& copied_;
+  std::size_t n_given_;
+  std::vector<std::uint8_t> is_split_;
+  Now<3> triangles_;
+  Now<2> edges_;
+};
+
+/// Gives the copies of vertices what the vertices have.
+void extend(MeshData& data, const TetMesh& mesh, const std::vector<VertexHandle>& copied) {
+  const Copies copies(mesh, copied);
+  copies.follow(data.triangles, data.triangle_labels);
+  copies.follow(data.edges, data.edge_labels);
+  const std::size_t n_given = mesh.n_vertices() - copied.size();
+  const std::set<Index> fixed(data.fixed_vertices.begin(), data.fixed_vertices.end());
+  if (!data.vertex_labels.empty()) data.vertex_labels.resize(n_given, 0);
+  for (std::size_t i = 0; i < copied.size(); ++i) {
+    const Index v = copied[i].idx();
+    if (!data.vertex_labels.empty()) data.vertex_labels.push_back(data.vertex_labels[v]);
+    if (fixed.contains(v)) data.fixed_vertices.push_back(static_cast<Index>(n_given + i));
+    for (Field& field : data.point_fields) {
+      const auto n = static_cast<std::size_t>(field.components);
+      if (field.values.size() != n * (n_given + i)) continue;  // attach_fields() says so
+      for (std::size_t k = 0; k < n; ++k) field.values.push_back(field.values[n * v + k]);
+    }
+  }
+}
+
 }  // namespace
 
-TetMesh assemble(MeshData data, par::Policy policy, BuildReport* report, std::vector<std::string>* notes) {
-  TetMesh mesh = build(std::move(data.points), data.cells, policy, report);
+TetMesh assemble(MeshData data, par::Policy policy, BuildReport* report, std::vector<std::string>* notes,
+                 NonManifold non_manifold) {
+  BuildReport built;
+  TetMesh mesh = build(std::move(data.points), data.cells, policy, &built, non_manifold);
+  if (!built.copied.empty()) extend(data, mesh, built.copied);
+  if (report) *report = std::move(built);
   HFR_REQUIRE(data.regions.empty() || data.regions.size() == mesh.n_cells(),
               "there are " + std::to_string(data.regions.size()) + " regions for " +
                   std::to_string(mesh.n_cells()) + " cells");

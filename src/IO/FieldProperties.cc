@@ -87,17 +87,17 @@ void attach(const std::vector<Field>& fields, std::vector<std::string> names, st
         field.components >= 1 && field.values.size() == n_items * static_cast<std::size_t>(field.components),
         "field '" + field.name + "' has " + std::to_string(field.values.size()) + " values for " +
             std::to_string(n_items) + " items of " + std::to_string(field.components) + " components");
-    if (std::find(names.begin(), names.end(), field.name) != names.end()) {
-      if (notes)
-        notes->push_back("a second " + std::string(kind) + " field '" + field.name + "' was left out");
+    const std::string name = field.name.empty() ? "unnamed" : field.name;  // no name: nobody would find it
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      if (notes) notes->push_back("a second " + std::string(kind) + " field '" + name + "' was left out");
       continue;
     }
-    names.push_back(field.name);
+    names.push_back(name);
     with_type(field.components, is_integer(field), [&]<class T>() {
       T preset{};
       if constexpr (std::same_as<T, std::vector<double>>)
         preset.resize(static_cast<std::size_t>(field.components));
-      auto property = request.template operator()<T>(field.name, preset);
+      auto property = request.template operator()<T>(name, preset);
       const double* value = field.values.data();
       for (T& item : property.values())
         for (int k = 0; k < field.components; ++k) Layout<T>::set(item, k, *value++);
@@ -108,7 +108,7 @@ void attach(const std::vector<Field>& fields, std::vector<std::string> names, st
 /// Appends the field of a property if that holds values of type T.
 template <class T, class Handle>
 bool detach_as(const TetMesh& mesh, const detail::DenseStored& stored, std::vector<Field>& fields) {
-  if (stored.type() != typeid(T)) return false;
+  if (stored.is_anonymous() || stored.type() != typeid(T)) return false;
   auto& property = const_cast<detail::Dense<T>&>(static_cast<const detail::Dense<T>&>(stored));
   Field field;
   field.name = stored.name();

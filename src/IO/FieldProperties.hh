@@ -13,8 +13,9 @@
 /// integer fields use std::int64_t instead (std::array<std::int64_t, 3> for vectors).
 namespace hfr::io {
 
-/// A name that a property of the same kind already has is skipped, with a line in `notes` where given.
-/// Throws InvalidInput when a field has not one value for each item and component.
+/// A field without a name becomes "unnamed". A name that a property of the same kind already has is skipped,
+/// with a line in `notes` where given. Throws InvalidInput when a field has not one value for each item and
+/// component.
 void attach_fields(TetMesh& mesh, const std::vector<Field>& point_fields,
                    const std::vector<Field>& cell_fields, std::vector<std::string>* notes);
 

@@ -125,6 +125,11 @@ int type_of_components(int components) {
   return 0;
 }
 
+std::string too_few_entries(std::string_view name, std::int64_t announced, std::size_t found) {
+  return std::string(name) + " announces " + std::to_string(announced) + " entries and has " +
+         std::to_string(found);
+}
+
 bool is_binary(const InputFile& file) {
   const std::string_view bytes = file.bytes();
   return bytes.starts_with(std::string_view("\1\0\0\0", 4)) ||
@@ -156,8 +161,22 @@ std::optional<Heading> AsciiSource::next() {
   return std::nullopt;
 }
 
-std::size_t AsciiSource::count(std::size_t integers, std::size_t reals) {
-  return text_.count(integers + reals, "number of entries");
+std::size_t AsciiSource::count(std::string_view name, std::size_t integers, std::size_t reals) {
+  const std::size_t before = text_.offset();
+  const std::int64_t n = text_.integer_in(0, std::numeric_limits<std::int64_t>::max(), "number of entries");
+  const std::size_t words = integers + reals;
+  // A word takes at least one byte and the space before it.
+  const std::size_t bytes_left = text_.text().size() - text_.offset();
+  if (static_cast<std::size_t>(n) <= bytes_left / 2 / words) return static_cast<std::size_t>(n);
+  std::size_t found = 0;
+  for (; !at_section_end(); ++found) text_.word();
+  text_.seek(before);
+  text_.fail(too_few_entries(name, n, found / words));
+}
+
+bool AsciiSource::at_section_end() {
+  if (text_.at_end()) return true;
+  return is_upper(text_.text()[text_.offset()]) && is_keyword(text_.peek_word());
 }
 
 std::size_t AsciiSource::announced() {
@@ -227,13 +246,12 @@ std::int64_t BinarySource::integer_in(std::int64_t low, std::int64_t high, std::
   return found;
 }
 
-std::size_t BinarySource::count(std::size_t integers, std::size_t reals) {
-  const std::int64_t items = integer_in(0, std::numeric_limits<std::int64_t>::max(), "number of entries");
-  const std::size_t item_size = integers * (version_ < 4 ? 4 : 8) + reals * (version_ == 1 ? 4 : 8);
-  if (static_cast<std::size_t>(items) > (bytes_.size() - at_) / std::max<std::size_t>(item_size, 1)) {
-    fail("number of entries " + std::to_string(items) + " is more than the rest of the file can hold");
-  }
-  return static_cast<std::size_t>(items);
+std::size_t BinarySource::count(std::string_view name, std::size_t integers, std::size_t reals) {
+  const std::int64_t n = integer_in(0, std::numeric_limits<std::int64_t>::max(), "number of entries");
+  const std::size_t entry_size = integers * (version_ < 4 ? 4 : 8) + reals * (version_ == 1 ? 4 : 8);
+  const std::size_t found = at_section_end() ? 0 : (section_end() - at_) / entry_size;
+  if (static_cast<std::size_t>(n) > found) fail(too_few_entries(name, n, found));
+  return static_cast<std::size_t>(n);
 }
 
 std::optional<Heading> BinarySource::next() {

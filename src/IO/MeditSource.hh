@@ -58,7 +58,10 @@ class AsciiSource {
   /// The next section, past the dimension; nothing at the keyword End or the end of the file.
   std::optional<Heading> next();
   bool saw_end() const { return saw_end_; }
-  std::size_t count(std::size_t integers, std::size_t reals);  ///< of entries of so many numbers each
+  /// Of the entries of section `name`, of so many numbers each.
+  std::size_t count(std::string_view name, std::size_t integers, std::size_t reals);
+  /// Whether the next section begins here, or the file ends.
+  bool at_section_end();
   double coordinate() { return text_.real(); }
   double value() { return text_.field_value(); }
   std::int64_t integer_in(std::int64_t low, std::int64_t high, std::string_view what) {
@@ -81,7 +84,8 @@ class BinarySource {
   explicit BinarySource(const InputFile& file);
   std::optional<Heading> next();
   bool saw_end() const { return saw_end_; }
-  std::size_t count(std::size_t integers, std::size_t reals);
+  std::size_t count(std::string_view name, std::size_t integers, std::size_t reals);
+  bool at_section_end() const { return at_ >= section_end(); }
   double coordinate();
   double value();
   std::int64_t integer_in(std::int64_t low, std::int64_t high, std::string_view what);
@@ -95,6 +99,7 @@ class BinarySource {
   T take();
   std::int64_t integer();
   std::uint64_t position();
+  std::size_t section_end() const { return next_ == 0 ? bytes_.size() : next_; }
 
   std::string_view bytes_;
   std::string name_;
@@ -104,6 +109,9 @@ class BinarySource {
   bool swapped_ = false;  ///< the file's byte order is not this machine's
   bool saw_end_ = false;
 };
+
+/// What a section that breaks off is refused with.
+std::string too_few_entries(std::string_view name, std::int64_t announced, std::size_t found);
 
 /// Is this a binary file, whatever it is called?
 bool is_binary(const InputFile& file);

@@ -2,9 +2,11 @@
 #include "IO/MeshFile.hh"
 
 #include <algorithm>
+#include <array>
 
 #include "HalfFace/Errors.hh"
 #include "IO/Formats.hh"
+#include "IO/OutputFile.hh"
 #include "IO/Validate.hh"
 
 namespace hfr::io {
@@ -14,17 +16,28 @@ struct Format {
   std::string_view extension;
   MeshData (*read)(const InputFile&);
   Notes (*write)(const std::filesystem::path&, const MeshData&, const WriteOptions&);
+  std::string_view variants;               ///< that WriteOptions::variant may name, with blanks between
+  std::array<std::string_view, 3> beside;  ///< extensions of the other files of the mesh
+  bool is_one_file = true;                 ///< nothing is lost without those beside it but fields
 };
+
+constexpr std::array<std::string_view, 3> kSolutions = {".sol", ".solb"};
 
 /// The formats that are built in. A new one is a row here, two declarations in Formats.hh, and its sources.
 constexpr Format kFormats[] = {
-    {".mesh", read_medit, write_medit},    {".meshb", read_meditb, write_meditb},
-    {".node", read_tetgen, write_tetgen},  {".ele", read_tetgen, write_tetgen},
-    {".face", read_tetgen, write_tetgen},  {".ovm", read_ovm, write_ovm},
-    {".msh", read_gmsh, write_gmsh},       {".vtk", read_vtk, write_vtk},
-    {".vtu", read_vtu, write_vtu},         {".stl", read_surface, write_surface},
-    {".obj", read_surface, write_surface}, {".off", read_surface, write_surface},
-    {".ply", read_surface, write_surface},
+    {".mesh", read_medit, write_medit, "", kSolutions},
+    {".meshb", read_meditb, write_meditb, "", kSolutions},
+    {".node", read_tetgen, write_tetgen, "", {".ele", ".face", ".edge"}, false},
+    {".ele", read_tetgen, write_tetgen, "", {".node", ".face", ".edge"}, false},
+    {".face", read_tetgen, write_tetgen, "", {".node", ".ele", ".edge"}, false},
+    {".ovm", read_ovm, write_ovm, "", {}},
+    {".msh", read_gmsh, write_gmsh, "2.2 4.0 4.1", {}},
+    {".vtk", read_vtk, write_vtk, "4.2 5.1", {}},
+    {".vtu", read_vtu, write_vtu, "ascii base64 appended zlib", {}},
+    {".stl", read_surface, write_surface, "", {}},
+    {".obj", read_surface, write_surface, "", {}},
+    {".off", read_surface, write_surface, "", {}},
+    {".ply", read_surface, write_surface, "", {}},
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -33,15 +46,37 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-const Format& format_of(const std::filesystem::path& path, const std::vector<std::string>& known) {
-  std::string extension = path.extension().string();
+/// Nothing where the format is not known.
+const Format* find_format(const std::filesystem::path& path, const std::string& format) {
+  std::string extension = format.empty() ? path.extension().string() : format;
+  if (!extension.empty() && extension[0] != '.') extension.insert(0, 1, '.');
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   const auto* const found = std::find_if(std::begin(kFormats), std::end(kFormats),
-                                         [&](const Format& format) { return format.extension == extension; });
-  HFR_REQUIRE(found != std::end(kFormats),
-              path.string() + ": unknown file type '" + extension + "'; known are " + joined(known));
+                                         [&](const Format& f) { return f.extension == extension; });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+const Format& format_of(const std::filesystem::path& path, const std::string& format,
+                        const std::vector<std::string>& known) {
+  const Format* const found = find_format(path, format);
+  HFR_REQUIRE(found, path.string() + ": unknown file type '" +
+                         (format.empty() ? path.extension().string() : format) + "'; known are " +
+                         joined(known));
+  HFR_REQUIRE(found->is_one_file || (path != kStandardInput && path != kStandardOutput),
+              path.string() + ": a mesh in " + std::string(found->extension) +
+                  " is several files, which one stream cannot hold");
   return *found;
+}
+
+/// `name` is one of the words of `variants`.
+bool has_variant(std::string_view variants, std::string_view name) {
+  while (!variants.empty()) {
+    const std::size_t length = std::min(variants.find(' '), variants.size());
+    if (variants.substr(0, length) == name) return true;
+    variants.remove_prefix(std::min(length + 1, variants.size()));
+  }
+  return false;
 }
 
 std::vector<std::string> all_extensions() {
@@ -59,13 +94,13 @@ std::string one_line(std::string message) {
 
 }  // namespace
 
-MeshData read_mesh(const std::filesystem::path& path) {
-  const Format& format = format_of(path, readable_extensions());
-  const InputFile file(path);
+MeshData read_mesh(const std::filesystem::path& path, const std::string& format) {
+  const Format& chosen = format_of(path, format, readable_extensions());
+  const InputFile file(path, std::string(chosen.extension));
   HFR_REQUIRE(!file.bytes().empty(), path.string() + ": the file is empty");
   MeshData mesh;
   try {
-    mesh = format.read(file);
+    mesh = chosen.read(file);
   } catch (const InvalidInput& error) {
     throw InvalidInput(one_line(error.what()));
   }
@@ -75,9 +110,34 @@ MeshData read_mesh(const std::filesystem::path& path) {
 
 std::vector<std::string> write_mesh(const std::filesystem::path& path, const MeshData& mesh,
                                     const WriteOptions& options) {
-  const Format& format = format_of(path, writable_extensions());
+  require_writable_format(path, options);
   validate(mesh, path.string());
-  return format.write(path, mesh, options);
+  const Format& format = *find_format(path, options.format);
+  WriteOptions chosen = options;
+  chosen.format = format.extension;
+  return format.write(path, mesh, chosen);
+}
+
+void require_readable_format(const std::filesystem::path& path, const std::string& format) {
+  format_of(path, format, readable_extensions());
+}
+
+void require_writable_format(const std::filesystem::path& path, const WriteOptions& options) {
+  const Format& format = format_of(path, options.format, writable_extensions());
+  if (options.variant.empty() || has_variant(format.variants, options.variant)) return;
+  const std::string extension(format.extension);
+  throw InvalidInput(one_line(
+      path.string() + ": unknown variant '" + options.variant + "' of " + extension +
+      (format.variants.empty() ? ", which has none" : "; known are " + std::string(format.variants))));
+}
+
+std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files = {path};
+  const Format* const format = find_format(path, {});
+  if (!format || path == kStandardInput || path == kStandardOutput) return files;
+  for (const std::string_view extension : format->beside)
+    if (!extension.empty()) files.push_back(std::filesystem::path(path).replace_extension(extension));
+  return files;
 }
 
 std::vector<std::string> readable_extensions() { return all_extensions(); }

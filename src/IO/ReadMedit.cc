@@ -40,7 +40,7 @@ class MeditReader {
   void read_section(const Heading& heading) {
     switch (heading.keyword) {
       case Keyword::kVertices:
-        return read_vertices();
+        return read_vertices(heading);
       case Keyword::kEdges:
         return read_elements<0>(mesh_.edges, mesh_.edge_labels, heading);
       case Keyword::kTriangles:
@@ -54,23 +54,30 @@ class MeditReader {
       case Keyword::kTetrahedraP2:
         return read_elements<6>(mesh_.cells, mesh_.regions, heading);
       case Keyword::kRequiredVertices:
-        return read_numbers(mesh_.fixed_vertices);
+        return read_numbers(mesh_.fixed_vertices, heading);
       case Keyword::kCorners:
-        return read_numbers(corners_);
+        return read_numbers(corners_, heading);
       case Keyword::kRequiredEdges:
-        return read_numbers(required_edges_);
+        return read_numbers(required_edges_, heading);
       case Keyword::kRequiredTriangles:
-        return read_numbers(required_triangles_);
+        return read_numbers(required_triangles_, heading);
       default:
         return skip(heading);
     }
   }
 
-  void read_vertices() {
-    const std::size_t n = in_.count(1, 3);
+  /// Fails where the section breaks off before its entry number i.
+  void expect_entry(const Heading& heading, std::size_t n, std::size_t i) {
+    if (in_.at_section_end()) [[unlikely]]
+      in_.fail(medit::too_few_entries(heading.name, static_cast<std::int64_t>(n), i));
+  }
+
+  void read_vertices(const Heading& heading) {
+    const std::size_t n = in_.count(heading.name, 1, 3);
     mesh_.points.reserve(mesh_.points.size() + n);
     mesh_.vertex_labels.reserve(mesh_.points.size() + n);
     for (std::size_t i = 0; i < n; ++i) {
+      expect_entry(heading, n, i);
       Vec3 p;
       p.x = in_.coordinate();
       p.y = in_.coordinate();
@@ -97,10 +104,11 @@ class MeditReader {
   template <std::size_t kMidside, std::size_t N>
   void read_elements(std::vector<std::array<Index, N>>& elements, std::vector<int>& labels,
                      const Heading& heading) {
-    const std::size_t n = in_.count(N + kMidside + 1, 0);
+    const std::size_t n = in_.count(heading.name, N + kMidside + 1, 0);
     elements.reserve(elements.size() + n);
     labels.reserve(elements.size() + n);
     for (std::size_t i = 0; i < n; ++i) {
+      expect_entry(heading, n, i);
       std::array<Index, N> element;
       for (Index& corner : element) corner = vertex();
       for (std::size_t k = 0; k < kMidside; ++k) midside_.push_back(vertex());
@@ -113,9 +121,10 @@ class MeditReader {
     }
   }
 
-  void read_numbers(std::vector<Index>& numbers) {
-    const std::size_t n = in_.count(1, 0);
+  void read_numbers(std::vector<Index>& numbers, const Heading& heading) {
+    const std::size_t n = in_.count(heading.name, 1, 0);
     for (std::size_t i = 0; i < n; ++i) {
+      expect_entry(heading, n, i);
       numbers.push_back(static_cast<Index>(in_.integer_in(1, VertexHandle::kInvalid >> 1, "number") - 1));
     }
   }

@@ -13,8 +13,8 @@ constexpr std::int64_t kMostFields = 10000;
 /// One section: a count, the number of fields, their types, and then all fields of the first item, of the
 /// second …
 template <class Source>
-std::vector<Field> read_fields(Source& in) {
-  const std::size_t items = in.count(0, 1);
+std::vector<Field> read_fields(Source& in, std::string_view section) {
+  const std::size_t items = in.count(section, 0, 1);
   const std::int64_t n_fields = in.short_integer();
   if (n_fields < 0 || n_fields > kMostFields) in.fail("an impossible number of fields");
   std::vector<Field> fields;
@@ -58,9 +58,9 @@ void read_solution(const InputFile& file, MeshData& mesh) {
   const std::string name = file.path().filename().string();
   while (const auto heading = in.next()) {
     if (heading->keyword == Keyword::kSolAtVertices) {
-      keep(read_fields(in), mesh.points.size(), "points", name, mesh.point_fields, mesh.notes);
+      keep(read_fields(in, heading->name), mesh.points.size(), "points", name, mesh.point_fields, mesh.notes);
     } else if (heading->keyword == Keyword::kSolAtTetrahedra) {
-      keep(read_fields(in), mesh.cells.size(), "cells", name, mesh.cell_fields, mesh.notes);
+      keep(read_fields(in, heading->name), mesh.cells.size(), "cells", name, mesh.cell_fields, mesh.notes);
     } else {
       in.announced();
       in.skip();

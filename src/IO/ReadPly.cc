@@ -184,7 +184,9 @@ void PlyReader::read_faces(const Element& element) {
         }
       } else if (property.name == "label" && !property.list_count) {
         const double number = value(property.type);
-        if (std::abs(number) <= std::numeric_limits<int>::max()) label = static_cast<int>(number);
+        if (!(std::abs(number) <= std::numeric_limits<int>::max()))
+          fail("a label is larger than " + std::to_string(std::numeric_limits<int>::max()));
+        label = static_cast<int>(number);
       } else {
         skip(property);
       }

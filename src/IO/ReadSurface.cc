@@ -240,7 +240,7 @@ MeshData read_off(const InputFile& file) {
 }  // namespace
 
 MeshData read_surface(const InputFile& file) {
-  const std::string extension = lower(file.path().extension().string());
+  const std::string extension = lower(file.extension());
   if (extension == ".stl") return read_stl(file);
   if (extension == ".obj") return read_obj(file);
   if (extension == ".off") return read_off(file);

@@ -145,10 +145,16 @@ class TetgenReader {
   void take_regions(std::vector<Field>& fields) {
     if (fields.empty()) return;
     const std::vector<double>& values = fields[0].values;
-    const bool whole = std::all_of(values.begin(), values.end(), [](double value) {
-      return std::abs(value) <= std::numeric_limits<int>::max() && value == std::trunc(value);
+    const auto is_whole = [](double value) { return value == std::trunc(value); };
+    if (!std::all_of(values.begin(), values.end(), is_whole)) return;
+    const auto beyond = std::find_if(values.begin(), values.end(), [](double value) {
+      return !(std::abs(value) <= std::numeric_limits<int>::max());
     });
-    if (!whole) return;
+    if (beyond != values.end()) {
+      mesh_.notes.push_back("the first attribute of cell " + std::to_string(beyond - values.begin()) +
+                            " is larger than a region's number can be: the attributes are kept as a field");
+      return;
+    }
     mesh_.regions.assign(values.begin(), values.end());
     fields.erase(fields.begin());
   }

@@ -92,7 +92,9 @@ constexpr ValueType kInt = {ValueType::Kind::kNumber, NumberType::kInt32};
 
 class LegacyReader {
  public:
-  explicit LegacyReader(const InputFile& file) : scan_(file.bytes(), file.path().string()) {}
+  explicit LegacyReader(const InputFile& file) : scan_(file.bytes(), file.path().string()) {
+    grid_.file = file.path().string();
+  }
   MeshData read();
 
  private:

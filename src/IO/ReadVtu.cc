@@ -32,7 +32,9 @@ std::string_view attribute(const XMLElement& element, const char* name) {
 
 class VtuReader {
  public:
-  explicit VtuReader(const InputFile& file) : bytes_(file.bytes()), name_(file.path().string()) {}
+  explicit VtuReader(const InputFile& file) : bytes_(file.bytes()), name_(file.path().string()) {
+    grid_.file = name_;
+  }
   MeshData read();
 
  private:

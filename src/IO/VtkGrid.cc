@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IO/VtkGrid.hh"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -10,6 +12,7 @@
 #include <optional>
 #include <span>
 
+#include "HalfFace/Errors.hh"
 #include "IO/Linearise.hh"
 
 namespace hfr::io {
@@ -97,24 +100,35 @@ std::string counted(std::size_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-bool holds_labels(const Field& field) {
-  constexpr double low = std::numeric_limits<int>::min();
-  constexpr double high = std::numeric_limits<int>::max();
-  return field.components == 1 && std::all_of(field.values.begin(), field.values.end(), [](double v) {
-           return v >= low && v <= high && v == std::trunc(v);
-         });
-}
+constexpr double kLowestLabel = std::numeric_limits<int>::min();
+constexpr double kHighestLabel = std::numeric_limits<int>::max();
 
-/// Takes the array with the best of the known names out of `fields`.
-std::optional<Field> take_labels(std::vector<Field>& fields, std::span<const std::string_view> names) {
+bool is_label(double v) { return v >= kLowestLabel && v <= kHighestLabel && v == std::trunc(v); }
+
+/// Takes the array with the best of the known names out of `fields`. Integers that no label can hold would
+/// leave the regions of a mesh unknown, so they are refused; real numbers may well mean something else.
+std::optional<Field> take_labels(std::vector<Field>& fields, std::span<const std::string_view> names,
+                                 const std::string& kind, const std::string& file,
+                                 std::vector<std::string>& notes) {
   for (const std::string_view name : names) {
-    const auto found = std::find_if(fields.begin(), fields.end(), [&](const Field& field) {
-      return lower(field.name) == name && holds_labels(field);
-    });
-    if (found == fields.end()) continue;
-    Field labels = std::move(*found);
-    fields.erase(found);
-    return labels;
+    for (auto field = fields.begin(); field != fields.end(); ++field) {
+      if (lower(field->name) != name || field->components != 1) continue;
+      const auto& values = field->values;
+      const auto odd = std::find_if_not(values.begin(), values.end(), is_label);
+      if (odd == values.end()) {
+        Field labels = std::move(*field);
+        fields.erase(field);
+        return labels;
+      }
+      const bool whole =
+          std::all_of(values.begin(), values.end(), [](double v) { return v == std::trunc(v); });
+      if (!whole) continue;
+      const std::string what =
+          fmt::format("{0} array '{1}': {2} of {0} {3} is no label, as labels go from {4:.0f} to {5:.0f}",
+                      kind, field->name, *odd, odd - values.begin(), kLowestLabel, kHighestLabel);
+      if (field->integer) throw InvalidInput(file + ": " + what);
+      notes.push_back(what + ": the array is kept as a field");
+    }
   }
   return std::nullopt;
 }
@@ -260,7 +274,8 @@ std::vector<int> GridConverter::gathered(const Field& labels, const std::vector<
 void GridConverter::distribute_cell_labels() {
   mesh_.triangle_labels.assign(mesh_.triangles.size(), 0);
   mesh_.edge_labels.assign(mesh_.edges.size(), 0);
-  const std::optional<Field> labels = take_labels(grid_.cell_arrays, kCellLabelNames);
+  const std::optional<Field> labels =
+      take_labels(grid_.cell_arrays, kCellLabelNames, "cell", grid_.file, mesh_.notes);
   if (!labels) return;
   if (only_tetrahedra()) {
     mesh_.regions.assign(labels->values.begin(), labels->values.end());
@@ -303,18 +318,20 @@ void GridConverter::distribute_cell_fields() {
 
 void GridConverter::take_point_arrays() {
   std::vector<Field>& fields = grid_.point_arrays;
-  if (const auto labels = take_labels(fields, kPointLabelNames)) {
+  if (const auto labels = take_labels(fields, kPointLabelNames, "point", grid_.file, mesh_.notes)) {
     mesh_.vertex_labels.assign(labels->values.begin(), labels->values.end());
   }
   const auto fixed = std::find_if(fields.begin(), fields.end(), [](const Field& field) {
-    return lower(field.name) == kVtkFixedArray && field.integer && field.components == 1 &&
-           std::all_of(field.values.begin(), field.values.end(),
-                       [](double v) { return v == 0.0 || v == 1.0; });
+    return lower(field.name) == kVtkFixedArray && field.components == 1;
   });
-  if (fixed != fields.end()) {
+  const auto is_flag = [](double v) { return v == 0.0 || v == 1.0; };
+  if (fixed != fields.end() && std::all_of(fixed->values.begin(), fixed->values.end(), is_flag)) {
     for (std::size_t i = 0; i < fixed->values.size(); ++i)
       if (fixed->values[i] != 0.0) mesh_.fixed_vertices.push_back(static_cast<Index>(i));
     fields.erase(fixed);
+  } else if (fixed != fields.end()) {
+    mesh_.notes.push_back("point array '" + fixed->name +
+                          "' has other values than 0 and 1: it is kept as a field and fixes no vertex");
   }
   mesh_.point_fields = std::move(fields);
 }

@@ -26,6 +26,7 @@ inline constexpr std::uint8_t kVtkTetra = 10;
 
 /// An unstructured grid as a file holds it. Cell k has the corners [ends[k-1], ends[k]).
 struct VtkGrid {
+  std::string file;  ///< what messages begin with
   std::vector<Vec3> points;
   std::vector<std::int64_t> corners;
   std::vector<std::int64_t> ends;

@@ -160,6 +160,7 @@ void write_fields(Sink& out, Keyword keyword, const std::vector<const Field*>& f
   }
 }
 
+/// `solution_name` is empty where there is no place beside the mesh for its fields.
 void note_losses(const MeshData& mesh, std::string_view solution_name, Notes& notes) {
   if (!mesh.names.empty()) {
     notes.push_back("Medit files hold no names: " + std::to_string(mesh.names.size()) +
@@ -177,6 +178,10 @@ void note_losses(const MeshData& mesh, std::string_view solution_name, Notes& no
     }
   }
   if (kept.empty()) return;
+  if (solution_name.empty()) {
+    notes.push_back("fields are left out, as Medit keeps them in a file of their own: " + kept);
+    return;
+  }
   notes.push_back("fields go into " + std::string(solution_name) +
                   ", as reals and without their names: " + kept);
 }
@@ -185,7 +190,8 @@ template <class Sink>
 Notes write(const std::filesystem::path& path, const MeshData& mesh, const char* solution_extension) {
   const std::filesystem::path solution_path =
       std::filesystem::path(path).replace_extension(solution_extension);
-  const std::string solution_name = solution_path.filename().string();
+  const bool alone = path == kStandardOutput;
+  const std::string solution_name = alone ? "" : solution_path.filename().string();
   Notes notes;
   note_losses(mesh, solution_name, notes);
 
@@ -194,6 +200,10 @@ Notes write(const std::filesystem::path& path, const MeshData& mesh, const char*
   const std::vector<const Field*> point_fields = storable(mesh.point_fields);
   const std::vector<const Field*> cell_fields = storable(mesh.cell_fields);
   std::error_code ignored;
+  if (alone) {
+    out.commit();
+    return notes;
+  }
   if (!point_fields.empty() || !cell_fields.empty()) {
     Sink solution(solution_path, mesh);
     write_fields(solution, Keyword::kSolAtVertices, point_fields, mesh.points.size());

@@ -270,7 +270,7 @@ Notes losses(const MeshData& mesh, const Surface& surface, bool holds_labels) {
 }  // namespace
 
 Notes write_surface(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options) {
-  std::string extension = path.extension().string();
+  std::string extension = options.format.empty() ? path.extension().string() : options.format;
   for (char& c : extension)
     if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   const Surface surface = surface_of(mesh);

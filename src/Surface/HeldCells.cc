@@ -17,7 +17,8 @@ using surface::unit;
 /// The surface as one mode sees it.
 class View {
  public:
-  View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy) {
+  View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy)
+      : tilts_(mode == SurfaceMode::kFree) {
     options.mode = mode;
     arrays_ = surface::gather(mesh, options, policy);
     features_ = surface::find_features(arrays_, options, surface::allowed_distance(arrays_, options));
@@ -25,14 +26,10 @@ class View {
 
   /// True when something of the cell's surface may change, and nothing that stays is too narrow for it.
   bool lets_change(const TetMesh& mesh, CellHandle c, double degrees) const {
-    return !has_narrow_feature(mesh, c, degrees) && may_change(mesh, c);
+    return !has_narrow_feature(mesh, c, degrees, /*for_good=*/false) && may_change(mesh, c);
   }
   bool holds(const TetMesh& mesh, CellHandle c, double degrees) const {
-    const auto& v = mesh.cell(c).v;
-    const bool all_outside = std::all_of(v.begin(), v.end(), [&](VertexHandle w) {
-      return features_.freedom[w.idx()].kind != SurfaceKind::kInside;
-    });
-    return has_narrow_feature(mesh, c, degrees) || (all_outside && !may_change(mesh, c));
+    return has_narrow_feature(mesh, c, degrees, /*for_good=*/tilts_);
   }
 
  private:
@@ -48,14 +45,25 @@ class View {
              return e && e->manifold && !e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]];
            });
   }
-  bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees) const {
+  /// `for_good`: only those whose faces stay as they are.
+  bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees, bool for_good) const {
     const auto& v = mesh.cell(c).v;
     return std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
       const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
       if (!e || !e->manifold || !e->feature) return false;
+      if (for_good && !(stays(e->f[0]) && stays(e->f[1]))) return false;
       const double inside = angle_inside(*e);
       return (is_inside(mesh, c, *e) ? inside : 360 - inside) < degrees;
     });
+  }
+  bool stays(std::uint32_t face) const {
+    if (arrays_.locked[face] && arrays_.fixed[face]) return true;
+    const auto& v = arrays_.faces[face];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const surface::Edge* e = edge(v[k], v[(k + 1) % 3]);
+      if (features_.freedom[v[k].idx()].kind != SurfaceKind::kFixed || !e || !e->feature) return false;
+    }
+    return true;
   }
   const surface::Edge* edge(VertexHandle a, VertexHandle b) const {
     if (b < a) std::swap(a, b);
@@ -82,6 +90,7 @@ class View {
     return convex ? 180 - turn : 180 + turn;
   }
 
+  bool tilts_;  // whether facets may leave their planes
   surface::Arrays arrays_;
   surface::Features features_;
 };

@@ -22,6 +22,36 @@ Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
 
 Vec3 scaled_normal(const std::array<Vec3, 3>& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
+/// Height over the longest edge below which nearest_point() loses too many digits to differences of products.
+constexpr double kThin = 1e-2;
+
+/// In coordinates along the longest edge and from it to the third corner, each of which is right to its own
+/// last digits.
+Vec3 nearest_point_of_thin(std::array<Vec3, 3> t, Vec3 x) {
+  std::size_t longest = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (norm2(t[(k + 1) % 3] - t[k]) > norm2(t[(longest + 1) % 3] - t[longest])) longest = k;
+  std::rotate(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(longest), t.end());
+  const Vec3 base = t[1] - t[0];
+  const Vec3 side = t[2] - t[0];
+  const double base2 = norm2(base);
+  if (!(base2 > 0)) return t[0];
+  const double foot = dot(side, base) / base2;
+  Vec3 height = side - foot * base;
+  height = height - (dot(height, base) / base2) * base;  // what rounding has left along the base
+  const double height2 = norm2(height);
+  const double of_third = height2 > 0 ? dot(x - t[0], height) / height2 : 0;
+  const double of_second = dot(x - t[0], base) / base2 - of_third * foot;
+  if (of_third >= 0 && of_second >= 0 && of_second + of_third <= 1)
+    return t[0] + of_second * base + of_third * side;
+  Vec3 nearest = t[0];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 p = nearest_point(std::array<Vec3, 2>{t[k], t[(k + 1) % 3]}, x);
+    if (norm2(p - x) < norm2(nearest - x)) nearest = p;
+  }
+  return nearest;
+}
+
 }  // namespace
 
 // Ericson, Real-Time Collision Detection, 2005, section 5.1.5; written with differences only, so that equal
@@ -62,7 +92,13 @@ Vec3 nearest_point(const std::array<Vec3, 2>& s, Vec3 x) {
   return share < 1 ? s[0] + share * along : s[1];
 }
 
+Vec3 exact_nearest_point(const std::array<Vec3, 3>& t, Vec3 x) {
+  const double longest2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+  return norm(scaled_normal(t)) < kThin * longest2 ? nearest_point_of_thin(t, x) : nearest_point(t, x);
+}
+
 struct InputSurface::Impl {
+  bool exact = false;
   std::vector<std::array<Vec3, 3>> triangles;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<Vec3> normals;
@@ -80,8 +116,10 @@ struct InputSurface::Impl {
     tree.init(numbers.begin(), numbers.end(), boxes.begin(), boxes.end());
   }
 
-  double distance2(Vec3 x, std::size_t i) const {
-    return norm2((segments.empty() ? nearest_point(triangles[i], x) : nearest_point(segments[i], x)) - x);
+  double distance2(Vec3 x, std::size_t i) const { return norm2(nearest_of(i, x) - x); }
+  Vec3 nearest_of(std::size_t i, Vec3 x) const {
+    if (!segments.empty()) return nearest_point(segments[i], x);
+    return exact ? exact_nearest_point(triangles[i], x) : nearest_point(triangles[i], x);
   }
 
   /// The state of one search: what is nearest so far, and how near it must be to count.
@@ -94,8 +132,7 @@ struct InputSurface::Impl {
 
   void look(Search& search, std::size_t i) const {
     if (search.side && dot(normals[i], *search.side) < 0) return;
-    const Vec3 p =
-        segments.empty() ? nearest_point(triangles[i], search.x) : nearest_point(segments[i], search.x);
+    const Vec3 p = nearest_of(i, search.x);
     const double d2 = norm2(p - search.x);
     if (d2 < search.hit.distance && d2 <= search.limit2) {
       search.hit = {p, d2, i};
@@ -148,7 +185,8 @@ struct InputSurface::Impl {
   }
 };
 
-InputSurface::InputSurface(std::span<const std::array<Vec3, 3>> triangles) : impl_(new Impl) {
+InputSurface::InputSurface(std::span<const std::array<Vec3, 3>> triangles, bool exact) : impl_(new Impl) {
+  impl_->exact = exact;
   impl_->triangles.assign(triangles.begin(), triangles.end());
   for (const auto& t : triangles) {
     const Vec3 n = scaled_normal(t);

@@ -23,7 +23,8 @@ class InputSurface {
     std::size_t item = 0;  ///< number of the triangle or segment; of several as near, the one found first
   };
 
-  explicit InputSurface(std::span<const std::array<Vec3, 3>> triangles);
+  /// With `exact`, distances are right to rounding for needles, too: to measure by, at some cost.
+  explicit InputSurface(std::span<const std::array<Vec3, 3>> triangles, bool exact = false);
   explicit InputSurface(std::span<const std::array<Vec3, 2>> segments);
   ~InputSurface();
   InputSurface(InputSurface&&) noexcept;
@@ -56,6 +57,9 @@ class InputSurface {
 /// to the last bit.
 Vec3 nearest_point(const std::array<Vec3, 3>& triangle, Vec3 x);
 Vec3 nearest_point(const std::array<Vec3, 2>& segment, Vec3 x);
+/// The same to rounding for triangles of any height; nearest_point() is wrong by as much as their height for
+/// those whose height is lost beside their longest edge.
+Vec3 exact_nearest_point(const std::array<Vec3, 3>& triangle, Vec3 x);
 
 }  // namespace hfr
 

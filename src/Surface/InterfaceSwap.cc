@@ -117,6 +117,7 @@ void InterfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity
   TwoSides two;
   gather_sides(mesh, plan.seed, two);
   out.clear();
+  out.surface_is_held = true;
   out.n_dead_first = plan.n_dead_first;
   out.n_born_first = plan.n_born_first;
   for (std::size_t s = 0; s < 2; ++s) {

@@ -8,6 +8,7 @@
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
 #include "Operators/Smooth.hh"
+#include "Quality/Damage.hh"
 
 namespace hfr {
 namespace {
@@ -78,6 +79,7 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
   if (axis == Vec3{}) return std::nullopt;
 
   std::ptrdiff_t n_invalid = 0;
+  Damage damage;
   Plan plan;
   plan.old_worst = std::numeric_limits<double>::infinity();
   double length = 0;
@@ -87,6 +89,7 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
     n_links += member.link.size();
     for (HalfFaceHandle h : member.link) {
       n_invalid += quality[cell_of(h).idx()] > 0 ? 0 : 1;
+      damage.add(mesh, cell_of(h));
       for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - member.place);
     }
   }
@@ -118,7 +121,7 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
     return true;
   };
   constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
-  if (kMeasuresAngles && plan.old_worst > 0 && n_links < Star::kCapacity) {
+  if (kMeasuresAngles && plan.old_worst > 0) {
     MaxMinForm form(origin, MaxMinForm::kAnglesOf<Metric>);
     form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
     for (const Member& member : *members) {
@@ -151,17 +154,20 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
     plan.new_worst = worst_at(plan.targets, plan.old_worst);
     if (!(plan.new_worst > plan.old_worst)) continue;
     std::ptrdiff_t n_left = 0;
+    Damage left;
     bool keeps = true;
     for (std::size_t k = 0; k < plan.targets.size() && keeps; ++k) {
       const Member& member = (*members)[k];
-      for (HalfFaceHandle h : member.link)
+      for (HalfFaceHandle h : member.link) {
         n_left += quality_with(mesh, cell_of(h), member.v, plan.targets[k], metric) > 0 ? 0 : 1;
+        left.add(mesh, cell_of(h), member.v, plan.targets[k]);
+      }
       std::vector<Triangle> born;
       for (std::size_t f = 0; f < member.faces.size(); ++f)
         born.push_back(with(member.dead[f], member.faces[f], member.v, plan.targets[k]));
       keeps = surface->keeps_shape(member.faces, member.dead, born);
     }
-    if (keeps && n_left <= n_invalid) return plan;
+    if (keeps && n_left <= n_invalid && damage.may_become(left)) return plan;
   }
   return std::nullopt;
 }

@@ -231,6 +231,7 @@ void SurfaceCollapse<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavi
   Cluster cluster;
   gather_cluster(mesh, plan.seed.vertex, cluster);
   out.clear();
+  out.surface_is_held = true;
   out.removed = plan.seed.vertex;
   out.n_dead_first = plan.n_dead_first;
   out.n_born_first = plan.n_born_first;

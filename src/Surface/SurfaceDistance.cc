@@ -82,8 +82,8 @@ SurfaceDistance surface_distance(std::span<const Triangle> from, std::span<const
                                  par::Policy policy) {
   HFR_REQUIRE(spacing > 0, "the spacing of sample points must be positive");
   if (from.empty() || to.empty()) return {};
-  return {largest_distance(from, InputSurface(to), spacing, policy),
-          largest_distance(to, InputSurface(from), spacing, policy)};
+  return {largest_distance(from, InputSurface(to, /*exact=*/true), spacing, policy),
+          largest_distance(to, InputSurface(from, /*exact=*/true), spacing, policy)};
 }
 
 std::vector<Triangle> surface_triangles(const TetMesh& mesh, par::Policy policy) {

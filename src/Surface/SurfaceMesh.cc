@@ -151,8 +151,8 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
       faces[e.f[0]].samples.push_back(ends[0] + (1.0 * i / cuts) * (ends[1] - ends[0]));
     if (e.feature) segments.push_back(ends);
   }
-  if (!triangles.empty()) shape.emplace(triangles);
-  if (!segments.empty()) curves.emplace(segments);
+  if (!triangles.empty()) shape = std::make_shared<const InputSurface>(triangles);
+  if (!segments.empty()) curves = std::make_shared<const InputSurface>(segments);
 }
 
 void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted) {
@@ -198,6 +198,14 @@ void SurfaceMesh::take_again(const TetMesh& mesh, par::Policy policy) {
   SurfaceMesh again(mesh, options, policy);
   impl_.swap(again.impl_);
 }
+
+SurfaceMesh::SurfaceMesh(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+std::unique_ptr<SurfaceMesh> SurfaceMesh::copy() const {
+  return std::unique_ptr<SurfaceMesh>(new SurfaceMesh(std::make_unique<Impl>(*impl_)));
+}
+
+void SurfaceMesh::take_back(const SurfaceMesh& copied) { *impl_ = *copied.impl_; }
 
 void SurfaceMesh::Impl::bind(std::vector<std::vector<VertexHandle>> found) {
   orbits = std::move(found);

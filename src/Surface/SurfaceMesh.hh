@@ -126,6 +126,10 @@ class SurfaceMesh {
   /// In flat mode, after cells have been replaced without a word: takes the surface as it is now. Labels must
   /// have been written.
   void take_again(const TetMesh& mesh, par::Policy policy = {});
+  /// The surface as it is now, for take_back().
+  std::unique_ptr<SurfaceMesh> copy() const;
+  /// The surface as it was when it was copied, after the volume has been put back to what it was then.
+  void take_back(const SurfaceMesh& copied);
   /// Brings patch labels of the volume up to date with what has happened since.
   void write_labels(TetMesh& mesh);
 
@@ -134,6 +138,7 @@ class SurfaceMesh {
 
  private:
   struct Impl;
+  explicit SurfaceMesh(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -86,12 +87,12 @@ struct SurfaceMesh::Impl {
   std::vector<std::pair<Index, OmVertex>> more;  // where there are several, ascending
   std::vector<FaceRecord> faces;
   std::vector<Freedom> freedom;
-  std::optional<InputSurface> shape, curves;      // free mode
-  std::vector<std::array<VertexHandle, 3>> gone;  // labelled faces that are no more
-  std::set<int> fresh;                            // labelled faces with other vertices
-  Vec3 origin;                                    // from which volumes are measured
-  double six_volume = 0, area = 0;                // of the input
-  double six_gain = 0;                            // of the volume since
+  std::shared_ptr<const InputSurface> shape, curves;  // free mode
+  std::vector<std::array<VertexHandle, 3>> gone;      // labelled faces that are no more
+  std::set<int> fresh;                                // labelled faces with other vertices
+  Vec3 origin;                                        // from which volumes are measured
+  double six_volume = 0, area = 0;                    // of the input
+  double six_gain = 0;                                // of the volume since
   struct Region {
     double six_volume = 0, six_gain = 0;
   };
@@ -190,8 +191,9 @@ struct SurfaceMesh::Impl {
                      std::span<const Triangle> born) const;
   int cuts_of(const Triangle& t) const {
     const double longest2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
-    return std::clamp(static_cast<int>(std::ceil(std::sqrt(longest2) / spacing)), surface::kLeastCuts,
-                      surface::kMostCuts);
+    const double cuts = std::ceil(std::sqrt(longest2) / spacing);
+    return cuts < surface::kMostCuts ? std::max(static_cast<int>(cuts), surface::kLeastCuts)
+                                     : surface::kMostCuts;  // also where it is no number
   }
   /// A sample stays where it is while that face is near enough, and goes to the nearest of these faces
   /// otherwise; so do those that have no face.

@@ -87,6 +87,7 @@ template <class Metric>
 void SurfaceSplit<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   const auto [a, b] = mesh.edge_vertices(plan.seed.edge);
   detail::fill_cavity(mesh, plan.seed.growth, plan.place, out, CutFaces{mesh, a, b});
+  out.surface_is_held = true;
 }
 
 template <class Metric>

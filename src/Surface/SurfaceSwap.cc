@@ -108,6 +108,7 @@ void SurfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& 
   OpenRing ring;
   gather_open_ring(mesh, plan.seed, ring);
   out.clear();
+  out.surface_is_held = true;
   for_dead(ring, [&](CellHandle c) { out.dead.push_back(c); });
   for (CellHandle c : ring.behind) out.born.push_back(mesh.cell(c).v);
   if (ring.n_cells == 1) return;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "HalfFace/Check.hh"
 #include "HalfFace/Generate.hh"
 
 namespace hfr::io {
@@ -121,6 +122,41 @@ TEST(Assemble, FileInTheOtherOrientationIsFlippedAsAWhole) {
   EXPECT_TRUE(report.flipped);
   EXPECT_TRUE(report.reoriented.empty());
   EXPECT_EQ(back.triangles, data.triangles);
+}
+
+TEST(Assemble, WhatVerticesHaveGoesToTheirCopies) {
+  // Two cells along the edge (0, 1), and what a file may say of it.
+  MeshData data;
+  data.points = {{0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+  data.cells = {{0, 1, 2, 3}, {0, 1, 4, 5}};
+  data.regions = {3, 4};
+  data.triangles = {{0, 1, 2}, {4, 1, 0}, {2, 3, 1}};
+  data.triangle_labels = {7, 8, 9};
+  data.edges = {{1, 0}, {2, 3}};
+  data.edge_labels = {5, 6};
+  data.vertex_labels = {0, 11, 0, 0, 0, 0};
+  data.fixed_vertices = {0};
+  Field field;
+  field.name = "u";
+  field.components = 2;
+  for (int i = 0; i < 12; ++i) field.values.push_back(i);
+  data.point_fields = {field};
+  BuildReport report;
+  const TetMesh mesh = assemble(data, {}, &report, nullptr, NonManifold::kSplit);
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_EQ(report.copied, (std::vector{VertexHandle(0), VertexHandle(1)}));
+  const MeshData back = disassemble(mesh);
+  EXPECT_EQ(back.cells[1], (std::array<Index, 4>{6, 7, 4, 5}));
+  EXPECT_EQ(back.points[7], data.points[1]);
+  EXPECT_EQ(back.triangles, (std::vector<std::array<Index, 3>>{{0, 1, 2}, {4, 7, 6}, {2, 3, 1}}));
+  EXPECT_EQ(back.triangle_labels, data.triangle_labels);
+  EXPECT_EQ(back.edges, (std::vector<std::array<Index, 2>>{{1, 0}, {7, 6}, {2, 3}}));
+  EXPECT_EQ(back.edge_labels, (std::vector<int>{5, 5, 6}));
+  EXPECT_EQ(back.vertex_labels, (std::vector<int>{0, 11, 0, 0, 0, 0, 0, 11}));
+  EXPECT_EQ(back.fixed_vertices, (std::vector<Index>{0, 6}));
+  ASSERT_EQ(back.point_fields.size(), 1U);
+  EXPECT_EQ(back.point_fields[0].values,
+            (std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 0, 1, 2, 3}));
 }
 
 TEST(Assemble, RegionsThatDoNotFitTheCellsAreRefused) {

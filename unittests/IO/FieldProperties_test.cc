@@ -82,6 +82,16 @@ TEST(FieldProperties, ValuesOfDeletedVerticesAndCellsAreLeftOut) {
   EXPECT_EQ(back.point_fields[1].values[0], 1);
 }
 
+TEST(FieldProperties, FieldWithoutANameIsKept) {
+  MeshData data = box_with_fields();
+  const Field nameless = ramp("", 1, data.points.size());
+  data.point_fields = {nameless};
+  const TetMesh mesh = assemble(data);
+  ASSERT_EQ(point_fields(mesh).size(), 1U);
+  EXPECT_EQ(point_fields(mesh)[0].name, "unnamed");
+  EXPECT_EQ(point_fields(mesh)[0].values, nameless.values);
+}
+
 TEST(FieldProperties, SecondFieldOfANameIsLeftOutAndSaid) {
   MeshData data = box_with_fields();
   data.cell_fields.push_back(ramp("1 reals", 3, data.cells.size()));

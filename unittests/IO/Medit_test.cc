@@ -123,7 +123,11 @@ TEST(Medit, BrokenTextIsRefusedWithItsLine) {
   EXPECT_EQ(message(std::string(kHead) + "Vertices 1\n0 nan 0 0\nEnd\n"),
             "a.mesh:5: expected a finite number, found 'nan'");
   EXPECT_EQ(message(std::string(kHead) + "Vertices 1000000000000000000\n0 0 0 0\n"),
-            "a.mesh:4: number of entries 1000000000000000000 is more than the rest of the file can hold");
+            "a.mesh:4: Vertices announces 1000000000000000000 entries and has 1");
+  EXPECT_EQ(message(std::string(kHead) + "Vertices 3\n0 0 0 0\n1 0 0 0\nTetrahedra 1\n1 2 3 4 0\nEnd\n"),
+            "a.mesh:7: Vertices announces 3 entries and has 2");
+  EXPECT_EQ(message(file_of("Tetrahedra 2\n1 2 3 4 0\n")),
+            "a.mesh:10: Tetrahedra announces 2 entries and has 1");
   EXPECT_EQ(message(file_of("Tetrahedra 1\n1 2 3 4 0\n1 2 3 5 0\nEnd\n")),
             "a.mesh:12: expected a keyword; the section before may have more entries than it says");
   EXPECT_EQ(message(file_of("RequiredEdges 1\n4\nEnd\n")).substr(0, 7), "a.mesh:");
@@ -272,7 +276,7 @@ TEST(Meditb, BrokenBytesAreRefusedWithTheirPlace) {
   EXPECT_EQ(message(patched(24, std::string("\x05\0\0\0", 4))),
             "a.meshb: at byte 28: the position of the next section, 5, is outside the file");
   EXPECT_EQ(message(patched(28, "\xff\xff\xff\x7f")),
-            "a.meshb: at byte 32: number of entries 2147483647 is more than the rest of the file can hold");
+            "a.meshb: at byte 32: Vertices announces 2147483647 entries and has 4");
   EXPECT_EQ(message(patched(32 + 4, "\xff\xff\xff\xff")), "a.meshb: at byte 40: a coordinate is not finite");
 }
 

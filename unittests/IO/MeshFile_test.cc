@@ -7,6 +7,7 @@
 
 #include <iterator>
 
+#include "HalfFace/Errors.hh"
 #include "IO/MeshDataSamples.hh"
 #include "IO/WritableFormats.hh"
 
@@ -158,6 +159,28 @@ TEST(MeshFile, ExtensionsAreKnownInCapitalsToo) {
   const TemporaryFolder folder;
   write_mesh(folder / "A.MESH", samples::two_cells());
   EXPECT_EQ(read_mesh(folder / "A.MESH").cells.size(), 2U);
+}
+
+TEST(MeshFile, AVariantThatTheFormatHasNotIsRefusedBeforeAnyMeshIsThere) {
+  EXPECT_NO_THROW(require_writable_format("a.vtu", {.variant = "zlib"}));
+  EXPECT_NO_THROW(require_writable_format("-", {.variant = "4.1", .format = "msh"}));
+  EXPECT_THROW(require_writable_format("a.vtu", {.variant = "4.1"}), InvalidInput);
+  EXPECT_THROW(require_writable_format("a.msh", {.variant = "4"}), InvalidInput);
+  EXPECT_THROW(require_writable_format("a.msh", {.variant = "4.0 4.1"}), InvalidInput);
+  EXPECT_THROW(require_writable_format("a.mesh", {.variant = "ascii"}), InvalidInput) << "it has none";
+  EXPECT_THROW(require_writable_format("a.xyz", {}), InvalidInput);
+}
+
+TEST(MeshFile, EveryVariantThatIsTriedIsKnownBeforehand) {
+  for (const FormatVariant& format : samples::cell_formats())
+    EXPECT_NO_THROW(require_writable_format("a" + format.extension, format.options)) << format.name();
+}
+
+TEST(MeshFile, FilesOfAMeshAreTheOnesBesideItToo) {
+  using ::testing::UnorderedElementsAre;
+  EXPECT_THAT(files_of_mesh("x/a.ele"), UnorderedElementsAre("x/a.node", "x/a.ele", "x/a.face", "x/a.edge"));
+  EXPECT_THAT(files_of_mesh("a.mesh"), UnorderedElementsAre("a.mesh", "a.sol", "a.solb"));
+  EXPECT_THAT(files_of_mesh("a.vtu"), UnorderedElementsAre("a.vtu"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "IO/OutputFile.hh"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include "HalfFace/Errors.hh"
 #include "IO/InputFile.hh"
 #include "IO/MeshDataSamples.hh"
+#include "IO/MeshFile.hh"
 
 namespace hfr::io {
 namespace {
@@ -82,6 +84,51 @@ TEST(OutputFile, ASymbolicLinkStaysALink) {
   EXPECT_EQ(samples::read_bytes(folder / "real.txt"), "new");
 }
 
+TEST(OutputFile, ALinkToNothingStaysALinkAndItsTargetIsMade) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "below");
+  fs::create_symlink("below/new.txt", folder / "second.txt");
+  fs::create_symlink("second.txt", folder / "first.txt");
+  OutputFile(folder / "first.txt").text("new").commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "first.txt"));
+  EXPECT_TRUE(fs::is_symlink(folder / "second.txt"));
+  EXPECT_EQ(samples::read_bytes(folder / "below/new.txt"), "new");
+}
+
+TEST(OutputFile, LinksInACircleAreReportedAndStay) {
+  const TemporaryFolder folder;
+  fs::create_symlink("b.txt", folder / "a.txt");
+  fs::create_symlink("a.txt", folder / "b.txt");
+  EXPECT_EQ(message_of([&] { OutputFile file(folder / "a.txt"); }),
+            (folder / "a.txt").string() + ": cannot be written: Too many levels of symbolic links");
+  EXPECT_TRUE(fs::is_symlink(folder / "a.txt"));
+  EXPECT_EQ(files_in(folder), 2);
+}
+
+TEST(OutputFile, TheLongestNameThatAFileMayHaveCanBeWritten) {
+  const TemporaryFolder folder;
+  const std::string longest(255, 'n');
+  OutputFile(folder / longest).text("x").commit();
+  EXPECT_EQ(samples::read_bytes(folder / longest), "x");
+  const std::string too_long = (folder / std::string(256, 'n')).string();
+  EXPECT_EQ(message_of([&] { OutputFile file(too_long); }),
+            too_long + ": cannot be written: File name too long");
+  EXPECT_EQ(files_in(folder), 1);
+}
+
+TEST(OutputFile, ASignalHandlerCanRemoveWhatIsHalfWritten) {
+  const TemporaryFolder folder;
+  samples::write_bytes(folder / "a.txt", "old");
+  OutputFile first(folder / "a.txt");
+  OutputFile second(folder / "b.txt");
+  OutputFile(folder / "c.txt").text("done").commit();
+  EXPECT_EQ(files_in(folder), 4);
+  remove_temporary_files();
+  EXPECT_EQ(files_in(folder), 2);
+  EXPECT_EQ(samples::read_bytes(folder / "a.txt"), "old");
+  EXPECT_EQ(samples::read_bytes(folder / "c.txt"), "done");
+}
+
 TEST(OutputFile, ADeviceIsWrittenToAndNotReplaced) {
   OutputFile file("/dev/null");
   file.text("gone").commit();
@@ -101,6 +148,56 @@ TEST(OutputFile, AMissingFolderOrAFolderAsTargetIsReported) {
             missing + ": cannot be written: No such file or directory");
   EXPECT_EQ(message_of([&] { OutputFile file(folder.path()); }),
             folder.path().string() + ": cannot be written: Is a directory");
+}
+
+TEST(InputFile, APipeIsRefusedAndNotWaitedFor) {
+  const TemporaryFolder folder;
+  const std::string pipe = (folder / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(message_of([&] { InputFile file(pipe); }), pipe + ": cannot be opened: Not a regular file");
+}
+
+/// The standard streams of the process, put elsewhere until the object goes.
+class ScopedDescriptor {
+ public:
+  ScopedDescriptor(int number, const fs::path& path, int flags) : number_(number), kept_(::dup(number)) {
+    const int file = ::open(path.c_str(), flags, 0600);
+    ::dup2(file, number);
+    ::close(file);
+  }
+  ~ScopedDescriptor() {
+    ::dup2(kept_, number_);
+    ::close(kept_);
+  }
+  ScopedDescriptor(const ScopedDescriptor&) = delete;
+  ScopedDescriptor& operator=(const ScopedDescriptor&) = delete;
+
+ private:
+  int number_, kept_;
+};
+
+TEST(StandardStreams, AMeshGoesThroughThemInTheNamedFormat) {
+  const TemporaryFolder folder;
+  const MeshData mesh = samples::full();
+  for (const char* format : {"vtu", ".vtk", "MSH", "mesh", "meshb", "ovm"}) {
+    {
+      const ScopedDescriptor out(STDOUT_FILENO, folder / "stream", O_WRONLY | O_CREAT | O_TRUNC);
+      write_mesh(kStandardOutput, mesh, {.format = format});
+    }
+    const ScopedDescriptor in(STDIN_FILENO, folder / "stream", O_RDONLY);
+    const MeshData back = read_mesh(kStandardInput, format);
+    EXPECT_TRUE(samples::same_bits(back.points, mesh.points)) << format;
+    EXPECT_EQ(back.cells, mesh.cells) << format;
+    EXPECT_EQ(files_in(folder), 1) << "nothing beside the stream: " << format;
+  }
+}
+
+TEST(StandardStreams, AFormatOfSeveralFilesOrNoneIsRefused) {
+  const MeshData mesh = samples::two_cells();
+  EXPECT_THROW(write_mesh(kStandardOutput, mesh, {.format = "node"}), InvalidInput);
+  EXPECT_THROW(write_mesh(kStandardOutput, mesh), InvalidInput);
+  EXPECT_THROW(read_mesh(kStandardInput, "ele"), InvalidInput);
+  EXPECT_THROW(read_mesh(kStandardInput), InvalidInput);
 }
 
 TEST(InputFile, MissingFileFolderAndEmptyFile) {

@@ -140,6 +140,37 @@ TEST(Vtk, AttributesOfEveryKindAreReadOrPassedOver) {
   EXPECT_FALSE(has_note(mesh, "density")) << "nothing is lost of a field that is 0 on the triangles";
 }
 
+TEST(Vtk, FixedVerticesMayBeGivenAsRealNumbers) {
+  const TemporaryFolder folder;
+  for (const char* type : {"float", "double", "int", "unsigned_char"}) {
+    const MeshData mesh = read_text(folder, std::string(kTwoCells) + "POINT_DATA 5\nSCALARS fixed " + type +
+                                                "\nLOOKUP_TABLE default\n1 0 0 1 0\n");
+    EXPECT_EQ(mesh.fixed_vertices, (std::vector<Index>{0, 3})) << type;
+    EXPECT_TRUE(mesh.point_fields.empty()) << type;
+  }
+  const MeshData odd =
+      read_text(folder, std::string(kTwoCells) +
+                            "POINT_DATA 5\nSCALARS fixed float\nLOOKUP_TABLE default\n1 0 .5 1 0\n");
+  EXPECT_TRUE(odd.fixed_vertices.empty());
+  EXPECT_TRUE(has_note(odd, "'fixed' has other values than 0 and 1"));
+  ASSERT_EQ(odd.point_fields.size(), 1u);
+}
+
+TEST(Vtk, IntegersThatNoLabelCanHoldAreRefused) {
+  const TemporaryFolder folder;
+  const auto message = [&](const std::string& rest) {
+    return samples::short_message_for(folder / "a.vtk", std::string(kTwoCells) + rest);
+  };
+  EXPECT_EQ(
+      message("CELL_DATA 3\nSCALARS region long\nLOOKUP_TABLE default\n1 3000000000 0\n"),
+      ": cell array 'region': 3000000000 of cell 1 is no label, as labels go from -2147483648 to 2147483647");
+  EXPECT_EQ(message("POINT_DATA 5\nSCALARS label unsigned_int\nLOOKUP_TABLE default\n0 0 0 0 4294967295\n"),
+            ": point array 'label': 4294967295 of point 4 is no label, as labels go from -2147483648 to "
+            "2147483647");
+  EXPECT_EQ(message("CELL_DATA 3\nSCALARS region long\nLOOKUP_TABLE default\n1 -2147483648 2147483647\n"),
+            "");
+}
+
 TEST(Vtk, LabelsThatAreNoIntegersStayAField) {
   const TemporaryFolder folder;
   const MeshData mesh = read_text(folder, std::string(kTwoCells) +

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "Operators/Clusters.hh"
+#include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
 namespace {
@@ -41,6 +43,32 @@ TEST(NearestPoint, OfALevelTriangleIsLevelToTheLastBit) {
   const std::array<Vec3, 3> t = {{{0.1, 0.3, z}, {1.7, 0.2, z}, {0.4, 2.9, z}}};
   Engine engine(2);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(nearest_point(t, random_point(engine, -1, 3)).z, z);
+}
+
+TEST(NearestPoint, OfAPointOnANeedleIsThatPoint) {
+  Engine engine(3);
+  for (int i = 0; i < 3000; ++i) {
+    auto t = random_triangles(1, engine)[0];
+    const double height = std::pow(10.0, -1 - i % 16);
+    t[2] = t[0] + 0.3 * (t[1] - t[0]) + height * (t[2] - t[0]);
+    std::rotate(t.begin(), t.begin() + i % 3, t.end());
+    for (int k = 0; k < 10; ++k) {
+      double u = k < 3 ? k == 1 : std::abs(random_point(engine, -1, 1).x);
+      double v = k < 3 ? k == 2 : std::abs(random_point(engine, -1, 1).y);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3 x = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+      EXPECT_LT(norm(exact_nearest_point(t, x) - x), 2e-14) << "of height " << height;
+    }
+  }
+}
+
+TEST(SurfaceDistance, OfASurfaceOfNeedlesFromItselfIsRounding) {
+  Engine engine(4);
+  std::vector<std::array<Vec3, 3>> needles = random_triangles(200, engine);
+  for (auto& t : needles)
+    for (Vec3& p : t) p.z *= 1e-8;
+  for (auto& t : needles) t[2] = t[0] + 0.3 * (t[1] - t[0]) + 1e-8 * (t[2] - t[0]);
+  EXPECT_LT(surface_distance(needles, needles, 0.02).hausdorff(), 1e-15);
 }
 
 TEST(InputSurface, FindsWhatASearchOfAllTrianglesFinds) {
