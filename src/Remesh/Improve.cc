@@ -7,9 +7,12 @@
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Reorder.hh"
 #include "Quality/FoldedFaces.hh"
+#include "Quality/UnfillableFaces.hh"
+#include "Remesh/Coordinates.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/RunControl.hh"
 #include "Remesh/SurfaceRun.hh"
+#include "Remesh/Trial.hh"
 
 namespace hfr {
 namespace {
@@ -54,7 +57,9 @@ constexpr double kRefineGoal = 30;
 constexpr double kRefineGain = 1.6;
 constexpr double kRefineGainAtAnyCost = 1.3;
 /// Cells that raising the worst angle at any cost makes of 100 that the default run leaves, where the options
-/// do not say and the surface is frozen. One that may change needs no more for it than otherwise.
+/// do not say. With a surface whose facets stay planar it needs no more than otherwise; with one that may
+/// change its shape, a single cell that nothing mends would draw vertices without end: 20 cells came
+/// to 14,842 in 12 s (unittests/Fuzz, case 10791).
 constexpr std::size_t kMostAtAnyCost = 150;
 /// Of 100 cells that a run may make, those that there may be when vertices are put in first, and once more.
 /// The rest is for the worst cells.
@@ -91,8 +96,9 @@ bool keeps_size(const ImproveOptions& options) {
 
 ImproveOptions with_cell_bounds(ImproveOptions options, std::size_t n_cells) {
   if (options.coarsen && options.max_cells == 0) options.max_cells = n_cells;
-  if (!keeps_size(options)) return options;
-  options.raise_min_dihedral = false;  // that comes after
+  const bool keeps = keeps_size(options);
+  if (!options.coarsen) options.raise_min_dihedral = false;  // that comes after
+  if (!keeps) return options;
   // Towards a goal a flat surface gives its cells good angles with fewer of them, in a third of the time.
   const bool may_lose =
       options.coarsen || (options.surface.mode == SurfaceMode::kFlat && options.min_dihedral);
@@ -189,17 +195,21 @@ bool mend_last(TetMesh& mesh, Workspace& work, const ImproveOptions& options, Ru
     }
     if (now < rung) break;
   }
+  // An invalid cell that cannot become valid has not risen by staying what it is.
+  if (control.unfillable() && at_first <= 0) return now > at_first;
   return now > kClimbGain * at_first;
 }
 
-/// Puts vertices in up to that many of 100 cells that the run may make; that this bound was met is nothing
-/// that the run has to tell.
+/// Puts vertices in up to that many of 100 cells that the run may make, where that is worth it; that this
+/// bound was met is nothing that the run has to tell.
 void refine_within(TetMesh& mesh, Workspace& work, ImproveOptions options, RunControl& control,
                    std::size_t of_hundred, double gain) {
   const bool met_bound = control.met_cell_bound();
   if (options.max_cells > 0)
     options.max_cells = std::max<std::size_t>(options.max_cells * of_hundred / 100, 1);
+  Trial trial(mesh, work, options, control, kRefineGoal);
   refine(mesh, work, options, control, kRefineGoal, gain);
+  trial.settle();
   if (!met_bound) control.forget_cell_bound();
 }
 
@@ -261,26 +271,35 @@ bool reach(TetMesh& mesh, Workspace& work, const ImproveOptions& options, const 
   const ImproveOptions* now = &options;
   if (control.met_cell_bound() && !control.stopped()) {
     control.forget_cell_bound();
-    now = &as_asked;
+    Trial trial(mesh, work, options, control, goal);
     if (attempt(as_asked)) return true;
+    if (trial.settle()) now = &as_asked;
   }
   if (control.stopped() || options.iterations > 0) return false;
+  const bool many_miss = from_the_worst && share_below(mesh, goal, options) > kFewMiss;
+  if (!control.surface() && !many_miss) return false;
+  Trial trial(mesh, work, options, control, goal);
   if (control.surface()) {
     // Work for more makes room that the goal's last cells lack.
     const auto onwards = from_the_worst ? improve_all : climb;
     onwards(mesh, work, *now, control, smallest(), little_effort(control), kLargestGoal);
-  } else if (from_the_worst && share_below(mesh, goal, options) > kFewMiss) {
-    improve_all(mesh, work, *now, control, smallest(), little_effort(control), goal);
   } else {
-    return false;
+    improve_all(mesh, work, *now, control, smallest(), little_effort(control), goal);
   }
-  return polish(mesh, work, *now, control, goal);
+  if (polish(mesh, work, *now, control, goal)) return true;
+  trial.settle();
+  return false;
+}
+
+/// Whether the worst angle has, by that factor, and by what shows in a table; 0 before: anything is a gain.
+bool has_risen(double now, double before, double factor) {
+  return now > (before > 0 ? std::max(before * factor, before + kLeastRise) : 0);
 }
 
 /// Climbs again and again, and beyond rungs that are missed, while the worst rises.
 void climb_beyond(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   const auto smallest = [&] { return smallest_dihedral(mesh, options.policy); };
-  for (double at_start = 0; smallest() > at_start * kClimbGain && !control.stopped();) {
+  for (double at_start = 0; has_risen(smallest(), at_start, kClimbGain) && !control.stopped();) {
     at_start = smallest();
     int n_missed = 0;
     for (double rung : kFullLadder) {
@@ -288,14 +307,19 @@ void climb_beyond(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
       if (now >= rung || (is_half_rung(rung) && now < kHalfRungsFrom)) continue;
       if (n_missed == kMaxMissed || control.stopped()) break;
       const auto n_poor = n_below(mesh, rung, options.policy);
+      Trial trial(mesh, work, options, control, rung);
       polish(mesh, work, options, control, rung);
       if (options.coarsen) relieve(mesh, work, options, control, rung);
+      trial.settle();
       const bool fewer =
           kFewer * static_cast<double>(n_poor) > static_cast<double>(n_below(mesh, rung, options.policy));
-      n_missed = fewer || smallest() > now * kClimbGain ? 0 : n_missed + 1;
+      n_missed = fewer || has_risen(smallest(), now, kClimbGain) ? 0 : n_missed + 1;
     }
-    if (!control.stopped())
-      relieve(mesh, work, options, control, few_below(mesh, kFullLadder.back(), options.policy));
+    if (control.stopped()) return;
+    const double last = few_below(mesh, kFullLadder.back(), options.policy);
+    Trial trial(mesh, work, options, control, last);
+    relieve(mesh, work, options, control, last);
+    trial.settle();
   }
 }
 
@@ -314,12 +338,24 @@ void climb_while_it_helps(TetMesh& mesh, Workspace& work, const ImproveOptions& 
     refine_within(mesh, work, options, control, of_hundred, kRefineGainAtAnyCost);
   };
   put_in(kFillAtAnyCost);
-  for (double at_start = 0; smallest() > at_start * kClimbAgain && !control.stopped();) {
+  for (double at_start = 0; has_risen(smallest(), at_start, kClimbAgain) && !control.stopped();) {
     climb_beyond(mesh, work, options, control);
     if (at_start == 0) put_in(kFillUpAtAnyCost);
     at_start = smallest();
     search_worst();
   }
+}
+
+/// The boundary faces that leave no mesh without invalid cells.
+std::vector<HalfFaceHandle> find_unfillable(const TetMesh& mesh, const std::vector<CellHandle>& invalid,
+                                            const std::vector<HalfFaceHandle>& folded, par::Policy policy) {
+  std::vector<HalfFaceHandle> suspects = folded;
+  for (CellHandle c : invalid)
+    for (int k = 0; k < 4; ++k)
+      if (mesh.is_boundary(halfface_of(c, k))) suspects.push_back(halfface_of(c, k));
+  std::sort(suspects.begin(), suspects.end());
+  suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+  return unfillable_faces(mesh, suspects, policy);
 }
 
 /// True when every cell is known to meet the goal.
@@ -332,6 +368,12 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   }
   const double floor = report_value(Metric::kMinDihedral, std::clamp(at_first.worst, 0.0, 8.0 / 9.0));
   if (at_first.n_invalid > 0) untangle(mesh, work, options, control);
+  if (at_first.n_invalid > 0 && !control.surface()) {
+    const std::vector<CellHandle> left = invalid_cells(mesh, options.policy);
+    control.set_unfillable(
+        !left.empty() &&
+        !find_unfillable(mesh, left, folded_faces(mesh, options.policy), options.policy).empty());
+  }
   control.set_fraction(0.1);
   const double goal = options.min_dihedral.value_or(kLargestGoal);
   const bool few_miss = options.min_dihedral && !options.coarsen &&
@@ -342,14 +384,11 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   if (as_asked.raise_min_dihedral) {
     control.forget_cell_bound();
     control.spare_nothing();
-    ImproveOptions further = options;
-    if (!options.raise_min_dihedral) {  // the bounds were those of the default run
-      further = as_asked;
-      further.min_cells = options.min_cells;  // what is left out now is missing for the last cells
-      const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
-      if (further.max_cells == 0)
-        further.max_cells = frozen ? mesh.n_logical_cells() * kMostAtAnyCost / 100 : options.max_cells;
-    }
+    ImproveOptions further = as_asked;
+    further.min_cells = options.min_cells;  // what is left out now is missing for the last cells
+    const bool as_before = options.coarsen || options.surface.mode == SurfaceMode::kFlat;
+    if (further.max_cells == 0)
+      further.max_cells = as_before ? options.max_cells : mesh.n_logical_cells() * kMostAtAnyCost / 100;
     climb_while_it_helps(mesh, work, further, control);
   }
   return false;
@@ -364,51 +403,136 @@ double missed_rung(double smallest, bool to_the_end) {
   return to_the_end ? first_above(kFullLadder) : first_above(kLadder);
 }
 
+/// What ended the run before it was done; kNotFound where nothing did.
+Limit ended_by(const ImproveOptions& options, const Result& result) {
+  switch (result.stop) {
+    case Stop::kTimeLimit:
+      return Limit::kTimeLimit;
+    case Stop::kCancelled:
+      return Limit::kCancelled;
+    case Stop::kDeviceLost:
+      return Limit::kDeviceLost;
+    case Stop::kIterations:
+      // Only where the last one that was allowed still changed something.
+      return std::any_of(result.passes.begin(), result.passes.end(),
+                         [&](const PassReport& pass) {
+                           return pass.iteration == options.iterations && pass.winners > 0 &&
+                                  (pass.stage == "bulk" || pass.stage == "polish");
+                         })
+                 ? Limit::kIterations
+                 : Limit::kNotFound;
+    case Stop::kGoal:
+    case Stop::kNoProgress:
+      break;
+  }
+  return Limit::kNotFound;
+}
+
 /// What keeps the cells that are left below the goal.
-void explain(const TetMesh& mesh, const ImproveOptions& options, bool met_cell_bound, Result& result) {
+void explain(const TetMesh& mesh, const ImproveOptions& options, std::size_t max_cells_met, Result& result) {
   result.stuck_below = options.min_dihedral
                            ? *options.min_dihedral
                            : missed_rung(result.after.min_dihedral.min, options.raise_min_dihedral);
   if (result.stuck_below == 0) return;
-  const bool ended_early =
-      result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled || result.stop == Stop::kIterations;
-  result.stuck = stuck_cells(mesh, result.stuck_below, ended_early || met_cell_bound, result.folded_faces,
-                             options.policy);
-  if (options.surface.mode == SurfaceMode::kFrozen)
-    result.held = held_cells(mesh, result.stuck, result.stuck_below, options);
-  else
-    blame_features(mesh, result.stuck, result.stuck_below, options);
+  std::vector<StuckCell>& stuck = result.stuck;
+  stuck = stuck_cells(mesh, result.stuck_below, result.unfillable_faces, options.policy);
+  const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
+  if (!frozen) blame_features(mesh, stuck, result.stuck_below, options);
+  const Limit ended = ended_by(options, result);
+  for (StuckCell& cell : stuck)
+    if (cell.limit == Limit::kNotFound) cell.limit = ended;
+  if (max_cells_met > 0 && has(options.ops, Ops::kInsert))
+    blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
+  if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, options);
 }
 
-/// True when every cell is known to meet the goal. `cell_order`: where each cell went, if they were
-/// reordered.
+/// Before the end of a run that may have left the mesh worse than its input: works on what has fallen below
+/// the input's smallest angle, if that is all, and puts back what was kept if that does not do. False when it
+/// did that.
+bool settle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+            bool known_to_meet) {
+  Checkpoint& checkpoint = *control.checkpoint();
+  const auto mend = [&] {
+    if (control.stopped() || options.compat != Compat::kNone) return;
+    polish_to(mesh, work, options, control, checkpoint.input().worst);
+  };
+  if (!checkpoint.settle(mesh, known_to_meet, mend)) return true;
+  const Survey found = survey(mesh, options.policy);
+  PassReport pass;
+  pass.stage = pass.op = "undo";
+  pass.n_inverted = found.n_invalid;
+  pass.worst = found.worst;
+  control.add(std::move(pass));
+  control.take_back_changes(checkpoint.changes_kept());
+  return false;
+}
+
+/// True when every cell is known to meet the goal. `order`: where each vertex and cell went, if the cells
+/// were reordered.
 bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, const Survey& at_first,
-         std::vector<CellHandle>& cell_order, SurfaceReport& surface_report) {
+         GarbageMap& order, SurfaceReport& surface_report) {
   // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
   if (!options.min_dihedral && is_scattered(mesh, options.policy))
-    cell_order =
-        reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy}).cells;
-  const SurfaceRun surface(mesh, options, at_first.n_invalid > 0, control.passes());
+    order = reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = options.policy});
+  if (at_first.n_invalid > 0) control.keep(mesh, false);
+  std::vector<PassReport> unfolding;
+  const SurfaceRun surface(mesh, options, at_first.n_invalid > 0, unfolding);
+  for (PassReport& pass : unfolding) control.add(std::move(pass));
   Workspace work;
   work.attach(mesh, options.policy);
+  control.set_folded(!folded_faces(mesh, options.policy).empty());
+  // Elsewhere no new edge or face can come twice while all cells are positive, and there is no copy to make.
+  if (control.is_folded() || !work.pinched.empty()) control.keep(mesh, at_first.n_invalid == 0);
   control.set_surface(surface.get());
-  const bool met = run_stages(mesh, work, options, control, at_first);
+  bool met = run_stages(mesh, work, options, control, at_first);
   restore_volume(mesh, work, options, control);
+  met = settle(mesh, work, options, control, met) && met;
   control.set_surface(nullptr);
   surface_report = surface.report(mesh);
   return met;
+}
+
+/// Gives the mesh handles without gaps, in the old order where nothing has changed. Returns where each vertex
+/// and cell went; nothing where they stay.
+GarbageMap tidy(TetMesh& mesh, const ImproveOptions& options, bool changed, const GarbageMap& order) {
+  if (changed) return mesh.collect_garbage();
+  GarbageMap map;
+  if (order.cells.empty()) return map;
+  map.cells.resize(mesh.n_cells());
+  std::size_t n = 0;
+  for (CellHandle c : order.cells)
+    if (c.is_valid()) map.cells[c.idx()] = CellHandle(n++);
+  restore_cell_order(mesh, order.cells, options.policy);
+  return map;
+}
+
+Stop reason_to_stop(const RunControl& control, const ImproveOptions& options, bool goal_reached) {
+  if (control.reason()) return *control.reason();
+  if (goal_reached && options.min_dihedral) return Stop::kGoal;
+  return options.iterations > 0 ? Stop::kIterations : Stop::kNoProgress;
+}
+
+/// Fills in what is said of a mesh that is not known to meet the goal.
+void look_for_faults(const TetMesh& mesh, const Survey& found, par::Policy policy, Result& result) {
+  if (found.n_invalid == 0) return;
+  result.invalid_cells = invalid_cells(mesh, policy);
+  result.folded_faces = folded_faces(mesh, policy);
+  result.unfillable_faces = find_unfillable(mesh, result.invalid_cells, result.folded_faces, policy);
 }
 
 }  // namespace
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
   validate(options);
+  require_sound_coordinates(mesh, options.policy);
   Result result;
   if (options.statistics) result.before = statistics(mesh, options.policy);
   RunControl control(options);
   const double goal = options.min_dihedral ? dihedral_decision(*options.min_dihedral) : 0.0;
   const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
   Survey found = survey(mesh, options.policy);
+  Checkpoint checkpoint(mesh, found, options.policy);
+  control.set_checkpoint(&checkpoint);
   const bool nothing_to_do = options.min_dihedral && options.compat == Compat::kNone && meets_goal(found);
   if (!nothing_to_do) {
     const double before = control.seconds();
@@ -416,32 +540,34 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
     if (control.device()) result.device = control.device()->info().name;
     result.seconds_device = control.seconds() - before;
   }
-  std::vector<CellHandle> cell_order;
-  const bool known_to_meet = nothing_to_do || run(mesh, options, control, found, cell_order, result.surface);
+  std::optional<MapRecorder> recorder;
+  if (options.maps) recorder.emplace(mesh);
+  GarbageMap order;
+  bool known_to_meet = nothing_to_do;
+  try {
+    if (!nothing_to_do) known_to_meet = run(mesh, options, control, found, order, result.surface);
+  } catch (...) {  // of a callback, most likely
+    checkpoint.settle_after_failure(mesh);
+    tidy(mesh, options, !checkpoint.is_input(), order);
+    throw;
+  }
   result.passes = std::move(control.passes());
   result.device_note = control.device_note();
   if (control.device()) result.kernel_times = control.device()->profile();
-  result.changed = std::any_of(result.passes.begin(), result.passes.end(),
-                               [](const PassReport& pass) { return pass.winners > 0; });
-  if (result.changed)
-    mesh.collect_garbage();
-  else if (!cell_order.empty())
-    restore_cell_order(mesh, cell_order, options.policy);
+  result.changed = control.n_changes() > 0;
+  const GarbageMap garbage = tidy(mesh, options, result.changed, order);
+  if (recorder) result.maps = recorder->maps(order, garbage);
   if (!known_to_meet) {
     if (result.changed) found = survey(mesh, options.policy);
-    if (found.n_invalid > 0) {
-      result.invalid_cells = invalid_cells(mesh, options.policy);
-      result.folded_faces = folded_faces(mesh, options.policy);
-    }
+    look_for_faults(mesh, found, options.policy, result);
   }
   result.goal_reached = known_to_meet || meets_goal(found);
-  result.stop = control.reason().value_or(result.goal_reached && options.min_dihedral ? Stop::kGoal
-                                          : options.iterations > 0                    ? Stop::kIterations
-                                                                                      : Stop::kNoProgress);
+  result.stop = reason_to_stop(control, options, result.goal_reached);
   result.seconds = control.seconds();
   if (options.statistics) {
     result.after = result.changed ? statistics(mesh, options.policy) : result.before;
-    explain(mesh, options, control.met_cell_bound(), result);
+    explain(mesh, options, control.max_cells_met(), result);
+    for (const std::uint32_t size : star_sizes(mesh)) result.n_large_stars += size > Star::kCapacity ? 1 : 0;
   }
   return result;
 }

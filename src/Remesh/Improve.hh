@@ -15,6 +15,7 @@
 #include "Quality/Metrics.hh"
 #include "Quality/Statistics.hh"
 #include "Remesh/Limits.hh"
+#include "Remesh/MeshMaps.hh"
 #include "Surface/SurfaceOptions.hh"
 
 namespace hfr {
@@ -76,15 +77,19 @@ struct ImproveOptions {
   /// better percentiles on some meshes, and a lower worst angle on most (measured in docs/worst-angles.md).
   bool bulk_nodes = false;
   /// No vertex is removed where cells would come to be fewer than min_cells, none inserted where more than
-  /// max_cells; swaps may add or take a few. 0: no bound with compat or a surface that may change its shape,
-  /// nor in flat mode without raise_min_dihedral; else 81 and 119 of 100 cells of the input. They hold
-  /// towards min_dihedral until nothing else helps; raise_min_dihedral goes on to 150 of 100 cells of what
-  /// they leave.
+  /// max_cells; swaps may add or take a few. 0: the run chooses, of 100 cells of the input
+  ///   - with a frozen surface 81 and 119;
+  ///   - in flat mode with raise_min_dihedral 81 and 119, with min_dihedral no lower bound and 119, else
+  ///   none;
+  ///   - in free mode, and with compat, none.
+  /// With coarsen there is no lower bound but one that is given. Towards min_dihedral the bounds that the run
+  /// has chosen are dropped once they were in the way and nothing else helps. With raise_min_dihedral,
+  /// frozen or free, max_cells is in the end 150 of 100 cells of what the default run leaves.
   std::size_t min_cells = 0;
   std::size_t max_cells = 0;
   /// Vertices are removed wherever that makes the worst angle of their cells better: without a goal a stage
-  /// of its own looks for them. Of bounds on fewer cells only a min_cells that is given holds, and max_cells
-  /// is that of the input unless given.
+  /// of its own looks for them. Of bounds on fewer cells only a min_cells that is given holds; max_cells is
+  /// the number of cells of the input unless given.
   bool coarsen = false;
   Smoother smoother = Smoother::kNewton;
   Rounds rounds = Rounds::kAuto;
@@ -100,17 +105,21 @@ struct ImproveOptions {
   bool hybrid = false;
   DeviceTuning device_tuning;
   bool statistics = true;  ///< fill Result::before and after, and what is said of stuck cells
-  /// Called between passes, from the calling thread.
+  bool maps = false;       ///< fill Result::maps: 28 bytes a cell, and 12 a vertex
+  /// Called between passes, from the calling thread. What it throws, improve() throws, with the mesh as after
+  /// a cancel.
   std::function<void(const Progress&)> progress;
-  /// Asked between passes; true stops the run with the mesh as it is then: valid, no worse than before.
+  /// Asked between passes; true stops the run with the mesh as it is then, or, where that is worse than the
+  /// input in what improve() promises, as it was at a stage before.
   std::function<bool()> cancel;
 };
 
 /// kDeviceLost: the device that was asked for failed in the middle; the mesh is that of the last finished
-/// round.
+/// round, as after a cancel.
 enum class Stop { kGoal, kNoProgress, kIterations, kTimeLimit, kCancelled, kDeviceLost };
 
-/// One operator over the mesh once.
+/// One operator over the mesh once. With the stage and op "undo": the passes before, some or all, were taken
+/// back, and n_inverted and worst (of the smallest dihedral) are those of the mesh that was put back.
 struct PassReport {
   std::string stage;
   std::string op;
@@ -151,7 +160,8 @@ struct SurfaceReport {
   std::vector<RegionChange> regions;  ///< ascending; empty where there is but one
 };
 
-/// Cells below Result::stuck_below that a frozen surface keeps there, and which mode would let them change.
+/// Cells below Result::stuck_below that a frozen surface is proven to keep there, or for which nothing was
+/// found and none of whose vertices may move; and which mode would let their surface change.
 struct HeldCells {
   std::size_t cells = 0;
   bool known = false;  ///< whether the rest is; not without OpenMesh
@@ -161,7 +171,7 @@ struct HeldCells {
 };
 
 struct Result {
-  bool changed = false;
+  bool changed = false;       ///< by what was not taken back
   bool goal_reached = false;  ///< nothing inverted or flat, and min_dihedral met where given
   Stop stop = Stop::kNoProgress;
   std::vector<PassReport> passes;
@@ -170,22 +180,36 @@ struct Result {
   std::vector<CellHandle> invalid_cells;  ///< inverted or flat cells that remain
   /// Boundary faces that lie on one another, when invalid cells remain; see folded_faces().
   std::vector<HalfFaceHandle> folded_faces;
+  /// Of these, and of the boundary faces of invalid cells, those at which every mesh with this boundary has
+  /// an invalid cell; see unfillable_faces().
+  std::vector<HalfFaceHandle> unfillable_faces;
   /// With options.statistics: the cells below `stuck_below` degrees, which is the goal or, where the worst
   /// angle was raised as far as it goes, the first angle that was tried for and missed; and what keeps each.
   std::vector<StuckCell> stuck;
   double stuck_below = 0;
-  HeldCells held;                        ///< with a frozen surface and options.statistics
+  HeldCells held;  ///< with a frozen surface and options.statistics
+  /// With options.statistics: vertices of more than Star::kCapacity cells, which are moved but not removed.
+  std::size_t n_large_stars = 0;
   double seconds = 0;                    ///< of the work itself, statistics apart
   double seconds_device = 0;             ///< to open the device and get its kernels, part of `seconds`
   std::string device;                    ///< name of the device that was opened; empty: none
   std::string device_note;               ///< why a device that was wanted was not used, or not to the end
   std::vector<KernelTime> kernel_times;  ///< when device_tuning.profile
+  MeshMaps maps;                         ///< when options.maps
 };
 
-/// Improves `mesh` in place. The worst cell of every changed cluster gets better; boundary, region
-/// interfaces, labelled faces and edges and fixed vertices keep every bit, unless options.surface lets the
-/// surface change. Deleted cells and vertices are
-/// collected before it returns. Throws InvalidInput for options out of range.
+/// Improves `mesh` in place. Boundary, region interfaces, labelled faces and edges and fixed vertices keep
+/// every bit, unless options.surface lets the surface change. Deleted cells and vertices are collected before
+/// it returns.
+///
+/// However the run ends, with its goal, without, by time, by cancel, by a device that is lost or by an
+/// exception of a callback, the mesh is no worse than it was: it has no more inverted cells, no more inverted
+/// and flat cells together, no more overlap (the sum of |volume| of the inverted cells) and no smaller worst
+/// dihedral angle. Stages that may lower these are begun with a copy of the mesh; what is worse in the end
+/// becomes the best that was kept. Handles of properties stay valid.
+///
+/// Throws InvalidInput for options out of range, and InternalError, with the mesh as it was kept, where
+/// operators have broken a rule of check(): see Checkpoint.hh.
 Result improve(TetMesh& mesh, const ImproveOptions& options = {});
 
 }  // namespace hfr

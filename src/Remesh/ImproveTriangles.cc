@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "HalfFace/Errors.hh"
+#include "Remesh/Coordinates.hh"
 #include "Remesh/Surfaces.hh"
 #include "kernels/triangle.h"
 #ifdef HFR_HAS_SURFACE
@@ -271,6 +272,7 @@ void validate(const TriangleMesh& mesh, const TriangleOptions& options) {
 
 TriangleResult improve_triangles(TriangleMesh& mesh, const TriangleOptions& options) {
   validate(mesh, options);
+  require_sound_coordinates(mesh);
   TriangleResult result;
   result.before = statistics(mesh);
   std::vector<Triangle> before;

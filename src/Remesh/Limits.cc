@@ -4,16 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "Operators/Operator.hh"
+#include "Operators/VertexInsertion.hh"
 #include "Quality/Metrics.hh"
+#include "Quality/Wedges.hh"
 
 namespace hfr {
 namespace {
 
 /// Degrees by which a wedge may exceed what its cells need by rounding alone.
 constexpr double kRounding = 1e-9;
+/// Cells that a new vertex takes, about; where there is no room for them, none is tried.
+constexpr std::size_t kLeastRoom = 4;
 
 std::array<Vec3, 4> corners(const TetMesh& mesh, CellHandle c) {
   const auto& v = mesh.cell(c).v;
@@ -24,41 +27,6 @@ double smallest_angle(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return report_value(Metric::kMinDihedral, MinDihedral{}(a, b, c, d));
 }
 
-/// The cells between two constrained faces at an edge.
-struct Wedge {
-  double degrees = 0;
-  HalfFaceHandle first, last;  ///< the faces, as the cells of the wedge see them
-};
-
-/// Of local edge `edge` of cell c; nothing where the cells go all the way round or one is not positive.
-std::optional<Wedge> wedge_at(const TetMesh& mesh, CellHandle c, int edge) {
-  const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(edge)];
-  const auto& ends = kEdgeCorners[static_cast<std::size_t>(edge)];
-  const VertexHandle a = mesh.cell(c).v[ends[0]];
-  const VertexHandle b = mesh.cell(c).v[ends[1]];
-  RingPlace at{c, opposite[0], opposite[1]};
-  while (!mesh.is_constrained(halfface_of(at.cell, at.q))) {
-    at = mesh.previous_in_ring(at);
-    if (at.cell == c) return std::nullopt;
-  }
-  Wedge wedge;
-  wedge.first = halfface_of(at.cell, at.q);
-  for (;;) {
-    const auto p = corners(mesh, at.cell);
-    if (orientation(p[0], p[1], p[2], p[3]) <= 0) return std::nullopt;
-    const Cell& cell = mesh.cell(at.cell);
-    const auto angles = dihedrals(p[0], p[1], p[2], p[3]);
-    for (std::size_t e = 0; e < 6; ++e) {
-      const VertexHandle x = cell.v[kEdgeCorners[e][0]];
-      const VertexHandle y = cell.v[kEdgeCorners[e][1]];
-      if ((x == a && y == b) || (x == b && y == a)) wedge.degrees += angles[e];
-    }
-    wedge.last = halfface_of(at.cell, at.p);
-    if (mesh.is_constrained(wedge.last)) return wedge;
-    at = mesh.next_in_ring(at);
-  }
-}
-
 /// The vertex of a face that is not on the edge.
 VertexHandle third_vertex(const TetMesh& mesh, HalfFaceHandle h, VertexHandle a, VertexHandle b) {
   for (VertexHandle v : mesh.halfface_vertices(h))
@@ -66,41 +34,66 @@ VertexHandle third_vertex(const TetMesh& mesh, HalfFaceHandle h, VertexHandle a,
   return {};
 }
 
-/// True when no mesh has only angles of at least `degrees` in the wedge: it is too narrow for one cell, or
-/// for two, and the one cell on both of its faces has a smaller angle elsewhere.
-bool rules_out(const TetMesh& mesh, CellHandle c, int edge, const Wedge& wedge, double degrees) {
-  if (wedge.degrees < degrees - kRounding) return true;
-  if (!(wedge.degrees < 2 * degrees - kRounding)) return false;
-  const auto& ends = kEdgeCorners[static_cast<std::size_t>(edge)];
-  const VertexHandle a = mesh.cell(c).v[ends[0]];
-  const VertexHandle b = mesh.cell(c).v[ends[1]];
+/// The largest that the smallest dihedral of the cells in the wedge can be: two cells have one of no more
+/// than half of it, and a single cell is the one on both of its faces.
+double ceiling_of(const TetMesh& mesh, VertexHandle a, VertexHandle b, const Wedge& wedge) {
+  if (wedge.degrees <= 0) return wedge.degrees;
   const VertexHandle p = third_vertex(mesh, wedge.last, a, b);
   const VertexHandle q = third_vertex(mesh, wedge.first, a, b);
   const double alone = std::max(smallest_angle(mesh.point(a), mesh.point(b), mesh.point(p), mesh.point(q)),
                                 smallest_angle(mesh.point(a), mesh.point(b), mesh.point(q), mesh.point(p)));
-  return alone < degrees - kRounding;
+  return std::max(alone, 0.5 * wedge.degrees);
 }
 
-/// A proof by one of the cell's edges.
-std::optional<Limit> ceiling_of(const TetMesh& mesh, CellHandle c, double degrees) {
-  std::optional<Limit> found;
-  for (int e = 0; e < 6; ++e) {
-    const std::optional<Wedge> wedge = wedge_at(mesh, c, e);
-    if (!wedge || !rules_out(mesh, c, e, *wedge, degrees)) continue;
-    const bool surface = mesh.is_boundary(wedge->first) && mesh.is_boundary(wedge->last);
-    if (surface) return Limit::kSurfaceCeiling;
-    found = Limit::kInputFeature;
+/// True when the wedge has cell c.
+bool has_cell(const TetMesh& mesh, const Wedge& wedge, VertexHandle a, VertexHandle b, CellHandle c) {
+  RingPlace at{cell_of(wedge.first), 0, static_cast<std::uint8_t>(corner_of(wedge.first))};
+  const auto& v = mesh.cell(at.cell).v;
+  for (std::uint8_t k = 0; k < 4; ++k)
+    if (k != at.q && v[k] != a && v[k] != b) at.p = k;
+  while (at.cell != c) {
+    if (halfface_of(at.cell, at.p) == wedge.last) return false;
+    at = mesh.next_in_ring(at);
   }
-  return found;
+  return true;
+}
+
+/// Notes the proof by one of the cell's edges that keeps it below `degrees`: one of the surface, if there is
+/// one, then that with the lowest ceiling, then that with the smaller vertices.
+void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
+  for (int e = 0; e < 6; ++e) {
+    const auto found = wedges_at(mesh, stuck.cell, e);
+    if (!found) continue;
+    const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
+    const auto [a, b] = std::minmax(mesh.cell(stuck.cell).v[ends[0]], mesh.cell(stuck.cell).v[ends[1]]);
+    for (const Wedge& wedge : found->wedges) {
+      // Where every mesh has an invalid cell at the edge, nothing says in which of the wedges.
+      const bool may_be_the_one = found->impossible && wedge.degrees <= 0 && stuck.degrees <= 0;
+      if (!may_be_the_one && !has_cell(mesh, wedge, a, b, stuck.cell)) continue;
+      const double ceiling = ceiling_of(mesh, a, b, wedge);
+      if (!(ceiling < degrees - kRounding)) continue;
+      const bool surface = mesh.is_boundary(wedge.first) && mesh.is_boundary(wedge.last);
+      const Limit limit = surface ? Limit::kSurfaceCeiling : Limit::kInputFeature;
+      const bool first = !is_proof(stuck.limit) || limit < stuck.limit ||
+                         (limit == stuck.limit &&
+                          (ceiling < stuck.ceiling ||
+                           (ceiling == stuck.ceiling && std::pair(a, b) < std::pair(stuck.a, stuck.b))));
+      if (!first) continue;
+      stuck.limit = limit;
+      stuck.ceiling = ceiling;
+      stuck.a = a;
+      stuck.b = b;
+    }
+  }
 }
 
 }  // namespace
 
-std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees, bool out_of_budget,
-                                   const std::vector<HalfFaceHandle>& folded, par::Policy policy) {
+std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
+                                   std::span<const HalfFaceHandle> unfillable, par::Policy policy) {
   const std::vector<std::uint8_t> frozen = constrained_vertices(mesh, policy);
-  std::vector<std::uint8_t> on_fold(folded.empty() ? 0 : mesh.n_vertices(), 0);
-  for (HalfFaceHandle h : folded)
+  std::vector<std::uint8_t> on_fold(unfillable.empty() ? 0 : mesh.n_vertices(), 0);
+  for (HalfFaceHandle h : unfillable)
     for (VertexHandle v : mesh.halfface_vertices(h)) on_fold[v.idx()] = 1;
   const double goal = std::sin(degrees * std::numbers::pi / 180.0);
   const auto low = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
@@ -119,17 +112,35 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees, bool out
       stuck.n_frozen_vertices += frozen[v.idx()];
       folds = folds || (!on_fold.empty() && on_fold[v.idx()]);
     }
-    const bool invalid = orientation(p[0], p[1], p[2], p[3]) <= 0;
-    if (invalid && folds)
+    if (folds && orientation(p[0], p[1], p[2], p[3]) <= 0)
       stuck.limit = Limit::kFoldedSurface;
-    else if (const auto ceiling = ceiling_of(mesh, stuck.cell, degrees))
-      stuck.limit = *ceiling;
-    else if (out_of_budget)
-      stuck.limit = Limit::kBudget;
     else
-      stuck.limit = stuck.n_frozen_vertices == 4 ? Limit::kFrozenVertices : Limit::kSearch;
+      prove(mesh, degrees, stuck);
   });
   return cells;
+}
+
+void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                     std::size_t max_cells, par::Policy policy) {
+  using Op = VertexInsertion<MinDihedral>;
+  std::vector<double> quality(mesh.n_cells());
+  par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
+    const auto p = corners(mesh, CellHandle(i));
+    quality[i] = MinDihedral{}(p[0], p[1], p[2], p[3]);
+  });
+  Op op{MinDihedral{}, quality};
+  const double sine = std::sin(degrees * std::numbers::pi / 180.0);
+  op.poor_below = sine * sine;
+  const std::size_t n_cells = mesh.n_logical_cells();
+  par::for_each_dynamic(policy.for_items_of(Op::kSeedNanoseconds), stuck.size(), 1, [&](std::size_t i) {
+    if (stuck[i].limit != Limit::kNotFound) return;
+    const auto plan = op.evaluate(mesh, typename Op::Seed(stuck[i].cell));
+    if (!plan) return;
+    Cavity cavity;
+    op.commit(mesh, *plan, cavity);
+    const std::size_t n_after = n_cells + cavity.born.size() - cavity.dead.size();
+    if (n_after > max_cells || n_cells + kLeastRoom > max_cells) stuck[i].limit = Limit::kMaxCells;
+  });
 }
 
 std::array<std::size_t, kLimitNames.size()> count_limits(const std::vector<StuckCell>& cells) {

@@ -226,11 +226,11 @@ bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& option
     std::size_t n_changed = 0;
     bool worst_rose = false;
     for (std::size_t i = 0; i < patches.size(); ++i) {
-      if (outcomes[i].held_back) control.note_cell_bound();
+      if (outcomes[i].held_back) control.note_cell_bound(options.max_cells);
       if (!outcomes[i].mesh) continue;
       ++pass.candidates;
       if (!room_of(patches[i], mesh, options).holds(*outcomes[i].mesh)) {  // the others have had theirs
-        control.note_cell_bound();
+        control.note_cell_bound(options.max_cells);
         continue;
       }
       patches[i].put_back(mesh, *outcomes[i].mesh);

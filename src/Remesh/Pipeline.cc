@@ -164,7 +164,8 @@ std::vector<std::uint8_t> surroundings(const TetMesh& mesh, std::span<const Cell
     rim.swap(next);
     next.clear();
     for (VertexHandle v : rim) {
-      mesh.gather_star(v, star);
+      if (!mesh.gather_star(v, star))
+        for (CellHandle c : mesh.vertex_cells(v)) mark(c);
       for (int k = 0; k < star.size; ++k) mark(star.cells[static_cast<std::size_t>(k)]);
     }
   }
@@ -321,7 +322,11 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share) {
-  const double decision = dihedral_decision(goal);
+  return polish_to(mesh, work, options, control, dihedral_decision(goal), largest_share);
+}
+
+bool polish_to(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+               double decision, double largest_share) {
   const std::size_t share = options.raise_min_dihedral                   ? kPoorShareAtAnyCost
                             : options.surface.mode == SurfaceMode::kFree ? kPoorShareCurved
                                                                          : kPoorShare;

@@ -7,6 +7,7 @@
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/RunControl.hh"
+#include "Remesh/Survey.hh"
 #include "Scheduler/Workspace.hh"
 
 namespace hfr {
@@ -15,12 +16,6 @@ namespace hfr {
 inline bool is_free(const ImproveOptions& options) { return options.surface.mode == SurfaceMode::kFree; }
 /// sin² of an angle in degrees: what the dihedral metrics call their decision value.
 double dihedral_decision(double degrees);
-/// The mesh in two numbers, from one pass over its cells.
-struct Survey {
-  double worst = 0;           ///< smallest decision value of MinDihedral; infinity without cells
-  std::size_t n_invalid = 0;  ///< cells whose volume is not positive beyond rounding
-};
-Survey survey(const TetMesh& mesh, par::Policy policy);
 /// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
 /// Number of cells whose smallest dihedral is below so many degrees.
@@ -40,6 +35,9 @@ void coarsen(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 /// cells miss the goal.
 bool polish(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,
             double largest_share = 1);
+/// The same towards a decision value of MinDihedral, which may be that of an inverted cell.
+bool polish_to(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+               double decision, double largest_share = 1);
 /// Puts vertices in where cells are below `goal` degrees and a new one raises sin² of the worst cell of its
 /// cavity by the factor `gain`, until that does not help many of them any more. Removes none.
 void refine(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal,

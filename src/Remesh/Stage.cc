@@ -89,7 +89,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
   for (int r = 0; r < limit && (replay_ || !control_.stopped()); ++r) {
     const Worklist list = worklist(kind, focus);
     if (list.cells().empty() && !(kind == kInsert && !waiting_.empty())) break;
-    RoundOptions round_options{options_.policy, n_invalid_ > 0, options_.seed,
+    RoundOptions round_options{options_.policy, n_invalid_ > 0 || control_.is_folded(), options_.seed,
                                options_.compat == Compat::kJpdc2013};
     const std::size_t n_cells = mesh_.n_logical_cells();
     round_options.may_lose = may_lose(n_cells);
@@ -97,7 +97,7 @@ std::size_t Stage<Metric>::rounds(Kind kind, int iteration, Focus focus, MakeOp&
     Round<Op> round(mesh_, work_, round_options);
     const RoundCounts counts = run_round(round, make_op(), list);
     total += counts;
-    if (counts.held_back > 0) control_.note_cell_bound();
+    if (counts.held_back > 0) control_.note_cell_bound(options_.max_cells);
     if (n_invalid_ > 0) count(focus);
     if (r == 0) first = counts.winners;
     if (kind == kInsert && counts.winners < counts.held_back) break;  // the room is used up
@@ -264,7 +264,7 @@ std::size_t Stage<Metric>::insert_pass(int iteration, Focus focus, double gain) 
     waiting_.clear();
   }
   if (!has_room()) {
-    control_.note_cell_bound();
+    control_.note_cell_bound(options_.max_cells);
     return 0;
   }
   const std::size_t n_inside = rounds(

@@ -62,6 +62,7 @@ class Stage {
     std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
     work_.all_touched = true;
     count(Focus{});
+    if (control_.checkpoint() && may_lower_angles()) control_.keep(mesh_, n_invalid_ == 0);
   }
 
   std::size_t n_invalid() const { return n_invalid_; }
@@ -151,6 +152,16 @@ class Stage {
                 return u.idx() >= focus.around.size() || focus.around[u.idx()];
               }));
     });
+  }
+
+  /// Whether the smallest dihedral of the mesh may come to be below that of the run's input: operators raise
+  /// the worst cell of a cluster in the metric, and only in this.
+  bool may_lower_angles() const {
+    if (n_invalid_ > 0) return true;
+    if constexpr (std::is_same_v<Metric, MinDihedral>) return false;
+    // The smallest sine, which may be that of an obtuse angle, is never above the smallest dihedral's.
+    if constexpr (std::is_same_v<Metric, MinSine2>) return worst_ < control_.checkpoint()->input().worst;
+    return true;
   }
 
   /// Whether iterations put several kinds into one selection.

@@ -26,8 +26,9 @@ bool Stage<Metric>::on_device(Kind kind) {
       if (!candidates && options_.smoother != Smoother::kNewton) return false;
     } else {
       const Labels& labels = mesh_.labels();
-      if (options_.hybrid || n_invalid_ > 0 || !labels.faces.empty() || !labels.edges.empty() ||
-          !labels.vertices.empty() || !mesh_.locks().empty())
+      if (options_.hybrid || n_invalid_ > 0 || control_.is_folded() || !labels.faces.empty() ||
+          !labels.edges.empty() || !labels.vertices.empty() || !mesh_.locks().empty() ||
+          !work_.pinched.empty())
         return false;
     }
     if (resident_) return true;
@@ -101,7 +102,7 @@ std::optional<std::size_t> Stage<Metric>::device_rounds(Kind kind, int iteration
       const RoundCounts counts = there.round(which, device_look(kind, focus), options_.seed, work_.clock,
                                              may_lose(there.n_logical_cells()));
       if (counts.rounds == 0) break;
-      if (counts.held_back > 0) control_.note_cell_bound();
+      if (counts.held_back > 0) control_.note_cell_bound(options_.max_cells);
       ++work_.clock;
       ++done_there_.back().rounds;
       total += counts;

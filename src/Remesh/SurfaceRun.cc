@@ -117,6 +117,13 @@ void take_again(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy) {
   if (surface) surface->take_again(mesh, policy);
 }
 
+SurfaceCopy::SurfaceCopy(const SurfaceMesh* surface) {
+  if (surface) copy_ = surface->copy();
+}
+void SurfaceCopy::put_back(SurfaceMesh* surface) const {
+  if (surface) surface->take_back(*copy_);
+}
+
 #else
 
 struct SurfaceRun::Impl {};
@@ -131,6 +138,8 @@ SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
 PartOfSurface::PartOfSurface(const TetMesh&, const SurfaceMesh*, std::span<const VertexHandle>) {}
 SurfaceMesh* PartOfSurface::get() const { return nullptr; }
 void take_again(SurfaceMesh*, const TetMesh&, par::Policy) {}
+SurfaceCopy::SurfaceCopy(const SurfaceMesh*) {}
+void SurfaceCopy::put_back(SurfaceMesh*) const {}
 
 #endif
 
@@ -151,7 +160,8 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
                      const ImproveOptions& options) {
   std::vector<CellHandle> cells;
   for (const StuckCell& cell : stuck)
-    if (cell.limit != Limit::kBudget && cell.limit != Limit::kSearch) cells.push_back(cell.cell);
+    if (is_proof(cell.limit) || (cell.limit == Limit::kNotFound && cell.n_frozen_vertices == 4))
+      cells.push_back(cell.cell);
   HeldCells held;
   held.cells = cells.size();
 #ifdef HFR_HAS_SURFACE
@@ -175,11 +185,12 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
   const auto held = held_by_features(mesh, cells, degrees, options.surface, options.policy);
   for (std::size_t i = 0; i < stuck.size(); ++i) {
     Limit& limit = stuck[i].limit;
-    if (limit == Limit::kFoldedSurface || limit == Limit::kBudget) continue;
-    if (held[i])
-      limit = limit == Limit::kInputFeature ? limit : Limit::kSurfaceFeature;
-    else if (limit == Limit::kSurfaceCeiling || limit == Limit::kFrozenVertices)
-      limit = Limit::kSearch;
+    if (limit == Limit::kFoldedSurface) continue;
+    if (!held[i])
+      limit = Limit::kNotFound;
+    else if (limit != Limit::kInputFeature)
+      limit = Limit::kSurfaceFeature;
+    if (limit != Limit::kInputFeature) stuck[i].ceiling = 180;
   }
 #else
   static_cast<void>(mesh), static_cast<void>(stuck), static_cast<void>(degrees), static_cast<void>(options);

@@ -46,12 +46,22 @@ class PartOfSurface {
 /// After patches have been put back: the flat surface as it is now. Does nothing without one.
 void take_again(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
 
+/// The surface of a run as it is now, to be put back together with the mesh. Nothing while it is frozen.
+class SurfaceCopy {
+ public:
+  explicit SurfaceCopy(const SurfaceMesh* surface);
+  void put_back(SurfaceMesh* surface) const;
+
+ private:
+  std::shared_ptr<const SurfaceMesh> copy_;
+};
+
 /// What the frozen surface holds back among the cells that are stuck below `degrees`.
 HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
                      const ImproveOptions& options);
 
-/// With a surface that may change: what hangs on its features is said to, and nothing else is held by
-/// vertices or faces that are frozen.
+/// With a surface that may change: proofs by faces that do not stay are taken back, and what the features
+/// keep below the angle is said to be.
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
                     const ImproveOptions& options);
 

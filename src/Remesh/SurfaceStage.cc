@@ -121,7 +121,7 @@ std::size_t Stage<Metric>::surface_splits(int iteration, Focus focus) {
     std::map<Index, std::array<VertexHandle, 2>> ends;
     for (const auto& seed : seeds) ends[seed.edge.idx()] = mesh_.edge_vertices(seed.edge);
     counts = round.run(op, seeds);
-    if (counts.held_back > 0) control_.note_cell_bound();
+    if (counts.held_back > 0) control_.note_cell_bound(options_.max_cells);
     round.for_committed([&](const auto& plan, VertexHandle middle) {
       const auto [a, b] = ends.at(plan.seed.edge.idx());
       surface.was_split(a, b, middle, plan.place);
@@ -233,6 +233,10 @@ RoundCounts Stage<Metric>::periodic_moves(std::span<const VertexHandle> first_of
   for (VertexHandle first : first_of_orbits) {
     const auto orbit = surface.orbit(first);
     ++counts.seeds;
+    const auto is_partly_known = [&](VertexHandle v) {
+      return !work_.pinched.empty() && work_.pinched[v.idx()];
+    };
+    if (std::any_of(orbit.begin(), orbit.end(), is_partly_known)) continue;
     const auto plan = PeriodicSmooth<Metric>{metric_, work_.quality, &surface}.evaluate(mesh_, orbit);
     if (!plan) continue;
     ++counts.candidates;

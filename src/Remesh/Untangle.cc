@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "Operators/Unfold.hh"
+#include "Quality/Damage.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Stage.hh"
 
@@ -44,7 +45,8 @@ double typical_six_volume(const TetMesh& mesh) {
 }
 
 /// Unfolds the surroundings of invalid cells by moving their vertices. What is moved falls into patches that
-/// share no cell; each keeps its moves only if it has fewer invalid cells afterwards.
+/// share no cell; each keeps its moves only if it has fewer invalid cells afterwards, or fewer inverted ones,
+/// and none of the two has become more.
 class Unfolding {
  public:
   Unfolding(TetMesh& mesh, Workspace& work, par::Policy policy) : mesh_(mesh), work_(work), policy_(policy) {}
@@ -58,8 +60,7 @@ class Unfolding {
     gather_cells(stars);
     std::vector<Vec3> before(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) before[i] = mesh_.point(vertices_[i]);
-    const std::vector<std::uint8_t> was_invalid = invalidity();
-    std::size_t least = n_set(was_invalid);
+    std::size_t least = n_set(invalidity());
     std::size_t n_invalid = least;
     int idle = 0;
     for (int s = 0; s < width.sweeps && n_invalid > 0 && idle < kPatience && !control.stopped(); ++s) {
@@ -69,7 +70,7 @@ class Unfolding {
       idle = n_invalid < least ? 0 : idle + 1;
       least = std::min(least, n_invalid);
     }
-    counts.winners += keep_what_helps(stars, before, was_invalid);
+    counts.winners += keep_what_helps(stars, before);
   }
 
  private:
@@ -89,19 +90,17 @@ class Unfolding {
       }
     };
     for (CellHandle c : invalid) see(c);
-    Star star;
     for (int i = 0; i < layers; ++i) {
       rim.swap(next);
       next.clear();
-      for (VertexHandle v : rim) {
-        mesh_.gather_star(v, star);
-        for (int k = 0; k < star.size; ++k) see(star.cells[static_cast<std::size_t>(k)]);
-      }
+      std::sort(rim.begin(), rim.end());
+      const StarTable stars(mesh_, rim, work_.star_size, policy_);
+      for (std::size_t k = 0; k < stars.size(); ++k)
+        for (HalfFaceHandle h : stars.link(k)) see(cell_of(h));
     }
     vertices_.clear();
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (seen[i] && !work_.frozen[i]) vertices_.push_back(VertexHandle(i));
-    drop_pinched(mesh_, work_.star_size, vertices_, policy_);
   }
 
   /// All cells that a move may change, ascending.
@@ -138,8 +137,7 @@ class Unfolding {
 
   /// Puts the vertices of patches that have not gained back to where they were. Returns the number of moved
   /// vertices that stay.
-  std::size_t keep_what_helps(const StarTable& stars, const std::vector<Vec3>& before,
-                              const std::vector<std::uint8_t>& was_invalid) {
+  std::size_t keep_what_helps(const StarTable& stars, const std::vector<Vec3>& before) {
     // Patches: moved vertices that share a cell, joined under the smallest of them.
     std::vector<std::uint32_t> number(mesh_.n_vertices(), kNone);
     for (std::size_t i = 0; i < vertices_.size(); ++i)
@@ -159,22 +157,33 @@ class Unfolding {
         first = first == kNone ? r : std::min(r, first);
       }
     }
-    std::vector<std::ptrdiff_t> gain(vertices_.size(), 0);
-    const std::vector<std::uint8_t> is_invalid = invalidity();
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      for (VertexHandle v : mesh_.cell(cells_[i]).v) {
-        if (number[v.idx()] == kNone) continue;
-        gain[root(number[v.idx()])] += was_invalid[i] - is_invalid[i];
-        break;
+    std::vector<Damage> old_damage(vertices_.size()), new_damage(vertices_.size());
+    for (CellHandle c : cells_) {  // in a fixed order, since volumes are summed
+      const auto& v = mesh_.cell(c).v;
+      std::array<Vec3, 4> now, old;
+      std::uint32_t patch = kNone;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t n = number[v[k].idx()];
+        now[k] = mesh_.point(v[k]);
+        old[k] = n == kNone ? now[k] : before[n];
+        if (n != kNone && patch == kNone) patch = root(n);
       }
+      old_damage[patch].add(old[0], old[1], old[2], old[3]);
+      new_damage[patch].add(now[0], now[1], now[2], now[3]);
     }
+    const auto helps = [&](std::uint32_t patch) {
+      const Damage& was = old_damage[patch];
+      const Damage& is = new_damage[patch];
+      return was.may_become(is) && (is.n_invalid() < was.n_invalid() || is.n_inverted() < was.n_inverted());
+    };
     std::size_t n_kept = 0;
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
-      if (stars.link(i).empty() || mesh_.point(vertices_[i]) == before[i]) continue;
-      if (gain[root(i)] > 0)
+      if (stars.link(i).empty()) continue;
+      if (!helps(root(i)))
+        mesh_.set_point(vertices_[i],
+                        before[i]);  // also where it has moved from 0 to -0, which compare equal
+      else if (mesh_.point(vertices_[i]) != before[i])
         ++n_kept;
-      else
-        mesh_.set_point(vertices_[i], before[i]);
     }
     return n_kept;
   }
@@ -191,6 +200,7 @@ class Unfolding {
 std::size_t unfold_by_moving(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
                              RunControl& control, int iteration) {
   std::vector<CellHandle> invalid = invalid_cells(mesh, options.policy);
+  control.keep(mesh, invalid.empty());
   for (const Width& width : kWidths) {
     if (invalid.empty() || control.stopped()) break;
     const double start = control.seconds();

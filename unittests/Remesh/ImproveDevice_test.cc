@@ -9,6 +9,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/Hash.hh"
+#include "Operators/LimitMeshes.hh"
 #include "Remesh/Meshes.hh"
 
 namespace hfr::test {
@@ -60,6 +61,25 @@ void expect_same_bits_on_device(const Make& make, ImproveOptions options, bool r
 
 TEST(ImproveDevice, CavityHasTheBitsOfTheProcessor) {
   expect_same_bits_on_device([] { return small_cavity(7); }, serial(), true);
+}
+
+TEST(ImproveDevice, VerticesOfMoreThan256CellsHaveTheBitsOfTheProcessor) {
+  const auto make = [] {
+    TetMesh mesh = built(hub(150));
+    shake_inner(mesh, 0.02, 4);
+    return mesh;
+  };
+  TetMesh here = make();
+  ImproveOptions options = serial();
+  EXPECT_TRUE(improve(here, options).changed);
+  options.device.kind = DeviceChoice::Kind::kOpenCl;
+  TetMesh there = make();
+  try {
+    improve(there, options);
+  } catch (const DeviceError& error) {
+    GTEST_SKIP() << error.what();
+  }
+  EXPECT_TRUE(identical(here, there));
 }
 
 TEST(ImproveDevice, RegionsHaveTheBitsOfTheProcessor) {

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "IO/Hash.hh"
+#include "Operators/LimitMeshes.hh"
 #include "Remesh/Meshes.hh"
 
 namespace hfr::test {
@@ -39,6 +40,15 @@ TEST(ImproveThreads, JitteredAndPartlyInvertedBoxHasTheSameBits) {
 
 TEST(ImproveThreads, CavityHasTheSameBits) {
   expect_same_bits([] { return small_cavity(7); }, serial());
+}
+
+TEST(ImproveThreads, VerticesOfMoreThan256CellsHaveTheSameBits) {
+  const auto make = [] {
+    TetMesh mesh = built(hub(150));
+    shake_inner(mesh, 0.02, 4);
+    return mesh;
+  };
+  expect_same_bits(make, serial());
 }
 
 TEST(ImproveThreads, LabelledRegionsHaveTheSameBits) {

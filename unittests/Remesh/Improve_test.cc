@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "IO/Hash.hh"
+#include "Operators/LimitMeshes.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/Pipeline.hh"
 
@@ -299,6 +300,29 @@ TEST(Improve, EveryOperatorByItselfKeepsTheMeshWhole) {
     for (const PassReport& pass : result.passes)
       EXPECT_TRUE(pass.op == name || (pass.op == "unfold" && name == std::string("smooth"))) << pass.op;
   }
+}
+
+TEST(Improve, VertexOfMoreThan256CellsMovesAndIsCounted) {
+  TetMesh mesh = built(hub(150));
+  const Vec3 off = {0.3, 0.2, 0.6};
+  mesh.set_point(V(0), off);
+  ImproveOptions options = serial();
+  options.ops = Ops::kSmooth;
+  const Result result = improve(mesh, options);
+  EXPECT_FALSE(mesh.point(V(0)) == off);
+  EXPECT_EQ(result.n_large_stars, 4U);
+  TetMesh small = jittered(3, 0.2, 1);
+  EXPECT_EQ(improve(small, serial()).n_large_stars, 0U);
+}
+
+TEST(Improve, InvertedCellsOfAVertexOfMoreThan256CellsAreUnfolded) {
+  TetMesh mesh = built(hub(150));
+  mesh.set_point(V(0), {1.4, 0.3, -0.4});
+  ASSERT_GT(n_inverted(mesh), 10U);
+  ImproveOptions options = serial();
+  options.ops = Ops::kSmooth;
+  improve(mesh, options);
+  EXPECT_EQ(n_inverted(mesh), 0U);
 }
 
 }  // namespace

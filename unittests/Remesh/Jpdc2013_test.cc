@@ -47,7 +47,7 @@ TEST(Jpdc2013, OptionsChooseOperatorsAndIterations) {
 
 TEST(Jpdc2013, InsertionAddsVerticesOnlyWhenAllowed) {
   for (const bool insert : {false, true}) {
-    TetMesh mesh = jittered(6, 0.5, 2);
+    TetMesh mesh = jittered(6, 0.45, 2);
     ImproveOptions options = serial();
     options.compat = Compat::kJpdc2013;
     options.ops = Ops::kEdge | Ops::kFace;

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Limits.hh"
 
-#include "Quality/FoldedFaces.hh"
+#include <numbers>
+#include <optional>
+
+#include "Quality/Statistics.hh"
+#include "Quality/UnfillableFaces.hh"
 #include "Remesh/Meshes.hh"
+#include "Remesh/Pipeline.hh"
 
 namespace hfr::test {
 namespace {
@@ -24,12 +29,12 @@ TetMesh wedge(double degrees) {
 
 TEST(StuckCells, NoneAreBelowWhatAllMeet) {
   const TetMesh mesh = jittered(3, 0.1, 1);
-  EXPECT_TRUE(stuck_cells(mesh, 5, false, {}).empty());
+  EXPECT_TRUE(stuck_cells(mesh, 5, {}).empty());
 }
 
 TEST(StuckCells, EveryCellBelowTheAngleIsListedOnce) {
   const TetMesh mesh = jittered(4, 0.24, 3);
-  const auto stuck = stuck_cells(mesh, 30, false, {});
+  const auto stuck = stuck_cells(mesh, 30, {});
   std::size_t n = 0;
   for (CellHandle c : mesh.cells()) {
     const auto& v = mesh.cell(c).v;
@@ -46,7 +51,7 @@ TEST(StuckCells, EveryCellBelowTheAngleIsListedOnce) {
 }
 
 TEST(StuckCells, NarrowWedgeOfTheSurfaceIsACeiling) {
-  const auto narrow = stuck_cells(wedge(20), 25, false, {});
+  const auto narrow = stuck_cells(wedge(20), 25, {});
   ASSERT_GE(narrow.size(), 1U);
   EXPECT_EQ(narrow[0].cell, C(0));
   EXPECT_EQ(narrow[0].limit, Limit::kSurfaceCeiling);
@@ -59,12 +64,12 @@ TEST(StuckCells, WedgeThatOneCellHasToFillIsACeilingWhereThisCellIsPoor) {
   // at its other end: two cells in the wedge would have one of at most 20.
   TetMesh mesh = wedge(40);
   mesh.set_point(V(2), {0.9, 0.6, 0.2});
-  const auto stuck = stuck_cells(mesh, 25, false, {});
+  const auto stuck = stuck_cells(mesh, 25, {});
   for (const StuckCell& cell : stuck)
     if (cell.cell == C(0)) {
       EXPECT_EQ(cell.limit, Limit::kSurfaceCeiling);
     }
-  EXPECT_EQ(n_of(stuck_cells(mesh, 15, false, {}), Limit::kSurfaceCeiling), 0U);
+  EXPECT_EQ(n_of(stuck_cells(mesh, 15, {}), Limit::kSurfaceCeiling), 0U);
 }
 
 TEST(StuckCells, WedgeAtAnInterfaceIsAnInputFeature) {
@@ -74,28 +79,181 @@ TEST(StuckCells, WedgeAtAnInterfaceIsAnInputFeature) {
   const Cell cell = mesh.cell(C(0));
   // Bring two outer corners of cell 0 close to each other: its wedge at the edge to the third is narrow.
   mesh.set_point(cell.v[1], mesh.point(cell.v[2]) + 0.15 * (mesh.point(cell.v[1]) - mesh.point(cell.v[2])));
-  const auto stuck = stuck_cells(mesh, 20, false, {});
+  const auto stuck = stuck_cells(mesh, 20, {});
   EXPECT_GE(n_of(stuck, Limit::kInputFeature), 1U);
   mesh.set_region(C(0), 0);
-  EXPECT_EQ(n_of(stuck_cells(mesh, 20, false, {}), Limit::kInputFeature), 0U);
+  EXPECT_EQ(n_of(stuck_cells(mesh, 20, {}), Limit::kInputFeature), 0U);
 }
 
 TEST(StuckCells, FoldsAreNamedBeforeAnythingElse) {
   const TetMesh mesh = jittered(5, 0.5, 2);
-  const auto folded = folded_faces(mesh);
+  std::vector<HalfFaceHandle> boundary;
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) boundary.push_back(h);
+  const auto folded = unfillable_faces(mesh, boundary);
   ASSERT_FALSE(folded.empty());
-  EXPECT_GT(n_of(stuck_cells(mesh, 5, true, folded), Limit::kFoldedSurface), 0U);
-  EXPECT_EQ(n_of(stuck_cells(mesh, 5, true, {}), Limit::kFoldedSurface), 0U);
+  EXPECT_GT(n_of(stuck_cells(mesh, 5, folded), Limit::kFoldedSurface), 0U);
+  EXPECT_EQ(n_of(stuck_cells(mesh, 5, {}), Limit::kFoldedSurface), 0U);
 }
 
-TEST(StuckCells, RunThatEndedEarlySaysBudget) {
-  const TetMesh mesh = jittered(4, 0.35, 2);
-  const auto done = stuck_cells(mesh, 20, false, {});
-  const auto early = stuck_cells(mesh, 20, true, {});
-  ASSERT_EQ(done.size(), early.size());
-  EXPECT_EQ(n_of(done, Limit::kBudget), 0U);
-  EXPECT_EQ(n_of(early, Limit::kBudget), n_of(done, Limit::kSearch) + n_of(done, Limit::kFrozenVertices));
-  EXPECT_GT(n_of(early, Limit::kBudget), 0U);
+TEST(StuckCells, CellWithoutAVertexThatMayMoveIsNotThereforeStuck) {
+  // It was said to be kept by its vertices, but others may be connected to them.
+  const TetMesh mesh = jittered(2, 0.3, 4);
+  std::size_t n_frozen = 0;
+  for (const StuckCell& stuck : stuck_cells(mesh, 40, {})) {
+    if (stuck.n_frozen_vertices < 4 || is_proof(stuck.limit)) continue;
+    ++n_frozen;
+    EXPECT_EQ(stuck.limit, Limit::kNotFound);
+  }
+  EXPECT_GT(n_frozen, 0U);
+}
+
+TEST(StuckCells, InvertedCellInANarrowWedgeOfTheSurfaceIsHeldByIt) {
+  // What the surface leaves does not hang on the cells: one inverted cell hid it.
+  TetMesh mesh = wedge(20);
+  mesh.set_point(V(4), {0, 0, 0.5});
+  ASSERT_FALSE(invalid_cells(mesh, {}).empty());
+  EXPECT_EQ(stuck_cells(mesh, 25, {})[0].limit, Limit::kSurfaceCeiling);
+}
+
+/// Cells round an upright edge, with outer vertices at these degrees about it; the first is a region.
+TetMesh wheel(const std::vector<double>& degrees) {
+  std::vector<Vec3> points = {{0, 0, -1}, {0, 0, 1}};
+  std::vector<Corners> cells;
+  const auto n = static_cast<Index>(degrees.size());
+  for (Index i = 0; i < n; ++i) {
+    const double turn = degrees[i] * std::numbers::pi / 180;
+    points.push_back({std::cos(turn), std::sin(turn), 0});
+    cells.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
+  }
+  TetMesh mesh = build(points, cells);
+  mesh.set_region(C(0), 1);
+  return mesh;
+}
+
+TEST(StuckCells, InterfaceFoldedOverAnotherIsAnInputFeature) {
+  TetMesh mesh = wheel({50, 49.937, 144, 216, 288});
+  const auto stuck = stuck_cells(mesh, 15, {});
+  ASSERT_FALSE(stuck.empty());
+  EXPECT_EQ(stuck[0].cell, C(0));
+  EXPECT_EQ(stuck[0].limit, Limit::kInputFeature);
+  EXPECT_NEAR(stuck[0].ceiling, -0.063, 1e-9);
+  EXPECT_EQ(stuck[0].a.idx() + stuck[0].b.idx(), 1U);
+  const Result result = improve(mesh, serial());
+  ASSERT_FALSE(result.invalid_cells.empty());
+  for (const StuckCell& left : result.stuck)  // the boundary is folded there as well
+    if (left.degrees <= 0) {
+      EXPECT_TRUE(is_proof(left.limit));
+    }
+}
+
+/// The smallest dihedral of the cells at the edge between two places; nothing where there is none.
+std::optional<double> worst_at(const TetMesh& mesh, const std::set<Place>& ends) {
+  std::optional<double> worst;
+  for (CellHandle c : mesh.cells()) {
+    const auto& v = mesh.cell(c).v;
+    const auto n =
+        std::count_if(v.begin(), v.end(), [&](VertexHandle u) { return ends.count(place_of(mesh, u)); });
+    if (n < 2) continue;
+    const double degrees = report_value(Metric::kMinDihedral, quality_of(mesh, v, MinDihedral{}));
+    worst = std::min(worst.value_or(degrees), degrees);
+  }
+  return worst;
+}
+
+/// A box leaning over, so that two of its edges leave 45 degrees; with interfaces in every second one.
+TetMesh leaning_box(std::uint64_t seed) {
+  generate::Arrays arrays = generate::jittered_box({3, 3, 3}, 0.25, seed);
+  for (Vec3& p : arrays.points) p.x += p.z;
+  TetMesh mesh = built(arrays);
+  if (seed % 2 == 0)
+    for (CellHandle c : mesh.cells()) mesh.set_region(c, static_cast<int>(c.idx() / 9) % 3);
+  return mesh;
+}
+
+TEST(StuckCellsProperty, NoOptionLiftsTheCellsOfAnEdgeBeyondItsCeiling) {
+  std::size_t n_proofs = 0, n_lifted = 0;
+  for (std::uint64_t s = 1; s <= 8; ++s) {
+    const TetMesh start = leaning_box(s);
+    ImproveOptions options = serial();
+    options.min_dihedral = 30;
+    TetMesh mesh = start;
+    const Result result = improve(mesh, options);
+    ImproveOptions more = serial();
+    more.raise_min_dihedral = true;
+    more.iterations = 2;
+    more.max_cells = 4 * mesh.n_cells();
+    ImproveOptions fewer = options;
+    fewer.coarsen = true;
+    std::vector<TetMesh> others = {mesh, mesh, start};
+    improve(others[0], more);
+    improve(others[1], fewer);
+    improve(others[2], more);
+    others.push_back(mesh);
+    for (const StuckCell& stuck : result.stuck) {
+      if (!is_proof(stuck.limit) || stuck.limit == Limit::kFoldedSurface) continue;
+      ++n_proofs;
+      ASSERT_TRUE(stuck.a.is_valid());
+      EXPECT_LT(stuck.ceiling, 30);
+      const std::set<Place> ends = {place_of(mesh, stuck.a), place_of(mesh, stuck.b)};
+      for (const TetMesh& other : others) {
+        const auto worst = worst_at(other, ends);
+        ASSERT_TRUE(worst.has_value()) << "an edge of a face that may not change is gone";
+        EXPECT_LE(*worst, std::max(stuck.ceiling, 0.0) + 1e-6);
+        n_lifted += *worst > stuck.degrees + 0.5 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(n_proofs, 100U);
+  EXPECT_GT(n_lifted, 0U) << "nothing has changed after the first run";
+}
+
+TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelp) {
+  std::size_t n_blamed = 0;
+  for (std::uint64_t s = 1; s <= 2; ++s) {
+    TetMesh mesh = jittered(4, 0.3, s);
+    ImproveOptions options = serial();
+    options.min_dihedral = 30;
+    options.max_cells = mesh.n_cells();
+    const Result result = improve(mesh, options);
+    const std::size_t n = n_of(result.stuck, Limit::kMaxCells);
+    n_blamed += n;
+    ImproveOptions roomy = options;
+    roomy.max_cells = 10 * mesh.n_cells();
+    TetMesh more = mesh;
+    const Result next = improve(more, roomy);
+    EXPECT_EQ(n_of(next.stuck, Limit::kMaxCells), 0U);
+    if (n > 0) {
+      EXPECT_LT(next.stuck.size(), result.stuck.size()) << s;
+    }
+  }
+  EXPECT_GT(n_blamed, 0U);
+}
+
+TEST(StuckCells, IterationsAreBlamedOnlyWhereTheyRanOut) {
+  TetMesh mesh = jittered(5, 0.3, 2);
+  ImproveOptions options = serial();
+  options.iterations = 1;
+  options.min_dihedral = 40;
+  TetMesh early = mesh;
+  const Result one = improve(early, options);
+  EXPECT_GT(n_of(one.stuck, Limit::kIterations), 0U);
+  EXPECT_EQ(n_of(one.stuck, Limit::kNotFound), 0U);
+  options.iterations = 100'000;
+  const Result all = improve(mesh, options);
+  EXPECT_EQ(n_of(all.stuck, Limit::kIterations), 0U);
+}
+
+TEST(StuckCells, RunThatWasEndedSaysByWhat) {
+  TetMesh mesh = jittered(4, 0.35, 2);
+  ImproveOptions options = serial();
+  options.cancel = [] { return true; };
+  TetMesh cancelled = mesh;
+  const Result result = improve(cancelled, options);
+  EXPECT_EQ(n_of(result.stuck, Limit::kNotFound), 0U);
+  EXPECT_GT(n_of(result.stuck, Limit::kCancelled), 0U);
+  options.cancel = nullptr;
+  options.time_limit = 1e-9;
+  EXPECT_GT(n_of(improve(mesh, options).stuck, Limit::kTimeLimit), 0U);
 }
 
 }  // namespace

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Trial.hh"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "Quality/Decisions.hh"
+#include "Quality/Metrics.hh"
+#include "Remesh/Pipeline.hh"
+
+namespace hfr {
+namespace {
+
+constexpr std::size_t kHundredth = 100;
+
+/// Decision values of MinDihedral; infinity in deleted slots.
+std::vector<double> angles_of(const TetMesh& mesh, par::Policy policy) {
+  std::vector<double> values(mesh.n_cells());
+  par::for_ranges(policy, values.size(), [&](std::size_t begin, std::size_t end) {
+    for_decisions(mesh, MinDihedral{}, begin, end, [&](std::size_t i, double value) { values[i] = value; });
+  });
+  return values;
+}
+
+template <class Is>
+std::size_t count(const std::vector<double>& values, par::Policy policy, Is&& is) {
+  return par::reduce(
+      policy, values.size(), std::size_t{0},
+      [&](std::size_t i) -> std::size_t { return is(values[i]) ? 1 : 0; }, std::plus<>{});
+}
+
+/// Rank of the percentile, counted from 1.
+std::size_t hundredth(std::size_t n) { return std::max<std::size_t>((n + kHundredth - 1) / kHundredth, 1); }
+
+/// The decision value from which on an angle has risen.
+double risen_from(double decision) {
+  return decision_value(Metric::kMinDihedral, report_value(Metric::kMinDihedral, decision) + kLeastRise);
+}
+
+}  // namespace
+
+Trial::Trial(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal)
+    : mesh_(mesh),
+      work_(work),
+      control_(control),
+      policy_(options.policy),
+      goal_(dihedral_decision(goal)),
+      n_changes_(control.n_changes()),
+      copy_(mesh),
+      surface_(control.surface()) {
+  std::vector<double> values = angles_of(mesh, policy_);
+  if (values.empty()) return;
+  n_below_ = count(values, policy_, [&](double value) { return value < goal_; });
+  n_poorest_ = hundredth(mesh.n_logical_cells());
+  const auto last = values.begin() + static_cast<std::ptrdiff_t>(n_poorest_) - 1;
+  std::nth_element(values.begin(), last, values.end());
+  low_to_reach_ = risen_from(*last);
+  worst_to_reach_ = risen_from(*std::min_element(values.begin(), last + 1));
+}
+
+bool Trial::pays() const {
+  if (mesh_.n_logical_cells() <= copy_.n_logical_cells()) return true;
+  const std::vector<double> values = angles_of(mesh_, policy_);
+  const auto n_below = [&](double decision) {
+    return count(values, policy_, [&](double value) { return value < decision; });
+  };
+  const std::size_t n_low = n_below(low_to_reach_);
+  if (n_below(worst_to_reach_) == 0 || n_low < n_poorest_) return true;
+  const std::size_t n_missing = n_below(goal_);
+  // With many more cells, a hundredth of them holds more: a percentile that has risen counts where no cell
+  // has come to be below the angle.
+  return n_missing < n_below_ || (n_missing == n_below_ && n_low < hundredth(mesh_.n_logical_cells()));
+}
+
+bool Trial::settle() {
+  if (pays()) return true;
+  mesh_.restore(std::move(copy_));
+  surface_.put_back(control_.surface());
+  work_.attach(mesh_, policy_);
+  control_.take_back_changes(n_changes_);
+  const Survey found = survey(mesh_, policy_);
+  PassReport pass;
+  pass.stage = pass.op = "undo";
+  pass.n_inverted = found.n_invalid;
+  pass.worst = found.worst;
+  control_.add(std::move(pass));
+  return false;
+}
+
+}  // namespace hfr

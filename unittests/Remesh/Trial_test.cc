@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Trial.hh"
+
+#include <gtest/gtest.h>
+
+#include "HalfFace/Errors.hh"
+#include "IO/Hash.hh"
+#include "Remesh/Meshes.hh"
+#include "Remesh/Pipeline.hh"
+
+namespace hfr::test {
+namespace {
+
+/// Puts a vertex into the middle of a cell, whatever that does.
+void cut(TetMesh& mesh, CellHandle c) {
+  Cavity cavity;
+  const auto v = mesh.cell(c).v;
+  cavity.dead.push_back(c);
+  cavity.new_vertex = 0.25 * ((mesh.point(v[0]) + mesh.point(v[1])) + (mesh.point(v[2]) + mesh.point(v[3])));
+  for (std::size_t k = 0; k < 4; ++k) {
+    Tet born = {v[0], v[1], v[2], v[3]};
+    born[k] = Cavity::kNewVertex;
+    cavity.born.push_back(born);
+  }
+  replace(mesh, cavity);
+}
+
+struct Bench {
+  explicit Bench(TetMesh wanted) : mesh(std::move(wanted)), options(serial()), control(options) {
+    work.attach(mesh, {});
+  }
+  TetMesh mesh;
+  ImproveOptions options;
+  RunControl control;
+  Workspace work;
+};
+
+TEST(Trial, CellsThatRaiseNothingGoAgain) {
+  Bench bench(jittered(3, 0.2, 1));
+  const std::uint64_t hash = io::mesh_hash(bench.mesh);
+  Trial trial(bench.mesh, bench.work, bench.options, bench.control, 1);
+  cut(bench.mesh, C(11));
+  EXPECT_FALSE(trial.settle());
+  EXPECT_EQ(io::mesh_hash(bench.mesh), hash);
+  EXPECT_EQ(bench.work.quality.size(), bench.mesh.n_cells());
+  ASSERT_EQ(bench.control.passes().size(), 1U);
+  EXPECT_EQ(bench.control.passes()[0].stage, "undo");
+  EXPECT_EQ(bench.control.n_changes(), 0U);
+}
+
+TEST(Trial, CellsThatRaiseTheWorstStay) {
+  for (const double goal : {1.0, 50.0}) {
+    // Two flat cells on a triangle, which three round the edge between their tips are better than.
+    Bench bench(bipyramid(0.2));
+    const double before = smallest_dihedral(bench.mesh, {});
+    Trial trial(bench.mesh, bench.work, bench.options, bench.control, goal);
+    Cavity cavity;
+    cavity.dead.push_back(C(0));
+    cavity.dead.push_back(C(1));
+    for (std::size_t i = 0; i < 3; ++i) cavity.born.push_back(Tet{V(4), V(3), V(i), V((i + 1) % 3)});
+    replace(bench.mesh, cavity);
+    ASSERT_EQ(check(bench.mesh), Ok);
+    ASSERT_GT(smallest_dihedral(bench.mesh, {}), before + 1);
+    bench.work.attach(bench.mesh, {});
+    EXPECT_TRUE(trial.settle()) << goal;
+    EXPECT_EQ(bench.mesh.n_cells(), 3U);
+    EXPECT_TRUE(bench.control.passes().empty());
+  }
+}
+
+TEST(Trial, AllButFlatWreathOfCellsIsNotFilledWithVerticesForNothing) {
+  // 20 cells of 0.01 degrees, between nearly flat triangles, came to be 1,086 of 0.01.
+  const std::vector<Vec3> points = {{-0.3758642963524042, 0.3223088122657193, -4.437802167113903e-05},
+                                    {-0.39938996608727284, 0.6994696160372592, -2.2914361086932643e-05},
+                                    {-0.5468404912290998, -0.024687562832799728, 0.00012117101720955859},
+                                    {0.22324426919646517, 0.286188690456038, 0.00016523206772320787},
+                                    {0.7288915647004475, 0.5697188360736878, -4.653668507566852e-05},
+                                    {-0.328870613001855, 0.29036548836315274, -0.00015336239616952626},
+                                    {-0.85065080835204, 0, -7.066735364426892e-05},
+                                    {0.9779998062997349, -0.11343433281172854, 5.9123998615915576e-05},
+                                    {-0.06604162134041087, -0.7469963258466472, 0.0001234705641906236},
+                                    {-0.47123889061309504, -1.225920848778408, -5.0644814241745051e-05},
+                                    {-0.24660940393755393, -0.5509285843706163, -0.0001611669326960631},
+                                    {1.1490315321559024, 0.23191621869502016, -7.43112695178067e-05},
+                                    {0.9011844176873922, -0.6459555163912415, -4.731984892481881e-06}};
+  const std::vector<Corners> cells = {{1, 0, 2, 3},   {1, 0, 3, 4},    {1, 0, 4, 5},   {1, 0, 5, 6},
+                                      {1, 0, 6, 2},   {4, 0, 3, 7},    {3, 0, 2, 8},   {2, 0, 6, 9},
+                                      {6, 0, 5, 10},  {5, 0, 4, 11},   {12, 0, 7, 8},  {12, 0, 8, 9},
+                                      {12, 0, 9, 10}, {12, 0, 10, 11}, {12, 0, 11, 7}, {8, 0, 7, 3},
+                                      {9, 0, 8, 2},   {10, 0, 9, 6},   {11, 0, 10, 5}, {7, 0, 11, 4}};
+  TetMesh mesh = build(points, cells);
+  mesh.labels().faces.set({V(0), V(4), V(5)}, 1);
+  mesh.labels().faces.set({V(10), V(5), V(11)}, 1);
+  const double before = smallest_dihedral(mesh, {});
+  ImproveOptions options = serial();
+  options.surface.mode = SurfaceMode::kFree;
+  options.raise_min_dihedral = true;
+  Result result;
+  try {
+    result = improve(mesh, options);
+  } catch (const InvalidInput& error) {
+    GTEST_SKIP() << error.what();
+  }
+  EXPECT_LE(mesh.n_cells(), 60U);
+  EXPECT_GE(smallest_dihedral(mesh, {}), before);
+  EXPECT_EQ(result.after.cells, mesh.n_cells());
+}
+
+}  // namespace
+}  // namespace hfr::test
