@@ -13,6 +13,7 @@
 #include "Files.hh"
 #include "HalfFace/Check.hh"
 #include "Json.hh"
+#include "Numbers.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Report.hh"
 
@@ -26,6 +27,7 @@ struct CommandLine {
   std::string input;
   std::string ids;
   std::optional<double> min_dihedral;
+  bool manifold = false;  ///< wanted
 };
 
 /// What is wrong with the cells, one kind each.
@@ -52,13 +54,19 @@ std::vector<Finding> find_invalid(const BuildReport& build, const Statistics& st
   return findings;
 }
 
-/// A labelled triangle or edge of the file that belongs to no cell is odd, but no solver stumbles over it.
-bool is_fault(const CheckResult& structure) {
+bool is_manifold(const CheckResult& structure) {
+  return !(structure == Rule::kNonManifoldEdge) && !(structure == Rule::kNonManifoldVertex);
+}
+
+/// Solvers go from cell to cell across faces: parts that touch at an edge or a vertex only are no fault, nor
+/// is a labelled triangle or edge of the file that belongs to no cell. `improve` takes both.
+bool is_fault(const CheckResult& structure, const CommandLine& line) {
+  if (!is_manifold(structure)) return line.manifold;
   return !(structure == Rule::kNone) && !(structure == Rule::kLabel);
 }
 
-void write_ids(const std::string& path, const LoadedMesh& loaded, const std::vector<Finding>& findings,
-               const std::vector<HalfFaceHandle>& folded) {
+std::string ids_text(const LoadedMesh& loaded, const std::vector<Finding>& findings,
+                     const std::vector<HalfFaceHandle>& folded) {
   std::string text = "# kind and 0-based index of each bad cell; folded: the vertices of a boundary face\n";
   for (const Finding& finding : findings)
     for (CellHandle cell : finding.cells) text += fmt::format("{} {}\n", finding.kind, cell.idx());
@@ -66,17 +74,14 @@ void write_ids(const std::string& path, const LoadedMesh& loaded, const std::vec
     const auto f = loaded.mesh.halfface_vertices(h);
     text += fmt::format("folded {} {} {}\n", f[0].idx(), f[1].idx(), f[2].idx());
   }
-  save_text(path, text);
+  return text;
 }
 
 void print_findings(const CommandLine& line, const LoadedMesh& loaded, const Statistics& statistics,
                     const std::vector<Finding>& findings, const CheckResult& structure, bool overlaps,
                     std::size_t n_folded) {
-  const auto row = [](const std::string& name, const std::string& text) {
-    fmt::print("{:<12}{}\n", name, text);
-  };
-  fmt::print("{}: {} vertices, {} cells\n", line.input, grouped(statistics.vertices),
-             grouped(statistics.cells));
+  const auto row = [](const std::string& name, const std::string& text) { print("{:<12}{}\n", name, text); };
+  print("{}: {} vertices, {} cells\n", line.input, grouped(statistics.vertices), grouped(statistics.cells));
   row("orientation", loaded.report.flipped ? "the other way round as a whole, which is no fault" : "ok");
   for (const Finding& finding : findings) {
     std::string text = "none";
@@ -84,7 +89,8 @@ void print_findings(const CommandLine& line, const LoadedMesh& loaded, const Sta
     if (!finding.cells.empty() && !finding.remark.empty()) text += " (" + finding.remark + ")";
     row(finding.kind, text);
   }
-  row("structure", structure ? "ok" : structure.message + (is_fault(structure) ? "" : ", which is no fault"));
+  row("structure",
+      structure ? "ok" : structure.message + (is_fault(structure, line) ? "" : ", which is no fault"));
   row("overlap", overlaps ? fmt::format("{:.3e} of the enclosed volume", statistics.overlap) : "none");
   if (n_folded > 0) row("folded", grouped(n_folded) + " boundary faces lie on or go through another one");
   if (statistics.unused_vertices > 0)
@@ -94,14 +100,14 @@ void print_findings(const CommandLine& line, const LoadedMesh& loaded, const Sta
 
 ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report) {
   report["input"]["file"] = line.input;
-  if (!line.ids.empty() && line.ids != "-") require_writable_folder(line.ids);
+  if (!line.ids.empty()) require_writable(line.ids);
   const LoadedMesh loaded = load(line.input, common);
   const Statistics figures = statistics(loaded.mesh, common.policy());
   const std::vector<Finding> findings = find_invalid(loaded.report, figures);
   const bool overlaps = figures.overlap > kOverlapTolerance;
   const CheckResult structure = check(loaded.mesh, {.policy = common.policy()});
   const std::vector<HalfFaceHandle> folded = folded_faces(loaded.mesh, common.policy());
-  bool valid = !overlaps && !is_fault(structure);
+  bool valid = !overlaps && !is_fault(structure, line);
   for (const Finding& finding : findings) valid = valid && finding.cells.empty();
   const bool goal_met = !line.min_dihedral || figures.min_dihedral.min >= *line.min_dihedral;
 
@@ -109,13 +115,13 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   report["seconds"] = {{"read", loaded.seconds_read}, {"build", loaded.seconds_build}};
   report["result"] = {{"valid", valid},
                       {"goal_reached", valid && goal_met},
+                      {"manifold", is_manifold(structure)},
                       {"overlaps", overlaps},
                       {"n_folded_faces", folded.size()},
                       {"folded_faces", faces_json(loaded.mesh, folded)},
                       {"structure", structure ? Json() : Json(structure.message)}};
   report["statistics"] = to_json(figures);
   report["notes"] = loaded.notes;
-  if (!line.ids.empty()) write_ids(line.ids, loaded, findings, folded);
   if (!common.quiet) print_notes(loaded.notes);
   if (common.prints_table())
     print_findings(line, loaded, figures, findings, structure, overlaps, folded.size());
@@ -123,7 +129,8 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   if (valid && !goal_met)
     print_error(fmt::format("{}: the smallest dihedral angle is {:.4f}, below the goal of {}", line.input,
                             figures.min_dihedral.min, *line.min_dihedral));
-  return !valid ? ExitCode::kInvalidCells : goal_met ? ExitCode::kDone : ExitCode::kGoalMissed;
+  const ExitCode code = !valid ? ExitCode::kInvalidCells : goal_met ? ExitCode::kDone : ExitCode::kGoalMissed;
+  return line.ids.empty() ? code : save_report(line.ids, ids_text(loaded, findings, folded), code);
 }
 
 }  // namespace
@@ -132,13 +139,27 @@ Run add_check(CLI::App& app, CommonOptions& common) {
   const auto line = std::make_shared<CommandLine>();
   CLI::App* command =
       app.add_subcommand("check", "Fail on inverted, flat, renumbered, overlapping or broken cells");
-  command->add_option("IN", line->input, "Mesh to read")->required()->type_name("FILE");
+  command->add_option("IN", line->input, "Mesh to read")
+      ->required()
+      ->type_name("FILE")
+      ->transform(stream_name());
   command->add_option("--ids", line->ids, "Write kind and index of every bad cell; - is stdout")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->transform(stream_name());
   command->add_option("--min-dihedral", line->min_dihedral, "Fail on a smaller dihedral angle too")
-      ->type_name("DEG");
+      ->type_name("DEG")
+      ->check(real_number(0, 180));
+  command->add_flag("--manifold", line->manifold,
+                    "Fail on edges and vertices at which parts only touch, too");
+  add_format_options(*command, common, true, false);
+  add_split_option(*command, common);
   add_common_options(*command, common);
-  return [line, &common](Json& report) { return run(*line, common, report); };
+  using Kind = FileUse::Kind;
+  return {
+      [line] {
+        return std::vector<FileUse>{{Kind::kInput, "IN", line->input}, {Kind::kReport, "--ids", line->ids}};
+      },
+      [line, &common](Json& report) { return run(*line, common, report); }};
 }
 
 }  // namespace hfr::app

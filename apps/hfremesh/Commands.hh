@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
+#include <vector>
 
 #include "ExitCode.hh"
 #include "Options.hh"
+#include "Paths.hh"
 
 namespace CLI {
 class App;
@@ -14,8 +16,13 @@ class App;
 
 namespace hfr::app {
 
-/// Runs a subcommand whose options are parsed; adds what it did to the report.
-using Run = std::function<ExitCode(nlohmann::ordered_json& report)>;
+/// A subcommand whose options are parsed.
+struct Run {
+  /// What it reads and writes beside the JSON report.
+  std::function<std::vector<FileUse>()> files;
+  /// Does it; adds what was done to the report.
+  std::function<ExitCode(nlohmann::ordered_json& report)> run;
+};
 
 /// Each adds its subcommand to `app`. `common` must outlive what is returned.
 Run add_improve(CLI::App& app, CommonOptions& common);

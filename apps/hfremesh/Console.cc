@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Console.hh"
 
-#include <fmt/format.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
+#include <cerrno>
 #include <cstdio>
+#include <system_error>
 
 namespace hfr::app {
 namespace {
@@ -19,26 +20,38 @@ std::string one_line(std::string text) {
   return text;
 }
 
-/// The only state that a signal handler may write.
-volatile std::sig_atomic_t stop_requested = 0;
-
-void request_stop(int) { stop_requested = 1; }
-
-void set_handler(void (*handler)(int), int flags) {
-  struct sigaction action = {};
-  action.sa_handler = handler;
-  action.sa_flags = flags;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
 }  // namespace
 
-void print_error(const std::string& message) { fmt::print(stderr, "hfremesh: {}\n", one_line(message)); }
+void put_out(const std::string& text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), stdout)); }
+
+void put_err(const std::string& text) { static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr)); }
+
+StandardStreams::StandardStreams() {
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(number, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The wrong way round, so that using it fails as it would have. open() takes the smallest free number.
+    static_cast<void>(open("/dev/null", number == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
+bool StandardStreams::arrived() {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0;
+  const int error = errno;
+  if (flushed && std::ferror(stdout) == 0) return std::ferror(stderr) == 0;
+  // Whoever closes a pipe has seen enough.
+  if (!said_ && error != EPIPE)
+    print_error("the standard output cannot be written" +
+                (error == 0 ? "" : ": " + std::generic_category().message(error)) +
+                "; what was to be said there is lost");
+  said_ = true;
+  return false;
+}
+
+void print_error(const std::string& message) { put_err("hfremesh: " + one_line(message) + "\n"); }
 
 void print_notes(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes) fmt::print(stderr, "hfremesh: note: {}\n", one_line(note));
+  for (const std::string& note : notes) put_err("hfremesh: note: " + one_line(note) + "\n");
 }
 
 bool stderr_is_terminal() { return isatty(STDERR_FILENO) == 1; }
@@ -48,29 +61,17 @@ void ProgressView::show(const Progress& progress) {
   const std::string state = fmt::format("{} {}: {} inverted, min dihedral {:.2f}", progress.stage,
                                         progress.iteration, progress.n_inverted, progress.min_dihedral);
   if (style_ == Style::kLines)
-    fmt::print(stderr, "hfremesh: progress: {:3.0f} % {}\n", 100 * fraction, state);
+    put_err(fmt::format("hfremesh: progress: {:3.0f} % {}\n", 100 * fraction, state));
   if (style_ != Style::kBar) return;
   constexpr int kWidth = 20;
   const int done = static_cast<int>(fraction * kWidth);
-  fmt::print(stderr, "\r\x1b[K[{:#<{}}{:.<{}}] {:3.0f} % {}", "", done, "", kWidth - done, 100 * fraction,
-             state);
-  std::fflush(stderr);
+  put_err(fmt::format("\r\x1b[K[{:#<{}}{:.<{}}] {:3.0f} % {}", "", done, "", kWidth - done, 100 * fraction,
+                      state));
   drawn_ = true;
 }
 
 ProgressView::~ProgressView() {
-  if (!drawn_) return;
-  std::fputs("\r\x1b[K", stderr);
-  std::fflush(stderr);
+  if (drawn_) put_err("\r\x1b[K");
 }
-
-SignalGuard::SignalGuard() {
-  stop_requested = 0;
-  set_handler(request_stop, static_cast<int>(SA_RESETHAND) | SA_RESTART);
-}
-
-SignalGuard::~SignalGuard() { set_handler(SIG_DFL, 0); }
-
-bool SignalGuard::cancelled() const { return stop_requested != 0; }
 
 }  // namespace hfr::app

@@ -2,13 +2,43 @@
 #ifndef HFR_APPS_CONSOLE_HH
 #define HFR_APPS_CONSOLE_HH
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Remesh/Improve.hh"
 
 namespace hfr::app {
+
+/// Writes to the standard streams never throw: a report that is lost must not cost the run. Whether all of it
+/// arrived is asked in the end.
+void put_out(const std::string& text);
+void put_err(const std::string& text);
+
+/// Formatted text on stdout.
+template <class... Args>
+void print(fmt::format_string<Args...> format, Args&&... args) {
+  put_out(fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// The three standard streams, from the first line of main() on.
+class StandardStreams {
+ public:
+  /// Holds the places of those that are closed, so that no file that is opened later gets its number and the
+  /// reports that go there.
+  StandardStreams();
+  StandardStreams(const StandardStreams&) = delete;
+  StandardStreams& operator=(const StandardStreams&) = delete;
+
+  /// False when something that was to be said has been lost so far; says so, once, where that still goes.
+  bool arrived();
+
+ private:
+  bool said_ = false;
+};
 
 /// "hfremesh: MESSAGE" on stderr, as one line whatever the message holds.
 void print_error(const std::string& message);
@@ -44,18 +74,6 @@ class Stopwatch {
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// From its construction on, SIGINT and SIGTERM ask the run to stop instead of ending the process; a second
-/// one ends it. One object at a time.
-class SignalGuard {
- public:
-  SignalGuard();
-  ~SignalGuard();
-  SignalGuard(const SignalGuard&) = delete;
-  SignalGuard& operator=(const SignalGuard&) = delete;
-
-  bool cancelled() const;
 };
 
 }  // namespace hfr::app

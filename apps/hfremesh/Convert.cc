@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hfremesh convert A B: what the file says, in another format; connectivity is not built, so nothing is
-// reordered or mended.
+// reordered or mended, unless it is to be split where it is not manifold.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,6 +10,7 @@
 #include "Commands.hh"
 #include "Console.hh"
 #include "Files.hh"
+#include "IO/Assemble.hh"
 #include "Json.hh"
 #include "Report.hh"
 
@@ -24,13 +25,20 @@ struct ConvertOptions {
 ExitCode run(const ConvertOptions& options, const CommonOptions& common, Json& report) {
   report["input"]["file"] = options.input;
   report["output"]["file"] = options.output;
-  require_writable_mesh(options.output);
+  const io::WriteOptions write_options = require_writable_mesh(options.output, options.write, common);
   const Stopwatch read;
-  const io::MeshData data = read_data(options.input);
+  io::MeshData data = read_data(options.input, common);
   report["seconds"]["read"] = read.seconds();
   std::vector<std::string> notes = data.notes;
+  if (common.split_nonmanifold && !data.cells.empty()) {
+    const LoadedMesh loaded = load(std::move(data), options.input, common);
+    report["input"].update(to_json(loaded.report));
+    notes = loaded.notes;
+    data = io::disassemble(loaded.mesh, common.policy());
+  }
   const Stopwatch write;
-  for (std::string& note : save(options.output, data, options.write)) notes.push_back(std::move(note));
+  for (std::string& note : notes_on_replacing(options.output)) notes.push_back(std::move(note));
+  for (std::string& note : save(options.output, data, write_options)) notes.push_back(std::move(note));
   report["seconds"]["write"] = write.seconds();
   report["output"].update(contents(data));
   report["notes"] = notes;
@@ -44,12 +52,23 @@ ExitCode run(const ConvertOptions& options, const CommonOptions& common, Json& r
 Run add_convert(CLI::App& app, CommonOptions& common) {
   const auto options = std::make_shared<ConvertOptions>();
   CLI::App* command = app.add_subcommand("convert", "Write a mesh in another format");
-  command->add_option("A", options->input, "Mesh to read")->required()->type_name("FILE");
+  command->add_option("A", options->input, "Mesh to read")
+      ->required()
+      ->type_name("FILE")
+      ->transform(stream_name());
   command->add_option("B,-o,--output", options->output, "Mesh to write; its extension gives the format")
-      ->required();
+      ->required()
+      ->transform(stream_name());
+  add_format_options(*command, common, true, true);
+  add_split_option(*command, common);
   add_write_options(*command, options->write);
   add_common_options(*command, common);
-  return [options, &common](Json& report) { return run(*options, common, report); };
+  using Kind = FileUse::Kind;
+  return {
+      [options] {
+        return std::vector<FileUse>{{Kind::kInput, "A", options->input}, {Kind::kMesh, "B", options->output}};
+      },
+      [options, &common](Json& report) { return run(*options, common, report); }};
 }
 
 }  // namespace hfr::app

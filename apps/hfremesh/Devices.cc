@@ -43,18 +43,17 @@ ExitCode run(const CommonOptions& common, Json& report) {
   report["problem"] = problem.empty() ? Json() : Json(problem);
   if (!common.prints_table()) return ExitCode::kDone;
   if (devices.empty()) {
-    fmt::print("no OpenCL device{}{}\n", problem.empty() ? "" : ": ", problem);
+    print("no OpenCL device{}{}\n", problem.empty() ? "" : ": ", problem);
     return ExitCode::kDone;
   }
-  fmt::print("{:<12}  {:<40}  {:>5}  {:>10}  {:<4}  {}\n", "device", "name", "units", "memory", "fp64",
-             "usable");
+  print("{:<12}  {:<40}  {:>5}  {:>10}  {:<4}  {}\n", "device", "name", "units", "memory", "fp64", "usable");
   for (const DeviceInfo& device : devices) {
-    fmt::print("{:<12}  {:<40.40}  {:>5}  {:>6} MiB  {:<4}  {}\n", device.id(), device.name,
-               device.compute_units, device.memory >> 20, device.has_double ? "yes" : "no",
-               device.problem.empty() ? "yes" : "no: " + device.problem);
+    print("{:<12}  {:<40.40}  {:>5}  {:>6} MiB  {:<4}  {}\n", device.id(), device.name, device.compute_units,
+          device.memory >> 20, device.has_double ? "yes" : "no",
+          device.problem.empty() ? "yes" : "no: " + device.problem);
     if (common.verbose)
-      fmt::print("              {}; {}; driver {}; at most {} MiB in one buffer\n", device.platform_name,
-                 device.version, device.driver, device.max_allocation >> 20);
+      print("              {}; {}; driver {}; at most {} MiB in one buffer\n", device.platform_name,
+            device.version, device.driver, device.max_allocation >> 20);
   }
   return ExitCode::kDone;
 }
@@ -64,7 +63,7 @@ ExitCode run(const CommonOptions& common, Json& report) {
 Run add_devices(CLI::App& app, CommonOptions& common) {
   CLI::App* command = app.add_subcommand("devices", "List the OpenCL devices that improve --device can use");
   add_common_options(*command, common);
-  return [&common](Json& report) { return run(common, report); };
+  return {[] { return std::vector<FileUse>(); }, [&common](Json& report) { return run(common, report); }};
 }
 
 }  // namespace hfr::app

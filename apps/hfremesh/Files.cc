@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Files.hh"
 
-#include <unistd.h>
-
-#include <algorithm>
-#include <cctype>
-#include <cstdio>
-#include <filesystem>
-#include <system_error>
+#include <set>
 
 #include "Console.hh"
 #include "ExitCode.hh"
+#include "HalfFace/Check.hh"
 #include "IO/Assemble.hh"
 #include "IO/OutputFile.hh"
+#include "Paths.hh"
 
 namespace hfr::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// Errors of the kernel do not know the file.
 std::string with_file(const std::string& path, const std::string& message) {
@@ -49,13 +43,16 @@ auto writing(const std::string& path, Write&& write) {
 
 }  // namespace
 
-io::MeshData read_data(const std::string& path) {
-  return reading(path, [&] { return io::read_mesh(path); });
+io::MeshData read_data(const std::string& path, const CommonOptions& common) {
+  if (path == "-" && common.format.empty())
+    throw Failure(ExitCode::kUsage, "-: name the format of the mesh with --format");
+  const std::string file = input_path(path);
+  return reading(file, [&] { return io::read_mesh(file, path == "-" ? common.format : ""); });
 }
 
 LoadedMesh load(const std::string& path, const CommonOptions& common) {
   const Stopwatch read;
-  io::MeshData data = read_data(path);
+  io::MeshData data = read_data(path, common);
   const double seconds_read = read.seconds();
   LoadedMesh loaded = load(std::move(data), path, common);
   loaded.seconds_read = seconds_read;
@@ -68,60 +65,54 @@ LoadedMesh load(io::MeshData data, const std::string& path, const CommonOptions&
   if (data.cells.empty())
     throw Failure(ExitCode::kCannotRead, path + ": there are no tetrahedra in the file");
   const Stopwatch build;
-  loaded.mesh = reading(
-      path, [&] { return io::assemble(std::move(data), common.policy(), &loaded.report, &loaded.notes); });
+  loaded.mesh = reading(path, [&] {
+    return io::assemble(std::move(data), common.policy(), &loaded.report, &loaded.notes,
+                        common.split_nonmanifold ? NonManifold::kSplit : NonManifold::kKeep);
+  });
   loaded.seconds_build = build.seconds();
   if (loaded.report.flipped)
     loaded.notes.push_back(path + " orders all cells the other way round; they were flipped as a whole");
   if (!loaded.report.reoriented.empty())
     loaded.notes.push_back(std::to_string(loaded.report.reoriented.size()) + " cells of " + path +
                            " contradicted their neighbours' order and were turned");
+  if (!loaded.report.copied.empty()) {
+    std::set<VertexHandle> split(loaded.report.copied.begin(), loaded.report.copied.end());
+    loaded.notes.push_back(std::to_string(split.size()) + " vertices of " + path +
+                           " joined cells that no face connects and were split: " +
+                           std::to_string(loaded.report.copied.size()) + " vertices are new");
+  }
   return loaded;
 }
 
-void require_writable_folder(const std::string& path) {
-  const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  std::error_code ignored;
-  if (fs::is_directory(target, ignored))
-    throw Failure(ExitCode::kUsage, path + ": cannot be written: it is a folder");
-  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) return;  // a pipe or device
-  if (!fs::is_directory(folder, ignored))
-    throw Failure(ExitCode::kUsage, path + ": cannot be written: there is no folder " + folder.string());
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Failure(ExitCode::kUsage, path + ": cannot be written: no permission in folder " + folder.string());
-}
-
-void require_writable_mesh(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const auto known = io::writable_extensions();
-  if (std::find(known.begin(), known.end(), extension) == known.end()) {
-    std::string list;
-    for (const std::string& name : known) list += " " + name;
-    throw Failure(ExitCode::kUsage, path + ": unknown file type '" + extension + "'; known are" + list);
-  }
-  require_writable_folder(path);
+void require_sound(const TetMesh& mesh, const std::string& input, const CommonOptions& common) {
+  const CheckOptions options = {.last = Rule::kDuplicateEdge, .policy = common.policy()};
+  const CheckResult found = check(mesh, options);
+  if (found) return;
+  const bool may_be_the_input = found == Rule::kDuplicateEdge && input != "-";
+  if (may_be_the_input && check(load(input, common).mesh, options) == Rule::kDuplicateEdge) return;
+  throw Failure(ExitCode::kInternal, "internal error, worth a report: the mesh that was made of " + input +
+                                         " breaks a rule, and nothing was written: " + found.message);
 }
 
 std::vector<std::string> save(const std::string& path, const io::MeshData& data,
                               const io::WriteOptions& options) {
-  return writing(path, [&] { return io::write_mesh(path, data, options); });
+  return writing(path, [&] { return io::write_mesh(output_path(path), data, options); });
 }
 
-void save_text(const std::string& path, const std::string& text) {
+ExitCode save_report(const std::string& path, const std::string& text, ExitCode code) {
   if (path == "-") {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    std::fflush(stdout);
-    return;
+    put_out(text);  // whether it arrives is asked in the end
+    return code;
   }
-  writing(path, [&] {
+  try {
     io::OutputFile file(path);
     file.text(text);
     file.commit();
-    return 0;
-  });
+    return code;
+  } catch (const IoError& error) {
+    print_error(error.what());
+    return code == ExitCode::kDone ? ExitCode::kUsage : code;
+  }
 }
 
 }  // namespace hfr::app

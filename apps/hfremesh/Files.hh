@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ExitCode.hh"
 #include "HalfFace/TetMesh.hh"
 #include "IO/MeshData.hh"
 #include "IO/MeshFile.hh"
@@ -22,22 +23,24 @@ struct LoadedMesh {
   double seconds_build = 0;
 };
 
-io::MeshData read_data(const std::string& path);
+/// "-" is stdin, in the format that the options name.
+io::MeshData read_data(const std::string& path, const CommonOptions& common);
 LoadedMesh load(const std::string& path, const CommonOptions& common);
 /// The same from what read_data() gave for `path`.
 LoadedMesh load(io::MeshData data, const std::string& path, const CommonOptions& common);
 
-/// Fails unless the file type is known and the folder is there and takes files: said before the work, not
-/// after.
-void require_writable_mesh(const std::string& path);
-void require_writable_folder(const std::string& path);
+/// Fails with exit code 7 when a mesh that was made of the file breaks a rule of the library, which then is
+/// at fault; what was made must not take the place of the user's file. An edge that exists twice may stay
+/// where the file has such an edge too.
+void require_sound(const TetMesh& mesh, const std::string& input, const CommonOptions& common);
 
-/// Returns the writer's notes.
+/// Returns the writer's notes; `options` as require_writable_mesh() returned them.
 std::vector<std::string> save(const std::string& path, const io::MeshData& data,
                               const io::WriteOptions& options);
 
-/// Whole or not at all; "-" is stdout.
-void save_text(const std::string& path, const std::string& text);
+/// A report, whole or not at all; "-" is stdout. The mesh is written by then, so one that is lost costs a
+/// line and turns exit code 0 into 1, but no other: those say more. Returns the code to end with.
+ExitCode save_report(const std::string& path, const std::string& text, ExitCode code);
 
 }  // namespace hfr::app
 

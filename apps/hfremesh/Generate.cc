@@ -11,6 +11,8 @@
 #include "Console.hh"
 #include "Files.hh"
 #include "Json.hh"
+#include "Memory.hh"
+#include "Numbers.hh"
 #include "Report.hh"
 
 namespace hfr::app {
@@ -80,12 +82,49 @@ generate::Arrays make(const std::string& shape, const GenerateOptions& options) 
   return make_cylinder(options);
 }
 
+/// What a mesh will be, before it is made.
+struct Size {
+  double cells;
+  double bytes;  ///< that making it takes at its peak, about
+};
+
+Size size_of(const std::string& shape, const GenerateOptions& options) {
+  constexpr double kCell = sizeof(std::array<Index, 4>) + sizeof(int);
+  constexpr double kPoint = sizeof(Vec3);
+  constexpr double kBallPoint = kPoint + 64;  // its entry in a hash table
+  constexpr double kBuiltCell = 110;          // of the half-face mesh that tells what is inside
+  const double built = options.jitter != 0 ? kBuiltCell : 0;
+  if (shape == "ball") {
+    const auto n = static_cast<double>(counts<1>(options, {8})[0]);
+    return {20 * n * n * n, 20 * n * n * n * (kCell + built) + 10 * n * n * n / 3 * kBallPoint};
+  }
+  if (shape == "cylinder") {
+    const auto n = counts<2>(options, {4, 12});
+    const auto nr = static_cast<double>(n[0]), nz = static_cast<double>(n[1]);
+    const double cells = 18 * nr * nr * nz;
+    return {cells, cells * (kCell + built) + 3 * nr * (nr + 1) * (nz + 1) * kPoint};
+  }
+  // The counts of a grid, and which part of it has cells.
+  const generate::Counts n = shape == "cavity"    ? counts<3>(options, options.cavity.counts)
+                             : shape == "fandisk" ? counts<3>(options, {6, 6, 4})
+                                                  : counts<3>(options, {10, 10, 10});
+  const double twice = shape == "fandisk" ? 2 : 1;
+  const auto x = static_cast<double>(n[0]), y = twice * static_cast<double>(n[1]),
+             z = twice * static_cast<double>(n[2]);
+  const double cells = (shape == "fandisk" ? 4.5 : 6) * x * y * z;
+  return {cells, cells * kCell + (x + 1) * (y + 1) * (z + 1) * (kPoint + sizeof(Index))};
+}
+
 ExitCode run(const std::string& shape, const GenerateOptions& options, const CommonOptions& common,
              Json& report) {
   report["output"]["file"] = options.output;
   report["options"]["shape"] = shape;
-  require_writable_mesh(options.output);
+  const io::WriteOptions write_options = require_writable_mesh(options.output, options.write, common);
   const Stopwatch making;
+  const Size size = size_of(shape, options);
+  if (size.cells <=
+      static_cast<double>(VertexHandle::kInvalid / 12))  // beyond, the library has a word for it
+    require_memory(size.bytes, "a mesh of " + grouped(static_cast<std::size_t>(size.cells)) + " cells");
   generate::Arrays arrays = make(shape, options);
   io::MeshData data;
   data.points = std::move(arrays.points);
@@ -93,7 +132,8 @@ ExitCode run(const std::string& shape, const GenerateOptions& options, const Com
   data.regions = std::move(arrays.regions);
   report["seconds"]["generate"] = making.seconds();
   const Stopwatch write;
-  const std::vector<std::string> notes = save(options.output, data, options.write);
+  std::vector<std::string> notes = notes_on_replacing(options.output);
+  for (std::string& note : save(options.output, data, write_options)) notes.push_back(std::move(note));
   report["seconds"]["write"] = write.seconds();
   report["output"].update(contents(data));
   report["notes"] = notes;
@@ -105,21 +145,30 @@ ExitCode run(const std::string& shape, const GenerateOptions& options, const Com
 void add_cavity_options(CLI::App& shape, generate::CavityOptions& cavity) {
   static const std::map<std::string, generate::CavityField> kFields = {
       {"gaussians", generate::CavityField::kGaussians}, {"bulk-shear", generate::CavityField::kBulkShear}};
-  shape.add_option("--jitter", cavity.jitter, "Random move of inner coordinates, in cube widths");
-  shape.add_option("--sigma", cavity.sigma, "Width of the Gaussians");
-  shape.add_option("--amplitude", cavity.amplitude, "Strength of the deformation; 0 for none");
-  shape.add_option("--seed", cavity.seed, "Seed of the jitter");
+  shape.add_option("--jitter", cavity.jitter, "Random move of inner coordinates, in cube widths")
+      ->check(real_number());
+  shape.add_option("--sigma", cavity.sigma, "Width of the Gaussians")->check(positive_number());
+  shape.add_option("--amplitude", cavity.amplitude, "Strength of the deformation; 0 for none")
+      ->check(real_number());
+  shape.add_option("--seed", cavity.seed, "Seed of the jitter")->check(whole_number());
   shape.add_option("--field", cavity.field, "Deformation: gaussians or bulk-shear")
       ->type_name("NAME")
       ->transform(CLI::Transformer(kFields).description(""));
 }
 
 void add_box_options(CLI::App& shape, GenerateOptions& options) {
-  shape.add_option("--low", options.low, "Lower corner")->type_name("X Y Z")->expected(3);
-  shape.add_option("--high", options.high, "Upper corner")->type_name("X Y Z")->expected(3);
-  shape.add_option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths");
-  shape.add_option("--seed", options.seed, "Seed of the jitter");
-  shape.add_option("--regions", options.regions, "1, or 2 for two halves along x")->check(CLI::Range(1, 2));
+  shape.add_option("--low", options.low, "Lower corner")
+      ->type_name("X Y Z")
+      ->expected(3)
+      ->check(real_number());
+  shape.add_option("--high", options.high, "Upper corner")
+      ->type_name("X Y Z")
+      ->expected(3)
+      ->check(real_number());
+  shape.add_option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths")
+      ->check(real_number());
+  shape.add_option("--seed", options.seed, "Seed of the jitter")->check(whole_number());
+  shape.add_option("--regions", options.regions, "1, or 2 for two halves along x")->check(whole_number(1, 2));
 }
 
 }  // namespace
@@ -128,43 +177,60 @@ Run add_generate(CLI::App& app, CommonOptions& common) {
   const auto options = std::make_shared<GenerateOptions>();
   CLI::App* command = app.add_subcommand("generate", "Make a mesh: cavity, box, ball, cylinder or fandisk");
   command->require_subcommand(1);
+  const CLI::Validator count = whole_number(0, std::numeric_limits<Index>::max());
   CLI::App* cavity = command->add_subcommand("cavity", "Unit cube, deformed inside until cells invert");
   add_cavity_options(*cavity, options->cavity);
   CLI::App* box = command->add_subcommand("box", "Box of cubes cut into six cells each");
   add_box_options(*box, *options);
   CLI::App* ball = command->add_subcommand("ball", "Ball round the origin, 20 n^3 cells");
-  ball->add_option("--radius", options->radius, "Radius");
+  ball->add_option("--radius", options->radius, "Radius")->check(positive_number());
   CLI::App* cylinder = command->add_subcommand("cylinder", "Upright cylinder, 18 nr^2 nz cells");
-  cylinder->add_option("--radius", options->radius, "Radius");
-  cylinder->add_option("--height", options->height, "Height");
-  cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned");
-  cylinder->add_option("--wring", options->wring,
-                       "Degrees by which the side is turned back and forth; from 58 on it folds over");
+  cylinder->add_option("--radius", options->radius, "Radius")->check(positive_number());
+  cylinder->add_option("--height", options->height, "Height")->check(positive_number());
+  cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned")->check(real_number());
+  cylinder
+      ->add_option("--wring", options->wring,
+                   "Degrees by which the side is turned back and forth; from 58 on it folds over")
+      ->check(real_number());
   CLI::App* fandisk =
       command->add_subcommand("fandisk", "Quarter of a ring with a step: planes, cylinders, sharp edges");
   fandisk->add_option("--n", options->counts, "Grid cubes along the radius, each half of the arc, each level")
       ->type_name("NR NA NZ")
-      ->expected(3);
-  fandisk->add_option("--jitter", options->jitter, "Random move within faces and inside, in cube widths");
-  fandisk->add_option("--seed", options->seed, "Seed of the jitter");
+      ->expected(3)
+      ->check(count);
+  fandisk->add_option("--jitter", options->jitter, "Random move within faces and inside, in cube widths")
+      ->check(real_number());
+  fandisk->add_option("--seed", options->seed, "Seed of the jitter")->check(whole_number());
   for (CLI::App* shape : {ball, cylinder}) {
-    shape->add_option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges");
-    shape->add_option("--seed", options->seed, "Seed of the jitter");
+    shape->add_option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges")
+        ->check(real_number());
+    shape->add_option("--seed", options->seed, "Seed of the jitter")->check(whole_number());
   }
   for (CLI::App* shape : {cavity, box})
     shape->add_option("--n", options->counts, "Grid cubes along x, y and z")
         ->type_name("NX NY NZ")
-        ->expected(3);
-  ball->add_option("--n", options->counts, "Shells")->type_name("N")->expected(1);
-  cylinder->add_option("--n", options->counts, "Rings and layers")->type_name("NR NZ")->expected(2);
+        ->expected(3)
+        ->check(count);
+  ball->add_option("--n", options->counts, "Shells")->type_name("N")->expected(1)->check(count);
+  cylinder->add_option("--n", options->counts, "Rings and layers")
+      ->type_name("NR NZ")
+      ->expected(2)
+      ->check(count);
   for (CLI::App* shape : {cavity, box, ball, cylinder, fandisk}) {
-    shape->add_option("-o,--output", options->output, "Mesh to write")->required()->type_name("FILE");
+    shape->add_option("-o,--output", options->output, "Mesh to write")
+        ->required()
+        ->type_name("FILE")
+        ->transform(stream_name());
+    add_format_options(*shape, common, false, true);
     add_write_options(*shape, options->write);
     add_common_options(*shape, common);
   }
-  return [options, command, &common](Json& report) {
-    return run(command->get_subcommands().front()->get_name(), *options, common, report);
-  };
+  return {[options] {
+            return std::vector<FileUse>{{FileUse::Kind::kMesh, "-o", options->output}};
+          },
+          [options, command, &common](Json& report) {
+            return run(command->get_subcommands().front()->get_name(), *options, common, report);
+          }};
 }
 
 }  // namespace hfr::app

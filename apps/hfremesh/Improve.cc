@@ -5,22 +5,31 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
 
 #include "Commands.hh"
 #include "Console.hh"
+#include "Fields.hh"
 #include "Files.hh"
 #include "IO/Assemble.hh"
 #include "ImproveSurface.hh"
 #include "Json.hh"
+#include "Labels.hh"
+#include "Numbers.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Report.hh"
+#include "Signals.hh"
 
 namespace hfr::app {
 namespace {
+
+constexpr double kLargestDihedral = 70.5;  // degrees; the regular tetrahedron has 70.53
 
 /// The command line as it was given; names are looked up before the input is read.
 struct CommandLine {
@@ -28,11 +37,13 @@ struct CommandLine {
   bool dry_run = false;
   bool progress = false;
   bool label_features = false;
+  bool ignore_labels = false;
   std::string ops, metric, smoother, rounds, compat;
   std::string surface;
   std::vector<std::string> fix, periodic;
   double hausdorff = -1;  ///< negative = not given
-  std::string device;     ///< as device_choice_from_name() has it
+  std::optional<double> feature_angle;
+  std::string device;  ///< as device_choice_from_name() has it
   bool no_insert = false;
   std::string min_dihedral;  ///< degrees or "max"
   double min_angle = 0;      ///< degrees, for surfaces; 0 = none
@@ -44,45 +55,58 @@ struct CommandLine {
 
 /// What follows `prefix`, split at `separator` into `n` numbers; an empty list when the text is something
 /// else.
-std::vector<unsigned> numbers_after(const std::string& text, const std::string& prefix, char separator,
-                                    std::size_t n) {
+template <class Integer>
+std::vector<Integer> numbers_after(const std::string& text, const std::string& prefix, char separator,
+                                   std::size_t n) {
   if (!text.starts_with(prefix)) return {};
-  std::vector<unsigned> numbers;
-  std::size_t at = prefix.size();
-  while (at < text.size()) {
+  std::vector<Integer> numbers;
+  for (std::size_t at = prefix.size(); at < text.size();) {
     const std::size_t end = std::min(text.find(separator, at), text.size());
-    unsigned number = 0;
-    if (!CLI::detail::lexical_cast(text.substr(at, end - at), number)) return {};
-    numbers.push_back(number);
+    const auto number = integer_of<Integer>(std::string_view(text).substr(at, end - at));
+    if (!number) return {};
+    numbers.push_back(*number);
     at = end + 1;
   }
   if (numbers.size() != n) numbers.clear();
   return numbers;
 }
 
+/// N vertices after `prefix`; nothing when the text is something else.
+template <std::size_t N>
+std::optional<std::array<VertexHandle, N>> vertices_after(const std::string& text,
+                                                          const std::string& prefix) {
+  const auto numbers = numbers_after<std::uint64_t>(text, prefix, '-', N);
+  if (numbers.empty()) return std::nullopt;
+  std::array<VertexHandle, N> vertices;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (numbers[i] >= VertexHandle::kInvalid) return std::nullopt;
+    vertices[i] = VertexHandle(static_cast<Index>(numbers[i]));
+  }
+  return vertices;
+}
+
 /// --fix and --periodic.
 void add_locks(SurfaceOptions& surface, const std::vector<std::string>& fix,
                const std::vector<std::string>& periodic) {
   for (const std::string& what : fix) {
-    const auto handle = [](unsigned number) { return VertexHandle(number); };
-    if (const auto p = numbers_after(what, "patch:", '-', 1); !p.empty()) {
-      surface.fixed_patches.push_back(static_cast<int>(p[0]));
-    } else if (const auto v = numbers_after(what, "vertex:", '-', 1); !v.empty()) {
-      surface.fixed_vertices.push_back(handle(v[0]));
-    } else if (const auto e = numbers_after(what, "edge:", '-', 2); !e.empty()) {
-      surface.fixed_edges.push_back({handle(e[0]), handle(e[1])});
-    } else if (const auto f = numbers_after(what, "face:", '-', 3); !f.empty()) {
-      surface.fixed_faces.push_back({handle(f[0]), handle(f[1]), handle(f[2])});
+    if (const auto p = numbers_after<int>(what, "patch:", '\0', 1); !p.empty()) {
+      surface.fixed_patches.push_back(p[0]);
+    } else if (const auto v = vertices_after<1>(what, "vertex:")) {
+      surface.fixed_vertices.push_back((*v)[0]);
+    } else if (const auto e = vertices_after<2>(what, "edge:")) {
+      surface.fixed_edges.push_back(*e);
+    } else if (const auto f = vertices_after<3>(what, "face:")) {
+      surface.fixed_faces.push_back(*f);
     } else {
       throw Failure(ExitCode::kUsage,
-                    "--fix takes patch:N, vertex:N, edge:N-N and face:N-N-N, not '" + what + "'");
+                    "--fix takes patch:N, vertex:N, edge:N-N and face:N-N-N, not " + in_quotes(what));
     }
   }
   for (const std::string& pair : periodic) {
-    const auto patches = numbers_after(pair, "", ':', 2);
+    const auto patches = numbers_after<int>(pair, "", ':', 2);
     if (patches.empty())
-      throw Failure(ExitCode::kUsage, "--periodic takes A:B, two patches, not '" + pair + "'");
-    surface.periodic.push_back({static_cast<int>(patches[0]), static_cast<int>(patches[1])});
+      throw Failure(ExitCode::kUsage, "--periodic takes A:B, two patches, not " + in_quotes(pair));
+    surface.periodic.push_back({patches[0], patches[1]});
   }
 }
 
@@ -92,7 +116,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (line.min_dihedral == "max")
     options.raise_min_dihedral = true;
   else if (!line.min_dihedral.empty())
-    options.min_dihedral = std::stod(line.min_dihedral);
+    options.min_dihedral = real_of(line.min_dihedral);
   if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
   if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
@@ -103,6 +127,7 @@ ImproveOptions improve_options(const CommandLine& line, const CommonOptions& com
   if (line.surface == "flat") options.surface.mode = SurfaceMode::kFlat;
   if (line.surface == "free") options.surface.mode = SurfaceMode::kFree;
   if (line.hausdorff >= 0) options.surface.hausdorff = line.hausdorff;
+  if (line.feature_angle) options.surface.feature_angle = *line.feature_angle;
   add_locks(options.surface, line.fix, line.periodic);
   options.policy = common.policy();
   options.statistics = common.prints_table() || !common.json.empty() || !line.ids.empty();
@@ -128,6 +153,7 @@ Json options_json(const CommandLine& line, const ImproveOptions& options) {
   json["hybrid"] = options.hybrid;
   json["bulk_nodes"] = options.bulk_nodes;
   json["seed"] = options.seed;
+  json["ignore_labels"] = line.ignore_labels;
   json["dry_run"] = line.dry_run;
   return json;
 }
@@ -158,9 +184,20 @@ std::string shortfall(const Result& result, const ImproveOptions& options) {
   if (!result.invalid_cells.empty())
     text += fmt::format("{}{} inverted or flat cells remain: {}", text.empty() ? "" : "; ",
                         grouped(result.invalid_cells.size()), id_list(result.invalid_cells));
-  if (!result.folded_faces.empty())
+  if (!result.unfillable_faces.empty())
+    text += fmt::format("; at {} boundary faces every mesh with this boundary has such a cell",
+                        grouped(result.unfillable_faces.size()));
+  else if (!result.folded_faces.empty())
+    text += fmt::format(
+        "; {} boundary faces lie on or go through one another, and cells without inverted ones were not "
+        "found",
+        grouped(result.folded_faces.size()));
+  const auto n_at_folds = std::count_if(result.stuck.begin(), result.stuck.end(), [](const StuckCell& c) {
+    return c.limit == Limit::kInputFeature && c.ceiling <= 0;
+  });
+  if (n_at_folds > 0)
     text +=
-        fmt::format("; {} boundary faces are folded onto one another", grouped(result.folded_faces.size()));
+        fmt::format("; at {} of them interfaces or labelled faces are folded over one another", n_at_folds);
   if (!result.invalid_cells.empty() && result.surface.unfold_needs > 0)
     text += fmt::format("; the surface is folded over, and {} would let it be unfolded",
                         round_up_option("--hausdorff", result.surface.unfold_needs));
@@ -180,6 +217,9 @@ Json outcome(const TetMesh& mesh, const Result& result) {
   json["invalid_cells"] = ids(result.invalid_cells);
   json["n_folded_faces"] = result.folded_faces.size();
   json["folded_faces"] = faces_json(mesh, result.folded_faces);
+  json["n_unfillable_faces"] = result.unfillable_faces.size();
+  json["unfillable_faces"] = faces_json(mesh, result.unfillable_faces);
+  json["n_large_stars"] = result.n_large_stars;
   return json;
 }
 
@@ -207,20 +247,25 @@ Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const Comman
   return improve(mesh, options);
 }
 
-/// Kind, index, angle and reason of each cell below the goal, and the folded faces by their vertices.
-void write_ids(const std::string& path, const TetMesh& mesh, const Result& result) {
+/// Kind, index, angle and reason of each cell below the goal, and the folded faces, and those that leave no
+/// mesh without invalid cells, by their vertices.
+std::string ids_text(const TetMesh& mesh, const Result& result) {
   std::string text = fmt::format(
       "# cells of the output below {:g} degrees: index, degrees, vertices that may "
-      "not move, what keeps them there\n",
+      "not move, and why\n",
       result.stuck_below);
   for (const StuckCell& stuck : result.stuck)
     text += fmt::format("cell {} {:.4f} {} {}\n", stuck.cell.idx(), stuck.degrees, stuck.n_frozen_vertices,
                         kLimitNames[static_cast<std::size_t>(stuck.limit)]);
-  for (HalfFaceHandle h : result.folded_faces) {
-    const auto f = mesh.halfface_vertices(h);
-    text += fmt::format("folded {} {} {}\n", f[0].idx(), f[1].idx(), f[2].idx());
-  }
-  save_text(path, text);
+  const auto add_faces = [&](const char* kind, const std::vector<HalfFaceHandle>& faces) {
+    for (HalfFaceHandle h : faces) {
+      const auto f = mesh.halfface_vertices(h);
+      text += fmt::format("{} {} {} {}\n", kind, f[0].idx(), f[1].idx(), f[2].idx());
+    }
+  };
+  add_faces("folded", result.folded_faces);
+  add_faces("unfillable", result.unfillable_faces);
+  return text;
 }
 
 /// Wall time by step.
@@ -233,60 +278,61 @@ void print_result(const Result& result, const Seconds& seconds, const CommandLin
   if (common.verbose) print_passes(result.passes);
   print_statistics({{"before", &result.before}, {"after", &result.after}});
   print_limits(result);
-  fmt::print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
-             result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,
-             seconds.statistics, seconds.write);
+  print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
+        result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,
+        seconds.statistics, seconds.write);
   if (result.surface.mode != SurfaceMode::kFrozen) print_surface(result.surface);
-  if (line.dry_run) fmt::print("dry run: nothing was written\n");
+  if (line.dry_run) print("dry run: nothing was written\n");
 }
 
-ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report) {
-  if (line.output.empty() && !line.dry_run)
-    throw Failure(ExitCode::kUsage, "-o FILE is required (or --dry-run); try 'hfremesh improve --help'");
-  const ImproveOptions options = improve_options(line, common);
-  report["input"]["file"] = line.input;
-  report["options"] = options_json(line, options);
-  if (!line.dry_run) {
-    report["output"]["file"] = line.output;
-    require_writable_mesh(line.output);
-  }
-  if (!line.ids.empty() && line.ids != "-") require_writable_folder(line.ids);
-  const SignalGuard signals;
-  const Stopwatch reading;
-  io::MeshData read = read_data(line.input);
-  const double seconds_read = reading.seconds();
-  if (read.cells.empty() && !read.triangles.empty())
-    return improve_surface({line.input, line.output, line.dry_run, line.surface, line.min_dihedral,
-                            line.min_angle, line.time_limit, options.surface, line.write, seconds_read},
-                           std::move(read), signals, common, report);
+/// Options that count for nothing without another one.
+std::vector<std::string> notes_on_idle_options(const CommandLine& line, bool on_tetrahedra) {
+  std::vector<std::string> notes;
+  const auto idle = [&](bool given, const char* option, const char* without) {
+    if (given) notes.push_back(fmt::format("{} counts only with {}", option, without));
+  };
+  const bool frozen = on_tetrahedra && (line.surface.empty() || line.surface == "frozen");
+  const bool free = line.surface == "free" || (line.surface.empty() && !on_tetrahedra);
+  idle(!free && line.hausdorff >= 0, "--hausdorff", "--surface free");
+  idle(!free && line.feature_angle, "--feature-angle", "--surface free");
+  idle(frozen && !line.fix.empty(), "--fix", "--surface flat or free");
+  idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
+  const bool on_cpu = line.device.empty() || line.device == "cpu";
+  idle(on_cpu && line.improve.hybrid, "--hybrid", "--device");
+  idle(on_cpu && line.improve.device_tuning.work_group > 0, "--work-group", "--device");
+  idle(on_cpu && line.improve.device_tuning.profile, "--profile", "--device");
+  return notes;
+}
+
+/// Everything that stands in the way of a run, and what the user should know of the input.
+LoadedMesh load_for_run(io::MeshData data, const CommandLine& line, const ImproveOptions& options,
+                        const CommonOptions& common) {
   if (line.min_angle > 0)
     throw Failure(ExitCode::kUsage, "--min-angle is for surfaces; use --min-dihedral for tetrahedra");
-  LoadedMesh loaded = load(std::move(read), line.input, common);
-  Seconds seconds{.read = seconds_read, .build = loaded.seconds_build};
-  report["input"].update(to_json(loaded.report));
+  std::vector<std::string> notes;
+  const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
+  if (line.ignore_labels && !frozen) notes = drop_labels(data);
+  LoadedMesh loaded = load(std::move(data), line.input, common);
+  if (line.ignore_labels && frozen) notes = drop_inner_labels(loaded.mesh);
+  const auto add = [&](std::vector<std::string> more) {
+    loaded.notes.insert(loaded.notes.end(), more.begin(), more.end());
+  };
+  add(std::move(notes));
+  add(notes_on_inner_triangles(loaded.mesh));
+  add(notes_on_idle_options(line, true));
+  require_fixed(options.surface, loaded.mesh);
+  return loaded;
+}
 
-  const Stopwatch improving;
-  const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
-  seconds.improve = result.seconds;
-  if (line.label_features) add_feature_labels(loaded.mesh, options.surface, options.policy);
-  seconds.statistics = improving.seconds() - result.seconds;
-
-  const Stopwatch writing;
-  const io::MeshData data = io::disassemble(loaded.mesh, common.policy());
-  std::vector<std::string> notes = std::move(loaded.notes);
-  if (!line.dry_run)
-    for (std::string& note : save(line.output, data, line.write)) notes.push_back(std::move(note));
-  seconds.write = writing.seconds();
-
-  report["output"].update(contents(data));
+void report_run(Json& report, const TetMesh& mesh, const Result& result, const ImproveOptions& options,
+                const Seconds& seconds) {
   report["seconds"] = {{"read", seconds.read},
                        {"build", seconds.build},
                        {"improve", seconds.improve},
                        {"statistics", seconds.statistics},
                        {"write", seconds.write}};
-  report["result"] = outcome(loaded.mesh, result);
+  report["result"] = outcome(mesh, result);
   report["device"] = device_json(result);
-  if (!result.device_note.empty()) notes.push_back("no device, or not to the end: " + result.device_note);
   if (options.statistics) {
     report["before"] = to_json(result.before);
     report["after"] = to_json(result.after);
@@ -295,20 +341,92 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   if (result.surface.mode != SurfaceMode::kFrozen) report["surface"] = surface_json(result.surface);
   report["passes"] = Json::array();
   for (const PassReport& pass : result.passes) report["passes"].push_back(to_json(pass));
+}
+
+/// A file of triangles only.
+ExitCode run_on_surface(io::MeshData data, const CommandLine& line, const ImproveOptions& options,
+                        const io::WriteOptions& write_options, double seconds_read,
+                        const CommonOptions& common, Json& report) {
+  const auto add = [&](std::vector<std::string> more) {
+    data.notes.insert(data.notes.end(), more.begin(), more.end());
+  };
+  if (line.ignore_labels) add(drop_labels(data));
+  add(notes_on_idle_options(line, false));
+  return improve_surface({line.input, line.output, line.dry_run, line.surface, line.min_dihedral,
+                          line.min_angle, line.time_limit, options.surface, write_options, seconds_read},
+                         std::move(data), common, report);
+}
+
+/// Improves the mesh of `data` and writes it; `seconds` has the time of reading.
+ExitCode run_on_mesh(io::MeshData data, const CommandLine& line, const ImproveOptions& options,
+                     const io::WriteOptions& write_options, Seconds seconds, const CommonOptions& common,
+                     Json& report) {
+  const PointsOfFields points_before(data);
+  LoadedMesh loaded = load_for_run(std::move(data), line, options, common);
+  seconds.build = loaded.seconds_build;
+  report["input"].update(to_json(loaded.report));
+
+  const SignalGuard signals;  // from here on there is something to save
+  const Stopwatch improving;
+  const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
+  seconds.improve = result.seconds;
+  if (line.label_features) add_feature_labels(loaded.mesh, options.surface, options.policy);
+  seconds.statistics = improving.seconds() - result.seconds;
+
+#ifndef NDEBUG  // improve() has tested what it changed; a second look takes three times as long as a short
+                // run
+  if (result.changed && !line.dry_run) require_sound(loaded.mesh, line.input, common);
+#endif
+  const Stopwatch writing;
+  data = io::disassemble(loaded.mesh, common.policy());
+  std::vector<std::string> notes = std::move(loaded.notes);
+  const auto add = [&](std::vector<std::string> more) {
+    notes.insert(notes.end(), more.begin(), more.end());
+  };
+  add(points_before.notes(data));
+  if (!line.dry_run) {
+    add(notes_on_replacing(line.output));
+    add(save(line.output, data, write_options));
+  }
+  seconds.write = writing.seconds();
+  if (!result.device_note.empty()) notes.push_back("no device, or not to the end: " + result.device_note);
+
+  report["output"].update(contents(data));
+  report_run(report, loaded.mesh, result, options, seconds);
   report["notes"] = notes;
-  if (!line.ids.empty()) write_ids(line.ids, loaded.mesh, result);
   if (!common.quiet) print_notes(notes);
   if (common.prints_table()) print_result(result, seconds, line, common);
   const ExitCode code = exit_code_of(result);
   if (code != ExitCode::kDone) print_error(line.input + ": " + shortfall(result, options));
-  return code;
+  return line.ids.empty() ? code : save_report(line.ids, ids_text(loaded.mesh, result), code);
+}
+
+ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report) {
+  if (line.output.empty() && !line.dry_run)
+    throw Failure(ExitCode::kUsage, "-o FILE is required (or --dry-run); try 'hfremesh improve --help'");
+  const ImproveOptions options = improve_options(line, common);
+  report["input"]["file"] = line.input;
+  report["options"] = options_json(line, options);
+  io::WriteOptions write_options;
+  if (!line.dry_run) {
+    report["output"]["file"] = line.output;
+    write_options = require_writable_mesh(line.output, line.write, common);
+  }
+  if (!line.ids.empty()) require_writable(line.ids);
+  const Stopwatch reading;
+  io::MeshData data = read_data(line.input, common);
+  const double seconds_read = reading.seconds();
+  if (data.cells.empty() && !data.triangles.empty())
+    return run_on_surface(std::move(data), line, options, write_options, seconds_read, common, report);
+  return run_on_mesh(std::move(data), line, options, write_options, {.read = seconds_read}, common, report);
 }
 
 /// What is wrong with the argument of --min-dihedral; nothing when it is well.
-std::string degrees_or_max(const std::string& text) {
-  double degrees = 0;
-  if (text == "max" || CLI::detail::lexical_cast(text, degrees)) return "";
-  return "a number of degrees or 'max' is wanted, not '" + text + "'";
+std::string degrees_or_max(std::string& text) {
+  const std::optional<double> degrees = real_of(text);
+  if (text == "max" || (degrees && *degrees > 0 && *degrees < kLargestDihedral)) return "";
+  return fmt::format("a number of degrees between 0 and {} or 'max' is wanted, not {}", kLargestDihedral,
+                     in_quotes(text));
 }
 
 }  // namespace
@@ -316,8 +434,14 @@ std::string degrees_or_max(const std::string& text) {
 Run add_improve(CLI::App& app, CommonOptions& common) {
   const auto line = std::make_shared<CommandLine>();
   CLI::App* command = app.add_subcommand("improve", "Repair and improve a mesh (the default)");
-  command->add_option("IN", line->input, "Mesh to read")->required()->type_name("FILE");
-  command->add_option("-o,--output", line->output, "Mesh to write; may be IN")->type_name("FILE");
+  command->add_option("IN", line->input, "Mesh to read")
+      ->required()
+      ->type_name("FILE")
+      ->transform(stream_name());
+  command->add_option("-o,--output", line->output, "Mesh to write; may be IN")
+      ->type_name("FILE")
+      ->transform(stream_name());
+  add_format_options(*command, common, true, true);
   command->add_flag("--dry-run", line->dry_run, "Report only, write no mesh");
   command
       ->add_option(
@@ -325,18 +449,18 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
           "Goal for the smallest dihedral angle; only cells that miss it are worked on. 'max': as large "
           "as can be had")
       ->type_name("DEG")
-      ->check(degrees_or_max, "");
+      ->check(CLI::Validator(degrees_or_max, ""));
   command
       ->add_option("--min-angle", line->min_angle,
                    "For a surface without tetrahedra: goal for the smallest angle of its triangles")
       ->type_name("DEG")
-      ->check(CLI::Range(0.0, 60.0));
+      ->check(real_number(0, 60));
   command->add_option("--iterations", line->improve.iterations, "At most N bulk iterations; 0 is no limit")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, std::numeric_limits<int>::max()));
   command->add_option("--time-limit", line->time_limit, "Stop improving after S seconds; exit code 5 then")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       ->add_option("--ops", line->ops,
                    "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
@@ -348,19 +472,20 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
   command
       ->add_option("--min-cells", line->improve.min_cells,
                    "No vertex is removed below N cells; 0: 81 % of the input's, without a bound for 'max'")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(whole_number());
   command
       ->add_option("--max-cells", line->improve.max_cells,
                    "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(whole_number());
   command->add_flag(
       "--coarsen", line->improve.coarsen,
       "Remove vertices wherever that makes the worst angles there better, however few cells are "
       "left; --min-cells still holds");
-  command
-      ->add_option("--ids", line->ids,
-                   "Write the cells below the goal and what keeps them there; - is stdout")
-      ->type_name("FILE");
+  command->add_option("--ids", line->ids, "Write the cells below the goal and why they are; - is stdout")
+      ->type_name("FILE")
+      ->transform(stream_name());
   command->add_option("--metric", line->metric, "Quality metric of the bulk passes; volume-length by default")
       ->type_name("NAME");
   command
@@ -384,14 +509,16 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
           "Largest distance between input and output surface, with --surface free; 0: as flat. Default: "
           "0.3 of the mean edge, at most 0.5 % of the diagonal")
       ->type_name("LENGTH")
-      ->check(CLI::NonNegativeNumber);
+      ->check(real_number(0));
   command
-      ->add_option("--feature-angle", line->improve.surface.feature_angle,
+      ->add_option("--feature-angle", line->feature_angle,
                    "Edges sharper than this stay, with --surface free; 40 by default")
       ->type_name("DEG")
-      ->check(CLI::Range(0.0, 180.0));
+      ->check(real_number(0, 180));
   command->add_flag("--label-features", line->label_features,
                     "Write sharp edges and corners of the surface as labels");
+  command->add_flag("--ignore-labels", line->ignore_labels,
+                    "Leave out labels of triangles, edges and vertices that would keep something as it is");
   command
       ->add_option("--fix", line->fix,
                    "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "
@@ -419,11 +546,19 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
   command->add_flag("--profile", line->improve.device_tuning.profile,
                     "Measure every kernel; in the JSON report");
   command->add_option("--seed", line->improve.seed, "Seed of the order among equal candidates")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(whole_number());
   command->add_flag("--progress", line->progress, "Print progress as lines on stderr");
+  add_split_option(*command, common);
   add_write_options(*command, line->write);
   add_common_options(*command, common);
-  return [line, &common](Json& report) { return run(*line, common, report); };
+  using Kind = FileUse::Kind;
+  return {[line] {
+            return std::vector<FileUse>{{Kind::kInput, "IN", line->input},
+                                        {Kind::kMesh, "-o", line->dry_run ? "" : line->output},
+                                        {Kind::kReport, "--ids", line->ids}};
+          },
+          [line, &common](Json& report) { return run(*line, common, report); }};
 }
 
 }  // namespace hfr::app

@@ -6,10 +6,14 @@
 
 #include <algorithm>
 
+#include "Console.hh"
 #include "Files.hh"
 #include "Json.hh"
+#include "Labels.hh"
+#include "Paths.hh"
 #include "Remesh/ImproveTriangles.hh"
 #include "Report.hh"
+#include "Signals.hh"
 
 namespace hfr::app {
 namespace {
@@ -80,10 +84,10 @@ Json to_json(const TriangleStatistics& s) {
 
 void print_table(const TriangleResult& result) {
   const auto row = [&](const char* name, auto&& text) {
-    fmt::print("{:<16}  {:>12}  {:>12}\n", name, text(result.before), text(result.after));
+    print("{:<16}  {:>12}  {:>12}\n", name, text(result.before), text(result.after));
   };
   using S = TriangleStatistics;
-  fmt::print("{:<16}  {:>12}  {:>12}\n", "", "before", "after");
+  print("{:<16}  {:>12}  {:>12}\n", "", "before", "after");
   row("triangles", [](const S& s) { return grouped(s.triangles); });
   row("vertices", [](const S& s) { return grouped(s.vertices); });
   row("open edges", [](const S& s) { return grouped(s.open_edges); });
@@ -123,6 +127,7 @@ TriangleOptions options_of(const SurfaceCommand& command, const io::MeshData& da
   TriangleOptions options;
   options.surface = command.surface;
   options.surface.mode = command.mode == "flat" ? SurfaceMode::kFlat : SurfaceMode::kFree;
+  require_fixed(options.surface, data);
   add_constraints(data, options.surface);
   if (command.min_angle > 0) options.min_angle = command.min_angle;
   if (command.time_limit > 0) options.time_limit = command.time_limit;
@@ -133,8 +138,9 @@ TriangleOptions options_of(const SurfaceCommand& command, const io::MeshData& da
 
 }  // namespace
 
-ExitCode improve_surface(const SurfaceCommand& command, io::MeshData data, const SignalGuard& signals,
-                         const CommonOptions& common, Json& report) {
+ExitCode improve_surface(const SurfaceCommand& command, io::MeshData data, const CommonOptions& common,
+                         Json& report) {
+  const SignalGuard signals;
   const TriangleOptions options = options_of(command, data, signals, common);
   std::vector<std::string> notes = std::move(data.notes);
   report["options"]["surface"] = options.surface.mode == SurfaceMode::kFlat ? "flat" : "free";
@@ -147,8 +153,10 @@ ExitCode improve_surface(const SurfaceCommand& command, io::MeshData data, const
 
   const Stopwatch writing;
   data = data_of(mesh, result, std::move(data), notes);
-  if (!command.dry_run)
+  if (!command.dry_run) {
+    for (std::string& note : notes_on_replacing(command.output)) notes.push_back(std::move(note));
     for (std::string& note : save(command.output, data, command.write)) notes.push_back(std::move(note));
+  }
   report["output"].update(contents(data));
   report["seconds"] = {{"read", command.seconds_read},
                        {"improve", result.seconds},
@@ -166,11 +174,11 @@ ExitCode improve_surface(const SurfaceCommand& command, io::MeshData data, const
   if (common.prints_table()) {
     if (common.verbose) print_passes(result.passes);
     print_table(result);
-    fmt::print("{}; seconds: read {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
-               result.changed ? "changed" : "unchanged", command.seconds_read, result.seconds, statistics,
-               writing.seconds());
+    print("{}; seconds: read {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
+          result.changed ? "changed" : "unchanged", command.seconds_read, result.seconds, statistics,
+          writing.seconds());
     print_surface(result.surface);
-    if (command.dry_run) fmt::print("dry run: nothing was written\n");
+    if (command.dry_run) print("dry run: nothing was written\n");
   }
   const ExitCode code = exit_code_of(result);
   if (code != ExitCode::kDone) print_error(command.input + ": " + shortfall(result, command.min_angle));

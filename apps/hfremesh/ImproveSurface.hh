@@ -5,7 +5,6 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "Console.hh"
 #include "ExitCode.hh"
 #include "IO/MeshFile.hh"
 #include "Options.hh"
@@ -27,8 +26,8 @@ struct SurfaceCommand {
 };
 
 /// Improves the triangles of `data`, which has no cells.
-ExitCode improve_surface(const SurfaceCommand& command, io::MeshData data, const SignalGuard& signals,
-                         const CommonOptions& common, nlohmann::ordered_json& report);
+ExitCode improve_surface(const SurfaceCommand& command, io::MeshData data, const CommonOptions& common,
+                         nlohmann::ordered_json& report);
 
 }  // namespace hfr::app
 

@@ -153,6 +153,9 @@ Json limits_json(const Result& result) {
                      {"degrees", stuck.degrees},
                      {"limit", kLimitNames[static_cast<std::size_t>(stuck.limit)]},
                      {"frozen_vertices", stuck.n_frozen_vertices}});
+    const bool has_edge = stuck.a.is_valid() && is_proof(stuck.limit) && stuck.ceiling < 180;
+    cells.back()["ceiling"] = has_edge ? Json(stuck.ceiling) : Json();
+    cells.back()["edge"] = has_edge ? Json({stuck.a.idx(), stuck.b.idx()}) : Json();
   }
   Json held = {{"cells", result.held.cells}};
   if (result.held.known)
@@ -178,7 +181,8 @@ Json faces_json(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces) {
 Json to_json(const BuildReport& report) {
   return {{"flipped", report.flipped},
           {"reoriented", report.reoriented.size()},
-          {"reoriented_cells", ids(report.reoriented)}};
+          {"reoriented_cells", ids(report.reoriented)},
+          {"split_vertices", report.copied.size()}};
 }
 
 const char* stop_name(Stop stop) {

@@ -9,23 +9,32 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace hfr::app {
 
 /// What every subcommand takes.
 struct CommonOptions {
-  int threads = 0;   ///< 0 = every core
-  std::string json;  ///< file for the report, "-" for stdout, empty for none
+  int threads = 0;                    ///< 0 = every core
+  std::string json;                   ///< file for the report, "-" for stdout, empty for none
+  std::string format, output_format;  ///< of meshes on "-"; the second where the output's is another one
+  bool stdout_taken = false;          ///< by a mesh or a list: "-"
   bool quiet = false;
   bool verbose = false;
+  bool split_nonmanifold = false;  ///< vertices whose cells do not connect come apart while a mesh is read
 
   par::Policy policy() const;
-  /// Tables for humans go to stdout unless they are unwanted or the JSON report goes there.
-  bool prints_table() const { return !quiet && json != "-"; }
+  /// Tables for humans go to stdout unless they are unwanted or something else goes there.
+  bool prints_table() const { return !quiet && json != "-" && !stdout_taken; }
 };
 
 void add_common_options(CLI::App& command, CommonOptions& common);
+/// --format, of a mesh that is read from or written to a standard stream.
+void add_format_options(CLI::App& command, CommonOptions& common, bool reads, bool writes);
+/// A file that is named here and is a standard stream is "-" from then on.
+CLI::Validator stream_name();
+void add_split_option(CLI::App& command, CommonOptions& common);
 void add_write_options(CLI::App& command, io::WriteOptions& options);
 
 }  // namespace hfr::app

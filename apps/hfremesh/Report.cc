@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "Console.hh"
+
 namespace hfr::app {
 namespace {
 
@@ -67,9 +69,9 @@ void print_statistics(const std::vector<Column>& columns) {
     width.push_back(widest);
   }
   const auto print_row = [&](const std::string& name, auto&& text) {
-    fmt::print("{:<16}", name);
-    for (std::size_t i = 0; i < columns.size(); ++i) fmt::print("  {:>{}}", text(columns[i]), width[i]);
-    fmt::print("\n");
+    print("{:<16}", name);
+    for (std::size_t i = 0; i < columns.size(); ++i) print("  {:>{}}", text(columns[i]), width[i]);
+    print("\n");
   };
   print_row("", [](const Column& column) { return column.heading; });
   for (const Row& row : kRows)
@@ -77,34 +79,38 @@ void print_statistics(const std::vector<Column>& columns) {
 }
 
 void print_passes(const std::vector<PassReport>& passes) {
-  fmt::print("{:<10} {:<10} {:>4} {:>6} {:>10} {:>10} {:>10} {:>8} {:>10} {:>8}\n", "stage", "op", "iter",
-             "rounds", "seeds", "candidates", "winners", "inverted", "worst", "seconds");
+  print("{:<10} {:<10} {:>4} {:>6} {:>10} {:>10} {:>10} {:>8} {:>10} {:>8}\n", "stage", "op", "iter",
+        "rounds", "seeds", "candidates", "winners", "inverted", "worst", "seconds");
   for (const PassReport& pass : passes)
-    fmt::print("{:<10} {:<10} {:>4} {:>6} {:>10} {:>10} {:>10} {:>8} {:>10.3g} {:>8.3f}\n", pass.stage,
-               pass.op, pass.iteration, pass.rounds, pass.seeds, pass.candidates, pass.winners,
-               pass.n_inverted, pass.worst, pass.seconds);
-  fmt::print("\n");
+    print("{:<10} {:<10} {:>4} {:>6} {:>10} {:>10} {:>10} {:>8} {:>10.3g} {:>8.3f}\n", pass.stage, pass.op,
+          pass.iteration, pass.rounds, pass.seeds, pass.candidates, pass.winners, pass.n_inverted, pass.worst,
+          pass.seconds);
+  print("\n");
 }
 
 void print_limits(const Result& result) {
+  if (result.n_large_stars > 0)
+    fmt::print("{} vertices have more than {} cells: they are moved, but not taken out\n",
+               grouped(result.n_large_stars), Star::kCapacity);
   if (result.stuck.empty()) return;
   const auto counts = count_limits(result.stuck);
   std::string text;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kLimitNames[i]);
-  fmt::print("below {:g} degrees: {} cells, kept there by: {}\n", result.stuck_below,
-             grouped(result.stuck.size()), text);
+  print("below {:g} degrees: {} cells; why: {}\n", result.stuck_below, grouped(result.stuck.size()), text);
+  if (const std::size_t n = counts[static_cast<std::size_t>(Limit::kMaxCells)]; n > 0)
+    print("a larger --max-cells would let new vertices raise {} of them\n", grouped(n));
   const HeldCells& held = result.held;
   if (held.cells == 0 || !held.known) return;
-  fmt::print(
-      "the surface holds back {} of them: --surface flat would free {}, free {} more, and {} hang on the "
-      "shape itself\n",
+  print(
+      "{} of them are held by the surface or have no vertex that may move: --surface flat would let that "
+      "change at {}, free at {} more, neither at {}\n",
       grouped(held.cells), grouped(held.by_flat), grouped(held.by_free), grouped(held.by_shape));
 }
 
 void print_surface(const SurfaceReport& s) {
-  fmt::print(
+  print(
       "surface: {} triangles, {} before; Hausdorff distance {:.3g} ({:.2g} % of the diagonal), at most "
       "{:.3g} "
       "allowed; volume {:+.2e}\n",
@@ -115,14 +121,18 @@ void print_surface(const SurfaceReport& s) {
       std::max_element(s.regions.begin(), s.regions.end(), [&](const RegionChange& a, const RegionChange& b) {
         return std::abs(change(a)) < std::abs(change(b));
       });
-  if (most != s.regions.end() && s.regions.size() > 1)
-    fmt::print("regions: {}; volume changed most in region {}, by {:+.2e} of it\n", grouped(s.regions.size()),
-               most->region, change(*most));
+  if (most == s.regions.end() || s.regions.size() < 2) return;
+  constexpr double kKept = 5e-4;  // of its volume: from here on a region's changes may only go back
+  const auto n_beyond = std::count_if(s.regions.begin(), s.regions.end(),
+                                      [&](const RegionChange& r) { return !(std::abs(change(r)) <= kKept); });
+  print("regions: {}; volume changed most in region {}, by {:+.2e} of it{}\n", grouped(s.regions.size()),
+        most->region, change(*most),
+        n_beyond == 0 ? "" : fmt::format("; by more than 0.05 % in {} of them", n_beyond));
 }
 
 void print_written(const std::string& path, const io::MeshData& data) {
-  fmt::print("{}: {} vertices, {} cells, {} triangles\n", path, grouped(data.points.size()),
-             grouped(data.cells.size()), grouped(data.triangles.size()));
+  print("{}: {} vertices, {} cells, {} triangles\n", path, grouped(data.points.size()),
+        grouped(data.cells.size()), grouped(data.triangles.size()));
 }
 
 }  // namespace hfr::app

@@ -22,7 +22,7 @@ struct Column {
 void print_statistics(const std::vector<Column>& columns);
 /// One row a pass.
 void print_passes(const std::vector<PassReport>& passes);
-/// One line: how many cells are below an angle and what keeps them there. Nothing where none are.
+/// How many cells are below an angle and why. Nothing where none are.
 void print_limits(const Result& result);
 /// One line: what became of a surface that might change.
 void print_surface(const SurfaceReport& surface);

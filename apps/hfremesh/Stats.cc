@@ -19,12 +19,12 @@ namespace {
 constexpr std::size_t kBarWidth = 50;
 
 void print_histogram(const std::string& name, const Statistics& statistics) {
-  fmt::print("\ndihedral angles of {}\n", name);
+  print("\ndihedral angles of {}\n", name);
   const auto& bins = statistics.dihedral_histogram;
   const std::uint64_t tallest = std::max<std::uint64_t>(1, *std::max_element(bins.begin(), bins.end()));
   for (std::size_t i = 0; i < bins.size(); ++i)
-    fmt::print("{:>3} - {:>3}  {:>12}  {:#<{}}\n", 5 * i, 5 * i + 5, grouped(bins[i]), "",
-               static_cast<std::size_t>(bins[i] * kBarWidth / tallest));
+    print("{:>3} - {:>3}  {:>12}  {:#<{}}\n", 5 * i, 5 * i + 5, grouped(bins[i]), "",
+          static_cast<std::size_t>(bins[i] * kBarWidth / tallest));
 }
 
 ExitCode run(const std::vector<std::string>& files, const CommonOptions& common, Json& report) {
@@ -66,9 +66,20 @@ ExitCode run(const std::vector<std::string>& files, const CommonOptions& common,
 Run add_stats(CLI::App& app, CommonOptions& common) {
   const auto files = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand("stats", "Print the figures of one mesh, or of two side by side");
-  command->add_option("A B", *files, "Meshes to read")->required()->expected(1, 2)->type_name("A [B]");
+  command->add_option("A B", *files, "Meshes to read")
+      ->required()
+      ->expected(1, 2)
+      ->type_name("A [B]")
+      ->transform(stream_name());
+  add_format_options(*command, common, true, false);
   add_common_options(*command, common);
-  return [files, &common](Json& report) { return run(*files, common, report); };
+  return {[files] {
+            std::vector<FileUse> uses;
+            for (const std::string& file : *files)
+              uses.push_back({FileUse::Kind::kInput, uses.empty() ? "A" : "B", file});
+            return uses;
+          },
+          [files, &common](Json& report) { return run(*files, common, report); }};
 }
 
 }  // namespace hfr::app

@@ -17,6 +17,9 @@
 #include "Files.hh"
 #include "HalfFace/Config.hh"
 #include "Json.hh"
+#include "Paths.hh"
+#include "Signals.hh"
+#include "Threads.hh"
 
 namespace hfr::app {
 namespace {
@@ -63,27 +66,59 @@ std::vector<std::string> arguments(int argc, char** argv) {
   return args;
 }
 
-ExitCode run(const Command& command, const CommonOptions& common) {
-  Json report = new_report(command.app->get_name());
-  report["threads"] = common.policy().threads;
-  ExitCode code = ExitCode::kDone;
+/// Looks at all files before any is read; nothing is written where two of them are one, the report included.
+void check_files(const Command& command, CommonOptions& common) {
+  std::vector<FileUse> files = command.run.files();
+  files.push_back({FileUse::Kind::kReport, "--json", common.json});
+  require_apart(files, common);
+  if (!common.json.empty()) require_writable(common.json);
+  for (const FileUse& use : files)
+    if (use.kind != FileUse::Kind::kInput && use.path == "-") common.stdout_taken = true;
+}
+
+/// Fewer threads than were asked for are no reason to fail: the result is the same.
+std::vector<std::string> limit_threads(CommonOptions& common) {
+  const int wanted = common.policy().threads;
+  common.threads = usable_threads(wanted);
+  if (common.threads == wanted) return {};
+  return {fmt::format("{} threads cannot be made here; {} are used", wanted, common.threads)};
+}
+
+/// Runs the command; what it throws becomes its exit code, a line and a part of the report.
+ExitCode run_command(const Command& command, CommonOptions& common, Json& report) {
   try {
-    if (!common.json.empty() && common.json != "-") require_writable_folder(common.json);
-    code = command.run(report);
+    const std::vector<std::string> notes = limit_threads(common);
+    report["threads"] = common.policy().threads;
+    const ExitCode code = command.run.run(report);
+    if (!common.quiet) print_notes(notes);
+    for (const std::string& note : notes) report["notes"].push_back(note);
+    return code;
   } catch (const std::exception& error) {
-    code = exit_code_of(error);
     print_error(message_of(error));
     report["error"] = message_of(error);
+    return exit_code_of(error);
   }
+}
+
+ExitCode run(const Command& command, CommonOptions& common, StandardStreams& streams) {
+  Json report = new_report(command.app->get_name());
+  try {
+    check_files(command, common);
+  } catch (const std::exception& error) {
+    print_error(message_of(error));
+    return exit_code_of(error);
+  }
+  ExitCode code = run_command(command, common, report);
+  if (!streams.arrived() && code == ExitCode::kDone) code = ExitCode::kUsage;
   if (common.json.empty()) return code;
   report["exit_code"] = static_cast<int>(code);
-  try {
-    save_text(common.json, json_text(report));
-  } catch (const std::exception& error) {
-    if (code != ExitCode::kUsage) print_error(error.what());
-    return code == ExitCode::kDone ? exit_code_of(error) : code;
-  }
-  return code;
+  return save_report(common.json, json_text(report), code);
+}
+
+/// CLI11 quotes arguments in full, however long they are.
+std::string shortened(const std::string& message) {
+  constexpr std::size_t kLongest = 300;
+  return message.size() > kLongest ? message.substr(0, kLongest) + "..." : message;
 }
 
 /// Name of the subcommand that was being parsed, for the hint after an error.
@@ -93,7 +128,7 @@ std::string parsed_command(const std::vector<Command>& commands) {
   return "";
 }
 
-ExitCode parse_and_run(int argc, char** argv) {
+ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams) {
   CLI::App app(
       "Repairs and improves tetrahedral meshes.\n'hfremesh IN -o OUT' is short for 'hfremesh improve IN "
       "-o OUT'.",
@@ -114,11 +149,12 @@ ExitCode parse_and_run(int argc, char** argv) {
     app.exit(wanted);
     return ExitCode::kDone;
   } catch (const CLI::ParseError& error) {
-    print_error(fmt::format("{}; try 'hfremesh {}--help'", error.what(), parsed_command(commands)));
+    print_error(
+        fmt::format("{}; try 'hfremesh {}--help'", shortened(error.what()), parsed_command(commands)));
     return ExitCode::kUsage;
   }
   for (const Command& command : commands)
-    if (command.app->parsed()) return run(command, common);
+    if (command.app->parsed()) return run(command, common, streams);
   return ExitCode::kInternal;
 }
 
@@ -126,12 +162,17 @@ ExitCode parse_and_run(int argc, char** argv) {
 }  // namespace hfr::app
 
 int main(int argc, char** argv) {
+  using hfr::app::ExitCode;
   hfr::app::wait_passively(argv);
   hfr::app::give_memory_back();
+  hfr::app::StandardStreams streams;
+  hfr::app::handle_signals();
+  ExitCode code = ExitCode::kInternal;
   try {
-    return static_cast<int>(hfr::app::parse_and_run(argc, argv));
+    code = hfr::app::parse_and_run(argc, argv, streams);
   } catch (const std::exception& error) {
     hfr::app::print_error(error.what());
-    return static_cast<int>(hfr::app::ExitCode::kInternal);
   }
+  if (!streams.arrived() && code == ExitCode::kDone) code = ExitCode::kUsage;
+  return static_cast<int>(code);
 }

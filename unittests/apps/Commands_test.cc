@@ -190,17 +190,6 @@ TEST(Commands, CheckSaysWhatKindOfFaultItIs) {
   EXPECT_THAT(renumbered.out, HasSubstr("ordered against their neighbours"));
 }
 
-TEST(Commands, CheckFindsAVertexThatHoldsTwoPartsTogether) {
-  Tool tool;
-  tool.write("pinched.mesh",
-             "MeshVersionFormatted 2\nDimension 3\nVertices\n7\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n-1 0 0 "
-             "0\n0 -1 0 0\n"
-             "0 0 -1 0\nTetrahedra\n2\n1 2 3 4 0\n1 6 5 7 0\nEnd\n");
-  const Outcome outcome = tool.run("check pinched.mesh");
-  EXPECT_EQ(outcome.code, 4) << outcome.out << outcome.err;
-  EXPECT_THAT(outcome.out, Not(HasSubstr("structure   ok")));
-}
-
 TEST(Commands, StatsComparesTwoMeshes) {
   Tool tool;
   ASSERT_EQ(tool.run("generate ball --n 3 -o ball.mesh").code, 0);

@@ -64,7 +64,8 @@ TEST(Reports, JsonOfImproveHasEveryKey) {
   expect_keys(report["input"], {"file", "flipped", "reoriented"});
   expect_keys(report["seconds"], {"read", "build", "improve", "statistics", "write"});
   expect_keys(report["output"], {"file", "vertices", "cells", "triangles", "edges", "hash"});
-  expect_keys(report["result"], {"changed", "goal_reached", "stop", "n_invalid_cells", "invalid_cells"});
+  expect_keys(report["result"],
+              {"changed", "goal_reached", "stop", "n_invalid_cells", "invalid_cells", "n_large_stars"});
   ASSERT_FALSE(report["passes"].empty());
   for (const json& pass : report["passes"])
     expect_keys(pass, {"stage", "op", "iteration", "rounds", "sub_rounds", "seeds", "candidates", "winners",
@@ -76,6 +77,32 @@ TEST(Reports, JsonOfImproveHasEveryKey) {
   EXPECT_GT(report["before"]["inverted"], 0);
   EXPECT_EQ(report["after"]["inverted"], 0);
   EXPECT_GE(report["after"]["min_dihedral"]["min"], 12.0);
+}
+
+TEST(Reports, ReasonsAreListedAndTheProofOfACeilingNamesItsEdge) {
+  // A roof whose ridge, between vertices 1 and 2, leaves 20 degrees.
+  Tool tool;
+  tool.write("in.mesh",
+             "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n-1 0 0 0\n1 0 0 0\n"
+             "0 0.17364817766693033 0.98480775301220802 0\n0 -0.17364817766693033 0.98480775301220802 0\n"
+             "0 0 3 0\nTetrahedra\n3\n1 2 3 4 0\n1 3 5 4 0\n2 5 3 4 0\nEnd\n");
+  const Outcome outcome = tool.run("in.mesh -o out.mesh --min-dihedral 25 --json out.json");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  const json limits = json::parse(tool.content("out.json"))["limits"];
+  expect_keys(limits["counts"],
+              {"folded surface", "surface ceiling", "input feature", "surface feature", "max cells",
+               "time limit", "cancelled", "iterations", "device lost", "not found"});
+  EXPECT_FALSE(limits["counts"].contains("frozen vertices"));
+  EXPECT_FALSE(limits["counts"].contains("budget"));
+  bool found = false;
+  for (const json& cell : limits["cells"]) {
+    expect_keys(cell, {"cell", "degrees", "limit", "frozen_vertices", "edge", "ceiling"});
+    if (cell["limit"] != "surface ceiling") continue;
+    found = true;
+    EXPECT_EQ(cell["edge"], json({0, 1}));
+    EXPECT_NEAR(cell["ceiling"], 20, 1e-9);
+  }
+  EXPECT_TRUE(found);
 }
 
 TEST(Reports, HashIsThatOfTheFile) {
