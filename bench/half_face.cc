@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "HalfFace/Check.hh"
+#include "HalfFace/EdgeList.hh"
 #include "HalfFace/Generate.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/TetMesh.hh"
@@ -206,6 +207,49 @@ void AllEdges(benchmark::State& state) {
   per(state, "per_cell", static_cast<double>(mesh.n_cells()));
 }
 
+/// Every edge looked up by its ends.
+void FindEdge(benchmark::State& state) {
+  const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
+  std::vector<std::array<VertexHandle, 2>> ends;
+  for (EdgeHandle e : mesh.edges()) ends.push_back(mesh.edge_vertices(e));
+  for (auto _ : state) {
+    Index sum = 0;
+    for (const auto& [a, b] : ends) sum += mesh.find_edge(a, b).idx();
+    benchmark::DoNotOptimize(sum);
+  }
+  per(state, "per_edge", static_cast<double>(ends.size()));
+}
+
+/// One cell in the middle goes after an operator wrote, which voids every table of the kernel.
+void DeleteCellAfterWriting(benchmark::State& state) {
+  TetMesh mesh = mesh_in(kAsMade);
+  std::size_t bytes = mesh.memory_bytes();
+  Index next = static_cast<Index>(mesh.n_cells() / 2);
+  for (auto _ : state) {
+    mesh.mutable_cell(CellHandle(0));
+    mesh.delete_cell(CellHandle(next++));
+  }
+  bytes = mesh.memory_bytes() - bytes;
+  state.counters["more_bytes"] = static_cast<double>(bytes);
+}
+
+void MakeEdgeList(benchmark::State& state) {
+  const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(EdgeList(mesh).size());
+  per(state, "per_cell", static_cast<double>(mesh.n_cells()));
+}
+
+void EdgeListWalk(benchmark::State& state) {
+  const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
+  const EdgeList list(mesh);
+  for (auto _ : state) {
+    Index sum = 0;
+    for (EdgeHandle e : list) sum += e.idx();
+    benchmark::DoNotOptimize(sum);
+  }
+  per(state, "per_edge", static_cast<double>(list.size()));
+}
+
 void CheckAll(benchmark::State& state) {
   const TetMesh& mesh = mesh_in(static_cast<Order>(state.range(0)));
   for (auto _ : state)
@@ -262,6 +306,10 @@ BENCHMARK(MakeStarTable)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(b
 BENCHMARK(StarTableWalk)->ArgName("order")->DenseRange(kAsMade, kMorton)->Unit(benchmark::kMillisecond);
 BENCHMARK(VertexNeighbours)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
 BENCHMARK(AllEdges)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
+BENCHMARK(FindEdge)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
+BENCHMARK(DeleteCellAfterWriting)->Iterations(20)->Unit(benchmark::kMicrosecond);
+BENCHMARK(MakeEdgeList)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
+BENCHMARK(EdgeListWalk)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
 BENCHMARK(CheckAll)->ArgName("order")->DenseRange(kAsMade, kHilbert)->Unit(benchmark::kMillisecond);
 BENCHMARK(ReorderRandom)->ArgName("curve")->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
 BENCHMARK(CollectGarbage)->Unit(benchmark::kMillisecond);

@@ -94,11 +94,11 @@ def main():
             seconds += report["seconds"]["improve"] / options.seeds
             repaired += code == 0
             worse += invalid(after) > invalid(before)
-            if code == 4 and (report["result"]["n_folded_faces"] == 0 or
+            if code == 4 and (report["result"]["n_unfillable_faces"] == 0 or
                               invalid(after) > report["limits"]["counts"]["folded surface"]):
                 print(f"untangle: jitter {jitter}, seed {seed}: invalid cells where nothing is folded", file=sys.stderr)
             if code == 4:
-                folded += report["result"]["n_folded_faces"] > 0
+                folded += report["result"]["n_unfillable_faces"] > 0
                 turned += cells_at_turned_triangles(runner.folder / "out.mesh")
                 left += invalid(after)
                 elsewhere += invalid(after) - report["limits"]["counts"]["folded surface"]

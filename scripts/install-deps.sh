@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian or Ubuntu packages that hfremesh needs and that are missing. Does nothing, and asks for
 # no rights, when all are there.
-# Usage: scripts/install-deps.sh [--tool] [--bench] [--dev]
+# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--dev]
 #   (none)   to build the library, the tool and the tests
 #   --tool   to build the library and the tool only
 #   --bench  the default, and the benchmarks
 #   --same-bits  the default, and the other compiler and thread library of scripts/same-bits.sh
+#   --libcxx the default, and clang with its own standard library, for scripts/libcxx.sh
 #   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr
 # oclgrind comes with the tests where it can be had; where not, the search for faults of kernels is skipped.
 set -euo pipefail
@@ -21,8 +22,9 @@ for option in "$@"; do
     --tool) tests=() optional=() ;;
     --bench) extra+=(libbenchmark-dev) ;;
     --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
+    --libcxx) extra+=(clang libc++-dev libc++abi-dev) ;;
     --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr) ;;
-    *) sed -n '3,13s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    *) sed -n '3,14s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

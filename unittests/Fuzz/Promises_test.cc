@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fuzzer finds what it is made to find.
+#include "Fuzz/Promises.hh"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "HalfFace/Generate.hh"
+
+namespace hfr::fuzz {
+namespace {
+
+using testing::Contains;
+using testing::IsEmpty;
+
+/// 16 cubes; region 1 and 2, a labelled face, edge and vertex, and a fixed vertex.
+TetMesh box() {
+  generate::Arrays arrays = generate::two_region_box({4, 2, 2});
+  TetMesh mesh = build(arrays.points, arrays.cells);
+  for (std::size_t c = 0; c < arrays.regions.size(); ++c) mesh.set_region(CellHandle(c), arrays.regions[c]);
+  mesh.labels().faces.set(mesh.halfface_vertices(*mesh.boundary_halffaces().begin()), 5);
+  mesh.labels().edges.set(mesh.edge_vertices(*mesh.boundary_edges().begin()), 6);
+  mesh.labels().vertices.assign(mesh.n_vertices(), 0);
+  mesh.labels().vertices[3] = 7;
+  mesh.set_fixed(VertexHandle(44));
+  return mesh;
+}
+constexpr Index kInside = 21;  // of region 1
+
+std::vector<std::string> broken(const TetMesh& before, const TetMesh& after,
+                                SurfaceMode mode = SurfaceMode::kFrozen) {
+  RandomOptions options;
+  options.improve.surface.mode = mode;
+  std::vector<Finding> findings;
+  compare_meshes(measure(before), measure(after), options, {}, findings);
+  std::vector<std::string> names;
+  for (const Finding& finding : findings) names.push_back(finding.promise);
+  return names;
+}
+
+TEST(Promises, AreKeptByAMeshThatStaysOrOneThatIsMended) {
+  const TetMesh good = box();
+  EXPECT_THAT(broken(good, good), IsEmpty());
+  TetMesh bad = box();
+  bad.set_point(VertexHandle(kInside), {0.95, 0.95, 0.1});
+  EXPECT_GT(measure(bad).inverted, 0U);
+  EXPECT_THAT(broken(bad, good), IsEmpty());
+}
+
+TEST(Promises, AreBrokenByACellThatInverts) {
+  const TetMesh good = box();
+  TetMesh bad = box();
+  bad.set_point(VertexHandle(kInside), {0.95, 0.95, 0.1});
+  const auto names = broken(good, bad);
+  for (const char* promise : {"inverted", "invalid", "overlap", "worst angle"})
+    EXPECT_THAT(names, Contains(promise));
+}
+
+TEST(Promises, AreBrokenByAnAngleThatFallsALittle) {
+  const TetMesh good = box();
+  TetMesh worse = box();
+  worse.set_point(VertexHandle(kInside), {0.25, 0.51, 0.5});
+  EXPECT_THAT(broken(good, worse), Contains("worst angle"));
+  EXPECT_THAT(broken(worse, good), IsEmpty());
+}
+
+TEST(Promises, AreBrokenByABoundaryThatMoves) {
+  const TetMesh good = box();
+  TetMesh moved = box();
+  moved.set_point(VertexHandle(44), {1, 1, std::nextafter(1, 2)});
+  const auto names = broken(good, moved);
+  for (const char* promise : {"fixed vertices", "frozen faces"}) EXPECT_THAT(names, Contains(promise));
+  moved.set_point(VertexHandle(44), {1, 1, 1 + 1e-9});
+  for (const char* promise : {"volume", "region volume"})
+    EXPECT_THAT(broken(good, moved, SurfaceMode::kFlat), Contains(promise));
+}
+
+TEST(Promises, AreBrokenByLabelsThatGo) {
+  const TetMesh good = box();
+  TetMesh bare = box();
+  bare.labels() = {};
+  const auto names = broken(good, bare);
+  for (const char* promise : {"frozen faces", "labelled edges", "vertex labels"})
+    EXPECT_THAT(names, Contains(promise));
+  const auto flat = broken(good, bare, SurfaceMode::kFlat);
+  for (const char* promise : {"patch area", "edge length"}) EXPECT_THAT(flat, Contains(promise));
+}
+
+TEST(Measure, CountsFansRoundAnEdgeAndSetsAtAVertex) {
+  const std::vector<Vec3> points = {{0, 0, 0},  {0, 0, 1},   {1, 0, 0},  {1, 1, 0},
+                                    {-1, 0, 0}, {-1, -1, 0}, {0, -1, -1}};
+  using Cells = std::vector<std::array<Index, 4>>;
+  const Measure at_edge = measure(build(points, Cells{{0, 1, 2, 3}, {0, 1, 4, 5}}));
+  EXPECT_EQ(at_edge.extra_fans, 1U);
+  EXPECT_EQ(at_edge.extra_stars, 2U);
+  const Measure at_vertex = measure(build(points, Cells{{0, 1, 2, 3}, {0, 4, 5, 6}}));
+  EXPECT_EQ(at_vertex.extra_fans, 0U);
+  EXPECT_EQ(at_vertex.extra_stars, 1U);
+  const Measure at_face = measure(build(points, Cells{{0, 1, 2, 3}, {0, 1, 2, 6}}));
+  EXPECT_EQ(at_face.extra_fans, 0U);
+  EXPECT_EQ(at_face.extra_stars, 0U);
+}
+
+}  // namespace
+}  // namespace hfr::fuzz

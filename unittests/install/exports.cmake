@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# cmake -D NM=nm -D LIBRARY=libhfremesh.so -P exports.cmake
+# Fails when a shared library exports a name that is not of namespace hfr.
+cmake_policy(VERSION 3.25)
+execute_process(COMMAND ${NM} -DC --defined-only ${LIBRARY} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+string(REPLACE ";" "," symbols "${symbols}")
+string(REPLACE "\n" ";" symbols "${symbols}")
+list(LENGTH symbols n)
+if(n LESS 100)
+  message(FATAL_ERROR "${LIBRARY} exports ${n} names: the list is not what it was")
+endif()
+set(foreign ${symbols})
+list(FILTER foreign EXCLUDE REGEX "[ (]hfr::")
+list(FILTER foreign EXCLUDE REGEX "^$")
+if(foreign)
+  list(LENGTH foreign n)
+  list(SUBLIST foreign 0 10 foreign)
+  list(JOIN foreign "\n" foreign)
+  message(FATAL_ERROR "${n} names are not of namespace hfr, such as\n${foreign}")
+endif()
+message(STATUS "${n} names, all of namespace hfr")
