@@ -207,4 +207,15 @@ std::vector<HalfFaceHandle> unfillable_faces(const TetMesh& mesh, std::span<cons
   return proven;
 }
 
+std::vector<HalfFaceHandle> unfillable_faces(const TetMesh& mesh, std::span<const CellHandle> invalid,
+                                             std::span<const HalfFaceHandle> folded, par::Policy policy) {
+  std::vector<HalfFaceHandle> suspects(folded.begin(), folded.end());
+  for (CellHandle c : invalid)
+    for (int k = 0; k < 4; ++k)
+      if (mesh.is_boundary(halfface_of(c, k))) suspects.push_back(halfface_of(c, k));
+  std::sort(suspects.begin(), suspects.end());
+  suspects.erase(std::unique(suspects.begin(), suspects.end()), suspects.end());
+  return unfillable_faces(mesh, suspects, policy);
+}
+
 }  // namespace hfr

@@ -8,7 +8,7 @@
 #include "HalfFace/CheckChanges.hh"
 #include "HalfFace/Errors.hh"
 #include "Quality/Metrics.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 namespace {

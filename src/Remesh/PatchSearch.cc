@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Insertion "followed by smoothing and topological improvement", kept or rolled back as one step (Klingner &
 // Shewchuk 2007): here on a copy of the surroundings of each of the last few cells, and removal likewise.
+#include "Remesh/PatchSearch.hh"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -13,19 +15,13 @@
 #include "Operators/VertexInsertion.hh"
 #include "Operators/VertexRemoval.hh"
 #include "Remesh/Patch.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Polish.hh"
 #include "Remesh/SurfaceRun.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 namespace {
 
-constexpr double kLoss = 0.02;       // of sin² of the worst cell, that a new vertex may leave at first
-constexpr double kAnyLoss = 1e-4;    // the same for vertices that count together only
-constexpr double kRise = 1.002;      // times sin² of the worst cell of a patch: less is not worth its cells
-constexpr double kFlat = 1e-5;       // sin² of a cell that is all but flat
-constexpr double kAhead = 1.05;      // times the goal, which is worked for
-constexpr double kLargestGoal = 60;  // degrees
-constexpr int kIterations = 8;       // of the polish of one try: more found no more
 constexpr double kPatchNanoseconds = 1e7;
 
 struct Outcome {
@@ -43,11 +39,10 @@ struct Room {
   }
 };
 
-Room room_of(const Patch& patch, const TetMesh& mesh, const ImproveOptions& options) {
+Room room_of(const Patch& patch, const TetMesh& mesh, const CellBounds& bounds) {
   const std::size_t others = mesh.n_logical_cells() - patch.cells().size();
   const auto above_others = [&](std::size_t n) { return std::max(n, others) - others; };
-  return {above_others(options.min_cells),
-          options.max_cells > 0 ? above_others(options.max_cells) : std::numeric_limits<std::size_t>::max()};
+  return {above_others(bounds.min), bounds.max > 0 ? above_others(bounds.max) : kNoLimit};
 }
 
 /// Where over each needle an apex of its own is put, as shares of the way from the short side to the tip, and
@@ -83,7 +78,9 @@ std::vector<Try> tries_of(const PatchEffort& effort) {
 /// surface, of interfaces, with labels, and towards the rest of the mesh. The short sides of a
 /// band of needles lie alternately left and right: one apex near its short side spoils what lies over its
 /// neighbours, but all of them together leave more than apexes that several needles share.
-bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, double share, double goal) {
+bool put_row(const Run& run, const PatchTrial& rules, double share, double goal) {
+  TetMesh& mesh = run.mesh;
+  Workspace& work = run.work;
   const double below = dihedral_decision(goal);
   std::vector<std::array<VertexHandle, 3>> needles;
   for (std::size_t h = 0; h < 4 * mesh.n_cells(); ++h) {
@@ -96,43 +93,44 @@ bool put_row(TetMesh& mesh, Workspace& work, const ImproveOptions& options, doub
   for (const auto& vertices : needles) {
     const HalfFaceHandle face = mesh.find_halfface(vertices);  // in whatever cell lies on it by now
     if (!face.is_valid()) continue;                            // where the patch is pinched at all three
-    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kAnyLoss};
+    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, rules.any_loss};
     insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(share, kRowHeight);
     if (!apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(cell_of(face)))) continue;
     changed = true;
     work.quality.resize(mesh.n_cells());
-    work.set_qualities(mesh, MinSine2{}, options.policy);
+    work.set_qualities(mesh, MinSine2{}, run.policy());
   }
   return changed;
 }
 
 /// False where the try cannot be begun.
-bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOptions& options, double goal) {
+bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double goal) {
+  TetMesh& mesh = run.mesh;
+  Workspace& work = run.work;
   if (attempt.kind == Try::kRow || attempt.kind == Try::kVertex)
-    work.set_qualities(mesh, MinSine2{}, options.policy);
+    work.set_qualities(mesh, MinSine2{}, run.policy());
   switch (attempt.kind) {
     case Try::kNothing:
       return true;
     case Try::kRow: {
-      if (!put_row(mesh, work, options, kRowShares[attempt.number], goal)) return false;
+      if (!put_row(run, rules, kRowShares[attempt.number], goal)) return false;
       // Vertices that came all at once have to be well connected before any is judged by itself.
-      ImproveOptions connecting = options;
-      connecting.ops = without(without(options.ops, Ops::kNode), Ops::kInsert);
-      RunControl control(connecting);
-      work.attach(mesh, options.policy);
-      polish(mesh, work, connecting, control, goal);
+      const Strategy connecting = strategy_to_connect(run.strategy);
+      work.attach(mesh, run.policy());
+      polish({mesh, work, connecting, run.control, run.findings, run.device}, connecting.polish, goal);
       return true;
     }
     case Try::kVertex: {
-      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kLoss};
+      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, rules.loss};
       insertion.only_site = static_cast<int>(attempt.number);
       return apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)));
     }
     case Try::kRemoval: {
       const VertexHandle v(attempt.number);
-      if (!has(options.ops, Ops::kNode) || v.idx() >= mesh.n_vertices() || work.frozen[v.idx()] != 0)
+      if (!has(run.strategy.pass.ops, Ops::kNode) || v.idx() >= mesh.n_vertices() ||
+          work.frozen[v.idx()] != 0)
         return false;
-      const std::vector<double> nothing_to_lose(mesh.n_cells(), kFlat);
+      const std::vector<double> nothing_to_lose(mesh.n_cells(), rules.flat);
       return apply(VertexRemoval<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
     }
   }
@@ -140,39 +138,28 @@ bool begin(const Try& attempt, TetMesh& mesh, Workspace& work, const ImproveOpti
 }
 
 /// The best of several tries at the patch: none unless its worst cell gets better. Vertices are taken out
-/// only where none that was put in has helped.
-/// `surface`: of the whole, whose part of the patch may change as well; null where it may not.
-Outcome search(const Patch& patch, const SurfaceMesh* surface, Room room, const ImproveOptions& options,
-               double seconds, double goal, const PatchEffort& effort) {
-  ImproveOptions whole;
-  whole.time_limit = seconds;
-  RunControl clock(whole);
-  ImproveOptions here;
-  here.ops = options.ops;
-  here.seed = options.seed;
-  if (surface) here.surface.mode = SurfaceMode::kFlat;
-  here.raise_min_dihedral = true;  // as many vertices as it takes
-  here.iterations = kIterations;
-  here.policy = {};  // patches are searched side by side
+/// only where none that was put in has helped. `whole`: the run whose surface, if patches have one, may
+/// change in the patch as well.
+Outcome search(const Patch& patch, const Run& whole, Room room, double goal, const PatchEffort& effort) {
+  const PatchTrial& rules = whole.strategy.patch;
+  const Strategy strategy = strategy_of_patch(whole.strategy);
+  const par::Policy policy = strategy.pass.policy;
+  RunControl clock(whole.control.seconds_left());
   Outcome best;
-  best.worst = survey(patch.mesh(), here.policy).worst;
-  const double least = kRise * best.worst;
-  const double worked_for = std::min(kAhead * goal, kLargestGoal);
-  if (n_below(patch.mesh(), worked_for, here.policy) > effort.few) return best;
+  best.worst = survey(patch.mesh(), policy).worst;
+  const double least = rules.rise * best.worst;
+  const double worked_for = std::min(rules.ahead * goal, rules.largest);
+  if (n_below(patch.mesh(), worked_for, policy) > effort.few) return best;
   const double enough = dihedral_decision(goal);
   for (const Try& attempt : tries_of(effort)) {
     if (best.worst >= enough || (attempt.kind == Try::kRemoval && best.mesh) || clock.stopped()) break;
-    here.time_limit = seconds - clock.seconds();
     TetMesh mesh = patch.mesh();
-    Workspace work;
-    work.attach(mesh, here.policy);
-    if (!begin(attempt, mesh, work, here, worked_for)) continue;
-    work.attach(mesh, here.policy);
-    RunControl control(here);
-    const PartOfSurface part(mesh, surface, patch.vertices());
-    control.set_surface(part.get());
-    polish(mesh, work, here, control, worked_for);
-    const double worst = survey(mesh, here.policy).worst;
+    LoneRun lone(mesh, strategy, clock.seconds_left());
+    if (!begin(attempt, lone.run(), rules, worked_for)) continue;
+    lone.work().attach(mesh, policy);
+    const PartOfSurface part(mesh, rules.has_surface ? whole.surface : nullptr, patch.vertices());
+    polish(lone.run(part.get()), strategy.polish, worked_for);
+    const double worst = survey(mesh, policy).worst;
     if (!(worst > std::max(best.worst, least))) continue;
     if (!room.holds(mesh)) {
       best.held_back = true;
@@ -184,70 +171,82 @@ Outcome search(const Patch& patch, const SurfaceMesh* surface, Room room, const 
   return best;
 }
 
+/// Patches round the worst of the cells that share none.
+std::vector<Patch> disjoint_patches(const TetMesh& mesh, std::span<const CellHandle> worst,
+                                    const PatchEffort& effort) {
+  std::vector<Patch> patches;
+  std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
+  for (CellHandle c : worst) {
+    if (patches.size() == effort.patches) break;
+    if (taken[c.idx()]) continue;
+    Patch patch(mesh, c, effort.layers);
+    const auto& cells = patch.cells();
+    if (std::any_of(cells.begin(), cells.end(), [&](CellHandle d) { return taken[d.idx()] != 0; })) continue;
+    for (CellHandle d : cells) taken[d.idx()] = 1;
+    patches.push_back(std::move(patch));
+  }
+  return patches;
+}
+
+struct PutBack {
+  std::size_t n_candidates = 0, n_changed = 0;  // patches
+  bool worst_rose = false;
+};
+/// Puts back what has got better, as far as the bounds on cells let it.
+PutBack put_back(const Run& run, std::span<const Patch> patches, std::span<const Outcome> outcomes) {
+  PutBack done;
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (outcomes[i].held_back) run.findings.note_cell_bound(run.bounds);
+    if (!outcomes[i].mesh) continue;
+    ++done.n_candidates;
+    if (!room_of(patches[i], run.mesh, run.bounds).holds(*outcomes[i].mesh)) {  // the others have had theirs
+      run.findings.note_cell_bound(run.bounds);
+      continue;
+    }
+    patches[i].put_back(run.mesh, *outcomes[i].mesh);
+    ++done.n_changed;
+    done.worst_rose = done.worst_rose || i == 0;
+  }
+  return done;
+}
+
 }  // namespace
 
-bool search_patches(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
-                    double goal, const PatchEffort& effort) {
-  if (!has(options.ops, Ops::kInsert) || options.iterations > 0) return false;
-  if (!(survey(mesh, options.policy).worst > 0)) return false;
+bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
+  if (!run.strategy.patch.enabled || !(survey(run.mesh, run.policy()).worst > 0)) return false;
   PassReport pass;
   pass.stage = "patches";
   pass.op = "insert";
-  const double start = control.seconds();
-  // A curved one cannot: its shape is that of the input, which a patch does not know.
-  SurfaceMesh* const surface = options.surface.mode == SurfaceMode::kFlat ? control.surface() : nullptr;
-  for (int turn = 0; turn < effort.turns && !control.stopped(); ++turn) {
-    const double next = std::min(goal, smallest_dihedral(mesh, options.policy) + effort.degrees);
+  const double start = run.control.seconds();
+  for (int turn = 0; turn < effort.turns && !run.control.stopped(); ++turn) {
+    const double next = std::min(degrees, smallest_dihedral(run.mesh, run.policy()) + effort.degrees);
     const std::size_t n_centres = 4 * effort.patches;  // most patches hold several of the worst cells
-    const auto worst = worst_cells_below(mesh, next, std::max(effort.few + 1, n_centres), options.policy);
+    const auto worst = worst_cells_below(run.mesh, next, std::max(effort.few + 1, n_centres), run.policy());
     if (worst.size() > effort.few) break;
-    std::vector<Patch> patches;
-    std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
-    for (CellHandle c : std::span(worst).first(std::min(n_centres, worst.size()))) {
-      if (patches.size() == effort.patches) break;
-      if (taken[c.idx()]) continue;
-      Patch patch(mesh, c, effort.layers);
-      const auto& cells = patch.cells();
-      if (std::any_of(cells.begin(), cells.end(), [&](CellHandle d) { return taken[d.idx()] != 0; }))
-        continue;
-      for (CellHandle d : cells) taken[d.idx()] = 1;
-      patches.push_back(std::move(patch));
-    }
+    const std::vector<Patch> patches =
+        disjoint_patches(run.mesh, std::span(worst).first(std::min(n_centres, worst.size())), effort);
     if (patches.empty()) break;
     std::vector<Outcome> outcomes(patches.size());
-    const double seconds = options.time_limit - control.seconds();
-    par::for_each_dynamic(options.policy.for_items_of(kPatchNanoseconds), patches.size(), 1,
+    par::for_each_dynamic(run.policy().for_items_of(kPatchNanoseconds), patches.size(), 1,
                           [&](std::size_t i) {
-                            const Room room = room_of(patches[i], mesh, options);
-                            outcomes[i] = search(patches[i], surface, room, options, seconds, next, effort);
+                            const Room room = room_of(patches[i], run.mesh, run.bounds);
+                            outcomes[i] = search(patches[i], run, room, next, effort);
                           });
+    const PutBack done = put_back(run, patches, outcomes);
     ++pass.rounds;
     pass.seeds += patches.size();
-    std::size_t n_changed = 0;
-    bool worst_rose = false;
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-      if (outcomes[i].held_back) control.note_cell_bound(options.max_cells);
-      if (!outcomes[i].mesh) continue;
-      ++pass.candidates;
-      if (!room_of(patches[i], mesh, options).holds(*outcomes[i].mesh)) {  // the others have had theirs
-        control.note_cell_bound(options.max_cells);
-        continue;
-      }
-      patches[i].put_back(mesh, *outcomes[i].mesh);
-      ++n_changed;
-      worst_rose = worst_rose || i == 0;
+    pass.candidates += done.n_candidates;
+    pass.winners += done.n_changed;
+    if (done.n_changed > 0) {
+      run.work.attach(run.mesh, run.policy());
+      if (run.strategy.patch.has_surface) take_again(run.surface, run.mesh, run.policy());
     }
-    pass.winners += n_changed;
-    if (n_changed > 0) {
-      work.attach(mesh, options.policy);
-      take_again(surface, mesh, options.policy);
-    }
-    if (!worst_rose) break;
+    if (!done.worst_rose) break;
   }
-  pass.worst = survey(mesh, options.policy).worst;
-  pass.seconds = control.seconds() - start;
+  pass.worst = survey(run.mesh, run.policy()).worst;
+  pass.seconds = run.control.seconds() - start;
   const bool changed = pass.winners > 0;
-  control.add(std::move(pass));
+  run.control.add(std::move(pass));
   return changed;
 }
 

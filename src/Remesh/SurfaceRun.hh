@@ -7,9 +7,10 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Improve.hh"
-#include "Remesh/RunControl.hh"
 
 namespace hfr {
+
+class SurfaceMesh;
 
 /// The surface of one run: made before its first pass unless it is frozen, and measured after its last.
 class SurfaceRun {

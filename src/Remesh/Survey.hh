@@ -3,11 +3,15 @@
 #define HFR_REMESH_SURVEY_HH
 
 #include <cstddef>
+#include <vector>
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
 
 namespace hfr {
+
+/// Decision value of MinDihedral for the regular tetrahedron, the largest there is.
+inline constexpr double kRegularDihedral = 8.0 / 9.0;
 
 /// The mesh in two numbers, from one pass over its cells.
 struct Survey {
@@ -15,6 +19,24 @@ struct Survey {
   std::size_t n_invalid = 0;  ///< cells whose volume is not positive beyond rounding
 };
 Survey survey(const TetMesh& mesh, par::Policy policy);
+
+/// sin² of an angle in degrees: what the dihedral metrics call their decision value.
+double dihedral_decision(double degrees);
+/// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
+double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
+/// Number of cells whose smallest dihedral is below so many degrees.
+std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy);
+/// The same as a share of the cells.
+double share_below(const TetMesh& mesh, double degrees, par::Policy policy);
+/// These cells, ascending.
+std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy);
+/// At most n of them, the worst first.
+std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,
+                                          par::Policy policy);
+/// At most `degrees`, such that no more than n cells are below.
+double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy);
+/// Cells whose volume is not positive beyond rounding, ascending.
+std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy);
 
 }  // namespace hfr
 

@@ -8,7 +8,7 @@
 
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 namespace {
@@ -41,19 +41,16 @@ double risen_from(double decision) {
 
 }  // namespace
 
-Trial::Trial(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal)
-    : mesh_(mesh),
-      work_(work),
-      control_(control),
-      policy_(options.policy),
+Trial::Trial(const Run& run, double goal)
+    : run_(run),
       goal_(dihedral_decision(goal)),
-      n_changes_(control.n_changes()),
-      copy_(mesh),
-      surface_(control.surface()) {
-  std::vector<double> values = angles_of(mesh, policy_);
+      n_changes_(run.control.n_changes()),
+      copy_(run.mesh),
+      surface_(run.surface) {
+  std::vector<double> values = angles_of(run.mesh, run.policy());
   if (values.empty()) return;
-  n_below_ = count(values, policy_, [&](double value) { return value < goal_; });
-  n_poorest_ = hundredth(mesh.n_logical_cells());
+  n_below_ = count(values, run_.policy(), [&](double value) { return value < goal_; });
+  n_poorest_ = hundredth(run.mesh.n_logical_cells());
   const auto last = values.begin() + static_cast<std::ptrdiff_t>(n_poorest_) - 1;
   std::nth_element(values.begin(), last, values.end());
   low_to_reach_ = risen_from(*last);
@@ -61,31 +58,26 @@ Trial::Trial(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 }
 
 bool Trial::pays() const {
-  if (mesh_.n_logical_cells() <= copy_.n_logical_cells()) return true;
-  const std::vector<double> values = angles_of(mesh_, policy_);
+  if (run_.mesh.n_logical_cells() <= copy_.n_logical_cells()) return true;
+  const std::vector<double> values = angles_of(run_.mesh, run_.policy());
   const auto n_below = [&](double decision) {
-    return count(values, policy_, [&](double value) { return value < decision; });
+    return count(values, run_.policy(), [&](double value) { return value < decision; });
   };
   const std::size_t n_low = n_below(low_to_reach_);
   if (n_below(worst_to_reach_) == 0 || n_low < n_poorest_) return true;
   const std::size_t n_missing = n_below(goal_);
   // With many more cells, a hundredth of them holds more: a percentile that has risen counts where no cell
   // has come to be below the angle.
-  return n_missing < n_below_ || (n_missing == n_below_ && n_low < hundredth(mesh_.n_logical_cells()));
+  return n_missing < n_below_ || (n_missing == n_below_ && n_low < hundredth(run_.mesh.n_logical_cells()));
 }
 
 bool Trial::settle() {
   if (pays()) return true;
-  mesh_.restore(std::move(copy_));
-  surface_.put_back(control_.surface());
-  work_.attach(mesh_, policy_);
-  control_.take_back_changes(n_changes_);
-  const Survey found = survey(mesh_, policy_);
-  PassReport pass;
-  pass.stage = pass.op = "undo";
-  pass.n_inverted = found.n_invalid;
-  pass.worst = found.worst;
-  control_.add(std::move(pass));
+  run_.mesh.restore(std::move(copy_));
+  surface_.put_back(run_.surface);
+  run_.work.attach(run_.mesh, run_.policy());
+  const Survey found = survey(run_.mesh, run_.policy());
+  run_.control.add_undo(n_changes_, found.n_invalid, found.worst);
   return false;
 }
 

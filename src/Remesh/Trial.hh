@@ -3,10 +3,8 @@
 #define HFR_REMESH_TRIAL_HH
 
 #include "HalfFace/TetMesh.hh"
-#include "Remesh/Improve.hh"
-#include "Remesh/RunControl.hh"
+#include "Remesh/Run.hh"
 #include "Remesh/SurfaceRun.hh"
-#include "Scheduler/Workspace.hh"
 
 namespace hfr {
 
@@ -22,7 +20,7 @@ inline constexpr double kLeastRise = 0.01;
 class Trial {
  public:
   /// Copies the mesh, and the surface of the run: 40 bytes a cell. `goal`: degrees that are worked for.
-  Trial(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal);
+  Trial(const Run& run, double goal);
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
 
@@ -33,10 +31,7 @@ class Trial {
  private:
   bool pays() const;
 
-  TetMesh& mesh_;
-  Workspace& work_;
-  RunControl& control_;
-  par::Policy policy_;
+  Run run_;
   double goal_;                              // as decision value, like the next two
   double worst_to_reach_ = 0;                // for a gain
   double low_to_reach_ = 0;                  // for the last cell of the poorest hundredth to have risen

@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Untangle.hh"
+
 #include <algorithm>
 #include <array>
 #include <numeric>
 
 #include "Operators/Unfold.hh"
 #include "Quality/Damage.hh"
-#include "Remesh/Pipeline.hh"
-#include "Remesh/Stage.hh"
+#include "Remesh/PassRunner.hh"
+#include "Remesh/Survey.hh"
+#include "Scheduler/SmoothPass.hh"
 
 namespace hfr {
 namespace {
 
-/// Focus of the untangling stage, as decision values of volume-length: from what is all but flat to what is
-/// merely poor. Wider only when the narrower one has stopped helping.
-constexpr std::array<double, 4> kUntangleFocus = {1e-4, 1e-2, 0.1, 0.3};
-constexpr int kMaxUntangleIterations = 40;
-constexpr int kMaxIdle = 2;
-constexpr int kMaxRestarts = 6;  // of reconnection after moving
-/// Layers of cells round the inverted ones whose vertices are unfolded together, and how often each vertex
-/// is visited.
-struct Width {
-  int layers;
-  int sweeps;
-};
-constexpr std::array<Width, 3> kWidths = {{{1, 6}, {3, 12}, {7, 24}}};
-constexpr int kNewtonSteps = 3;
 constexpr double kUnfoldNanoseconds = 5'000;  // a vertex
-constexpr int kPatience = 4;                  // sweeps without fewer inverted cells
 
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const TetMesh& mesh) {
@@ -49,9 +37,11 @@ double typical_six_volume(const TetMesh& mesh) {
 /// and none of the two has become more.
 class Unfolding {
  public:
-  Unfolding(TetMesh& mesh, Workspace& work, par::Policy policy) : mesh_(mesh), work_(work), policy_(policy) {}
+  Unfolding(const Run& run, const UntangleEffort& effort)
+      : mesh_(run.mesh), work_(run.work), policy_(run.policy()), effort_(effort) {}
 
-  void run(Width width, std::span<const CellHandle> invalid, RunControl& control, RoundCounts& counts) {
+  void run(UntangleEffort::Width width, std::span<const CellHandle> invalid, RunControl& control,
+           RoundCounts& counts) {
     gather(width.layers, invalid);
     counts.seeds = vertices_.size();
     if (vertices_.empty()) return;
@@ -63,7 +53,7 @@ class Unfolding {
     std::size_t least = n_set(invalidity());
     std::size_t n_invalid = least;
     int idle = 0;
-    for (int s = 0; s < width.sweeps && n_invalid > 0 && idle < kPatience && !control.stopped(); ++s) {
+    for (int s = 0; s < width.sweeps && n_invalid > 0 && idle < effort_.patience && !control.stopped(); ++s) {
       sweep(stars, groups);
       ++counts.rounds;
       n_invalid = n_set(invalidity());
@@ -130,7 +120,7 @@ class Unfolding {
         const std::uint32_t i = group[k];
         if (stars.link(i).empty()) return;
         const StarForm form(mesh_, vertices_[i], stars.link(i));
-        mesh_.set_point(vertices_[i], mesh_.point(vertices_[i]) + unfold(form, kNewtonSteps));
+        mesh_.set_point(vertices_[i], mesh_.point(vertices_[i]) + unfold(form, effort_.newton_steps));
       });
     }
   }
@@ -192,22 +182,23 @@ class Unfolding {
   TetMesh& mesh_;
   Workspace& work_;
   par::Policy policy_;
+  const UntangleEffort& effort_;
   std::vector<VertexHandle> vertices_;
   std::vector<CellHandle> cells_;
 };
 
 /// Wider and wider until nothing is invalid. Returns the number of cells that are.
-std::size_t unfold_by_moving(TetMesh& mesh, Workspace& work, const ImproveOptions& options,
-                             RunControl& control, int iteration) {
-  std::vector<CellHandle> invalid = invalid_cells(mesh, options.policy);
-  control.keep(mesh, invalid.empty());
-  for (const Width& width : kWidths) {
+std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int iteration) {
+  RunControl& control = run.control;
+  std::vector<CellHandle> invalid = invalid_cells(run.mesh, run.policy());
+  run.keep(invalid.empty());
+  for (const UntangleEffort::Width& width : effort.widths) {
     if (invalid.empty() || control.stopped()) break;
     const double start = control.seconds();
     RoundCounts counts;
-    Unfolding(mesh, work, options.policy).run(width, invalid, control, counts);
-    if (counts.winners > 0) ++work.clock;
-    invalid = invalid_cells(mesh, options.policy);
+    Unfolding(run, effort).run(width, invalid, control, counts);
+    if (counts.winners > 0) ++run.work.clock;
+    invalid = invalid_cells(run.mesh, run.policy());
     PassReport pass;
     pass.stage = "untangle";
     pass.op = "unfold";
@@ -216,52 +207,54 @@ std::size_t unfold_by_moving(TetMesh& mesh, Workspace& work, const ImproveOption
     pass.seeds = counts.seeds;
     pass.candidates = pass.winners = counts.winners;
     pass.n_inverted = invalid.size();
-    pass.worst = survey(mesh, options.policy).worst;
+    pass.worst = survey(run.mesh, run.policy()).worst;
     pass.seconds = pass.seconds_evaluate = control.seconds() - start;
     control.add(std::move(pass));
-    if (options.progress)
-      options.progress({"untangle", iteration, control.fraction(), invalid.size(),
-                        smallest_dihedral(mesh, options.policy)});
+    control.tell("untangle", iteration, invalid.size(),
+                 [&] { return smallest_dihedral(run.mesh, run.policy()); });
   }
   return invalid.size();
 }
 
+/// Iterates on what is invalid, the focus widening while it helps.
+void reconnect(PassRunner<Untangling>& runner, const Run& run, const UntangleEffort& effort) {
+  std::size_t level = 0;
+  std::size_t n_invalid = runner.n_invalid();
+  double worst = runner.worst();
+  int idle = 0;
+  for (int i = 1; i <= effort.iterations && runner.n_invalid() > 0 && !run.control.stopped(); ++i) {
+    const Turn turn{i, Focus{effort.focus[level]}};
+    std::size_t changes = runner.pass(PassKind::kSmooth, turn);
+    if (runner.n_invalid() == 0) break;
+    changes += runner.iterate(turn);
+    const bool better = runner.n_invalid() < n_invalid || runner.worst() > worst;
+    idle = better ? 0 : idle + 1;
+    n_invalid = runner.n_invalid();
+    worst = runner.worst();
+    // A wide focus makes room, and what has room is better moved.
+    if (changes > 0 && idle < effort.idle) continue;
+    if (++level == effort.focus.size()) break;
+    runner.look_again();
+    idle = 0;
+  }
+}
+
 }  // namespace
 
-void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
-  const bool moves = has(options.ops, Ops::kSmooth);
-  const Untangling metric{1.0 / typical_six_volume(mesh)};
+void untangle(const Run& run, const UntangleEffort& effort) {
+  const bool moves = has(run.strategy.pass.ops, Ops::kSmooth);
+  const Untangling metric{1.0 / typical_six_volume(run.mesh)};
   // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
-  if (moves && unfold_by_moving(mesh, work, options, control, 1) == 0) return;
-  for (int restart = 1; restart <= kMaxRestarts && !control.stopped(); ++restart) {
-    Stage<Untangling> stage(mesh, work, options, control, metric, "untangle");
-    const std::size_t n_at_start = stage.n_invalid();
-    std::size_t level = 0;
-    std::size_t n_invalid = n_at_start;
-    double worst = stage.worst();
-    int idle = 0;
-    for (int i = 1; i <= kMaxUntangleIterations && stage.n_invalid() > 0 && !control.stopped(); ++i) {
-      const Focus focus{kUntangleFocus[level]};
-      std::size_t changes = moves ? stage.smooth_pass(i, focus) : 0;
-      if (stage.n_invalid() == 0) break;
-      changes += stage.iterate(i, focus, true);
-      const bool better = stage.n_invalid() < n_invalid || stage.worst() > worst;
-      idle = better ? 0 : idle + 1;
-      n_invalid = stage.n_invalid();
-      worst = stage.worst();
-      // A wide focus makes room, and what has room is better moved.
-      if (changes > 0 && idle < kMaxIdle) continue;
-      if (++level == kUntangleFocus.size()) break;
-      stage.look_again();
-      idle = 0;
-    }
-    if (stage.n_invalid() > 0 && has(options.ops, Ops::kCluster))
-      stage.cluster_pass(restart, Focus{kUntangleFocus[0]});
-    if (stage.n_invalid() > 0 && has(options.ops, Ops::kInsert))
-      stage.insert_pass(restart, Focus{kUntangleFocus[0]});
-    if (stage.n_invalid() == 0) return;
-    const std::size_t left =
-        moves ? unfold_by_moving(mesh, work, options, control, 1 + restart) : stage.n_invalid();
+  if (moves && unfold_by_moving(run, effort, 1) == 0) return;
+  for (int restart = 1; restart <= effort.restarts && !run.control.stopped(); ++restart) {
+    PassRunner<Untangling> runner(run, metric, "untangle");
+    const std::size_t n_at_start = runner.n_invalid();
+    reconnect(runner, run, effort);
+    const Turn last{restart, Focus{effort.focus[0]}};
+    if (runner.n_invalid() > 0) runner.pass(PassKind::kCluster, last);
+    if (runner.n_invalid() > 0) runner.pass(PassKind::kInsert, last);
+    if (runner.n_invalid() == 0) return;
+    const std::size_t left = moves ? unfold_by_moving(run, effort, 1 + restart) : runner.n_invalid();
     if (left == 0 || left >= n_at_start) return;
   }
 }

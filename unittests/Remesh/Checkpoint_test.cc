@@ -13,7 +13,7 @@
 #include "IO/Hash.hh"
 #include "IO/MeshFile.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr::test {
 namespace {

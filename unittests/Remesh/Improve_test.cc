@@ -6,7 +6,7 @@
 #include "IO/Hash.hh"
 #include "Operators/LimitMeshes.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr::test {
 namespace {

@@ -7,7 +7,7 @@
 #include "Quality/Statistics.hh"
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr::test {
 namespace {

@@ -8,7 +8,9 @@
 #include "Operators/VertexInsertion.hh"
 #include "Operators/VertexRemoval.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/PatchSearch.hh"
+#include "Remesh/Refine.hh"
+#include "Remesh/StageBench.hh"
 
 namespace hfr::test {
 namespace {
@@ -133,15 +135,13 @@ TEST(SearchPatches, RaisesTheWorstAndIsTheSameForAllThreads) {
       TetMesh mesh = first;
       ImproveOptions options;
       options.policy = {threads, 1};
-      RunControl control(options);
-      Workspace work;
-      work.attach(mesh, {});
-      const bool changed = search_patches(mesh, work, options, control, 40, kLittleEffort);
+      StageBench bench(mesh, options);
+      const bool changed = search_patches(bench.run, 40, kLittleEffort);
       EXPECT_EQ(check(mesh), Ok);
       EXPECT_NEAR(volume(mesh), volume(first), 1e-12);
       EXPECT_TRUE(boundary_of(mesh) == boundary_of(first));
-      ASSERT_EQ(control.passes().size(), 1U);
-      EXPECT_EQ(control.passes()[0].winners > 0, changed);
+      ASSERT_EQ(bench.control().passes().size(), 1U);
+      EXPECT_EQ(bench.control().passes()[0].winners > 0, changed);
       EXPECT_EQ(identical(mesh, first), !changed);
       EXPECT_GE(smallest_dihedral(mesh, {}), before);
       if (threads == 1) raised += smallest_dihedral(mesh, {}) > before ? 1 : 0;
@@ -158,12 +158,10 @@ TEST(SearchPatches, KeepsToTheBoundOnCellsAndSaysSo) {
     TetMesh mesh = poor_box(s);
     ImproveOptions options = serial();
     options.max_cells = mesh.n_logical_cells();
-    RunControl control(options);
-    Workspace work;
-    work.attach(mesh, {});
-    search_patches(mesh, work, options, control, 40, kLittleEffort);
+    StageBench bench(mesh, options);
+    search_patches(bench.run, 40, kLittleEffort);
     EXPECT_LE(mesh.n_logical_cells(), options.max_cells);
-    held += control.met_cell_bound() ? 1 : 0;
+    held += bench.findings().met_cell_bound ? 1 : 0;
   }
   EXPECT_GT(held, 0);
 }
@@ -179,13 +177,11 @@ TEST(SearchPatches, TakesVerticesOutWhereNothingElseHelps) {
     TetMesh mesh = poor_box(s);
     const auto boundary = boundary_of(mesh);
     const ImproveOptions options = serial();
-    RunControl control(options);
-    Workspace work;
-    work.attach(mesh, {});
-    while (search_patches(mesh, work, options, control, 60, without)) {
+    StageBench bench(mesh, options);
+    while (search_patches(bench.run, 60, without)) {
     }
     const double before = smallest_dihedral(mesh, {});
-    raised += search_patches(mesh, work, options, control, 60, with) ? 1 : 0;
+    raised += search_patches(bench.run, 60, with) ? 1 : 0;
     EXPECT_GE(smallest_dihedral(mesh, {}), before);
     EXPECT_TRUE(boundary_of(mesh) == boundary);
     EXPECT_EQ(check(mesh), Ok);
@@ -209,10 +205,8 @@ TEST(SearchPatches, PutsAnApexOverEachNeedleOfABandAtOnce) {
     const auto with_rows = [&](std::size_t rows) {
       effort.rows = rows;
       TetMesh mesh = first;
-      RunControl control(options);
-      Workspace work;
-      work.attach(mesh, {});
-      search_patches(mesh, work, options, control, 20, effort);
+      StageBench bench(mesh, options);
+      search_patches(bench.run, 20, effort);
       EXPECT_EQ(check(mesh), Ok);
       EXPECT_TRUE(boundary_of(mesh) == boundary_of(first));
       return smallest_dihedral(mesh, {});
@@ -232,10 +226,8 @@ TEST(SearchPatches, LeavesAMeshThatIsPoorThroughoutAlone) {
   }
   const TetMesh first = mesh;
   const ImproveOptions options = serial();
-  RunControl control(options);
-  Workspace work;
-  work.attach(mesh, {});
-  EXPECT_FALSE(search_patches(mesh, work, options, control, 40, kLittleEffort));
+  StageBench bench(mesh, options);
+  EXPECT_FALSE(search_patches(bench.run, 40, kLittleEffort));
   EXPECT_TRUE(identical(mesh, first));
 }
 
@@ -246,18 +238,16 @@ TEST(Refine, StopsWhereTheBoundOnCellsLeavesNoRoom) {
     ImproveOptions options = serial();
     options.ops = Ops::kInsert;
     options.max_cells = first.n_logical_cells() + room;
-    RunControl control(options);
-    Workspace work;
-    work.attach(mesh, {});
-    refine(mesh, work, options, control, 30, 1.1);
+    StageBench bench(mesh, options);
+    insert_where_poor(bench.run, {.below = 30, .gain = 1.1});
     EXPECT_LE(mesh.n_logical_cells(), options.max_cells);
     EXPECT_EQ(mesh.n_logical_cells() > first.n_logical_cells(), room > 0);
-    EXPECT_EQ(control.met_cell_bound(), room < 100'000);
+    EXPECT_EQ(bench.findings().met_cell_bound, room < 100'000);
     if (room == 0) {
-      EXPECT_TRUE(control.passes().empty()) << "seeds were evaluated in vain";
+      EXPECT_TRUE(bench.control().passes().empty()) << "seeds were evaluated in vain";
     }
     std::size_t n_seeds = 0;
-    for (const PassReport& pass : control.passes()) n_seeds += pass.seeds;
+    for (const PassReport& pass : bench.control().passes()) n_seeds += pass.seeds;
     if (room == 40) {
       EXPECT_LT(n_seeds, n_below(first, 30, {}));
     }
@@ -271,11 +261,9 @@ TEST(Refine, LetsPoorCellsMultiplyOnlyWhereNothingIsSpared) {
     TetMesh mesh = first;
     ImproveOptions options = serial();
     options.ops = Ops::kInsert;
-    RunControl control(options);
-    if (!spare) control.spare_nothing();
-    Workspace work;
-    work.attach(mesh, {});
-    refine(mesh, work, options, control, 45, 1.05);
+    StageBench bench(mesh, options);
+    bench.run.spares_nothing = !spare;
+    insert_where_poor(bench.run, {.below = 45, .gain = 1.05});
     const std::size_t n_new = mesh.n_logical_vertices() - first.n_logical_vertices();
     ASSERT_GT(n_new, 20U);
     const std::size_t n_poor = n_below(mesh, 45, {});
@@ -291,10 +279,8 @@ TEST(SearchPatches, LeavesAMeshWithInvalidCellsAlone) {
   TetMesh mesh = small_cavity();
   const TetMesh first = mesh;
   ImproveOptions options = serial();
-  RunControl control(options);
-  Workspace work;
-  work.attach(mesh, {});
-  EXPECT_FALSE(search_patches(mesh, work, options, control, 40, kLittleEffort));
+  StageBench bench(mesh, options);
+  EXPECT_FALSE(search_patches(bench.run, 40, kLittleEffort));
   EXPECT_TRUE(identical(mesh, first));
 }
 

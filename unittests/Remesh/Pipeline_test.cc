@@ -1,57 +1,82 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The order of stages, as docs/pipeline.md has it.
 #include "Remesh/Pipeline.hh"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "Remesh/Improve.hh"
 #include "Remesh/Meshes.hh"
 
 namespace hfr::test {
 namespace {
 
-TEST(Pipeline, DihedralDecisionIsTheSquareOfTheSine) {
-  EXPECT_NEAR(dihedral_decision(30), 0.25, 1e-15);
-  EXPECT_NEAR(dihedral_decision(60), 0.75, 1e-15);
-  EXPECT_NEAR(dihedral_decision(20), decision_value(Metric::kMinDihedral, 20), 1e-15);
+/// Names of the stages in the order of their passes, each once for passes in a row.
+std::vector<std::string> stages_of(TetMesh mesh, const ImproveOptions& options) {
+  std::vector<std::string> stages;
+  for (const PassReport& pass : improve(mesh, options).passes)
+    if (stages.empty() || stages.back() != pass.stage) stages.push_back(pass.stage);
+  return stages;
 }
 
-TEST(Pipeline, SmallestDihedralIsThatOfTheWorstCell) {
-  const TetMesh mesh = jittered(5, 0.2, 1);
-  double smallest = 180;
-  for (CellHandle c : mesh.cells()) {
-    const auto& v = mesh.cell(c).v;
-    for (double angle : dihedrals(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])))
-      smallest = std::min(smallest, angle);
+/// Whether the names stand in that order, each of them.
+::testing::AssertionResult in_order(const std::vector<std::string>& stages,
+                                    const std::vector<std::string>& wanted) {
+  auto at = stages.begin();
+  for (const std::string& name : wanted) {
+    at = std::find(at, stages.end(), name);
+    if (at == stages.end()) {
+      auto failure = ::testing::AssertionFailure() << "no stage '" << name << "' there:";
+      for (const std::string& stage : stages) failure << ' ' << stage;
+      return failure;
+    }
   }
-  for (const int threads : {1, 3}) EXPECT_NEAR(smallest_dihedral(mesh, {threads, 1}), smallest, 1e-9);
-  EXPECT_LT(smallest_dihedral(jittered(5, 0.6, 1), {}), 0);
+  return ::testing::AssertionSuccess();
 }
 
-TEST(Pipeline, InvalidCellsAreTheInvertedAndTheFlatOnes) {
-  TetMesh mesh = built(generate::box({3, 3, 3}));
-  EXPECT_TRUE(invalid_cells(mesh, {}).empty());
-  const VertexHandle inner = V((1 * 4 + 1) * 4 + 1);
-  mesh.set_point(inner,
-                 {0, 1.0 / 3, 1.0 / 3});  // onto its neighbour on the surface: flat cells, inverted none
-  const auto flat = invalid_cells(mesh, {});
-  EXPECT_FALSE(flat.empty());
-  mesh.set_point(inner, {-0.2, 1.0 / 3, 1.0 / 3});
-  const auto inverted = invalid_cells(mesh, {});
-  EXPECT_GE(inverted.size(), n_inverted(mesh));
-  EXPECT_GT(n_inverted(mesh), 0U);
-  EXPECT_TRUE(std::is_sorted(inverted.begin(), inverted.end()));
-  EXPECT_EQ(invalid_cells(mesh, {3, 1}), inverted);
+/// A box with a few poor cells, and one with inverted ones.
+TetMesh poor() { return jittered(6, 0.3, 2); }
+TetMesh tangled() { return jittered(5, 0.6, 3); }
+
+TEST(Pipeline, DefaultRunsMendThenImproveAllThenRaiseTheWorst) {
+  EXPECT_TRUE(in_order(stages_of(tangled(), serial()), {"untangle", "bulk", "polish"}));
+  EXPECT_FALSE(in_order(stages_of(poor(), serial()), {"untangle"}));
 }
 
-TEST(Pipeline, UntangleStopsWhenNothingIsInvertedAndTouchesNothingElse) {
-  TetMesh mesh = jittered(5, 0.1, 1);
-  const TetMesh before = mesh;
-  Workspace work;
-  work.attach(mesh, {});
+TEST(Pipeline, GoalThatFewCellsMissLeavesTheOthersAlone) {
   ImproveOptions options = serial();
-  RunControl control(options);
-  untangle(mesh, work, options, control);
-  EXPECT_TRUE(identical(mesh, before));
-  EXPECT_TRUE(control.passes().empty());
+  options.min_dihedral = 10;
+  const auto stages = stages_of(poor(), options);
+  ASSERT_FALSE(stages.empty());
+  EXPECT_EQ(stages.front(), "polish");
+  EXPECT_EQ(std::count(stages.begin(), stages.end(), "bulk"), 0);
+}
+
+TEST(Pipeline, GoalThatManyCellsMissBeginsWithAllCells) {
+  ImproveOptions options = serial();
+  options.min_dihedral = 40;
+  EXPECT_TRUE(in_order(stages_of(poor(), options), {"bulk", "polish"}));
+}
+
+TEST(Pipeline, AnyCostSearchesPatchesAfterADefaultRun) {
+  ImproveOptions options = serial();
+  options.raise_min_dihedral = true;
+  EXPECT_TRUE(in_order(stages_of(jittered(3, 0.3, 2), options), {"bulk", "polish", "patches"}));
+}
+
+TEST(Pipeline, CoarseningComesBeforeTheBulkStage) {
+  ImproveOptions options = serial();
+  options.coarsen = true;
+  EXPECT_TRUE(in_order(stages_of(poor(), options), {"coarsen", "bulk", "polish"}));
+}
+
+TEST(Pipeline, CompatIsThePapersPipelineAlone) {
+  ImproveOptions options = serial();
+  options.compat = Compat::kJpdc2013;
+  EXPECT_EQ(stages_of(tangled(), options), std::vector<std::string>{"jpdc2013"});
 }
 
 }  // namespace

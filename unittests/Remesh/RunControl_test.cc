@@ -3,14 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace hfr::test {
 namespace {
 
+constexpr double kNoTime = 1e-12;
+constexpr double kForEver = std::numeric_limits<double>::infinity();
+
 TEST(RunControl, FirstReasonToStopStays) {
-  ImproveOptions options;
   bool cancelled = false;
-  options.cancel = [&] { return cancelled; };
-  RunControl control(options);
+  RunControl control(kForEver, [&] { return cancelled; });
   EXPECT_FALSE(control.stopped());
   EXPECT_FALSE(control.reason());
   cancelled = true;
@@ -18,29 +21,41 @@ TEST(RunControl, FirstReasonToStopStays) {
   cancelled = false;
   EXPECT_TRUE(control.stopped());
   EXPECT_EQ(control.reason(), Stop::kCancelled);
-  options.time_limit = 1e-12;
-  EXPECT_TRUE(control.stopped());
+  control.stop(Stop::kTimeLimit);
   EXPECT_EQ(control.reason(), Stop::kCancelled);
 }
 
 TEST(RunControl, TimeLimitStops) {
-  ImproveOptions options;
-  options.time_limit = 1e-12;
-  RunControl control(options);
-  while (control.seconds() <= options.time_limit) {
+  RunControl control(kNoTime);
+  while (control.seconds() <= kNoTime) {
   }
+  EXPECT_LT(control.seconds_left(), 0);
   EXPECT_TRUE(control.stopped());
   EXPECT_EQ(control.reason(), Stop::kTimeLimit);
 }
 
 TEST(RunControl, FractionNeverGoesBack) {
-  const ImproveOptions options;
-  RunControl control(options);
+  RunControl control;
   control.set_fraction(0.4);
   control.set_fraction(0.2);
   EXPECT_EQ(control.fraction(), 0.4);
   control.set_fraction(0.6);
   EXPECT_EQ(control.fraction(), 0.6);
+}
+
+TEST(RunControl, UndoTakesBackWhatWasCounted) {
+  RunControl control;
+  PassReport pass;
+  pass.winners = 3;
+  control.add(pass);
+  const std::size_t before = control.n_changes();
+  control.add(pass);
+  EXPECT_EQ(control.n_changes(), 6U);
+  control.add_undo(before, 2, -0.5);
+  EXPECT_EQ(control.n_changes(), 3U);
+  ASSERT_EQ(control.passes().size(), 3U);
+  EXPECT_EQ(control.passes().back().op, "undo");
+  EXPECT_EQ(control.passes().back().n_inverted, 2U);
 }
 
 }  // namespace

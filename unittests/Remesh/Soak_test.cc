@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr::test {
 namespace {

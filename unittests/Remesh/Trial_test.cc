@@ -6,7 +6,7 @@
 #include "HalfFace/Errors.hh"
 #include "IO/Hash.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/StageBench.hh"
 
 namespace hfr::test {
 namespace {
@@ -26,26 +26,22 @@ void cut(TetMesh& mesh, CellHandle c) {
 }
 
 struct Bench {
-  explicit Bench(TetMesh wanted) : mesh(std::move(wanted)), options(serial()), control(options) {
-    work.attach(mesh, {});
-  }
+  explicit Bench(TetMesh wanted) : mesh(std::move(wanted)), stage(mesh, serial()) {}
   TetMesh mesh;
-  ImproveOptions options;
-  RunControl control;
-  Workspace work;
+  StageBench stage;
 };
 
 TEST(Trial, CellsThatRaiseNothingGoAgain) {
   Bench bench(jittered(3, 0.2, 1));
   const std::uint64_t hash = io::mesh_hash(bench.mesh);
-  Trial trial(bench.mesh, bench.work, bench.options, bench.control, 1);
+  Trial trial(bench.stage.run, 1);
   cut(bench.mesh, C(11));
   EXPECT_FALSE(trial.settle());
   EXPECT_EQ(io::mesh_hash(bench.mesh), hash);
-  EXPECT_EQ(bench.work.quality.size(), bench.mesh.n_cells());
-  ASSERT_EQ(bench.control.passes().size(), 1U);
-  EXPECT_EQ(bench.control.passes()[0].stage, "undo");
-  EXPECT_EQ(bench.control.n_changes(), 0U);
+  EXPECT_EQ(bench.stage.run.work.quality.size(), bench.mesh.n_cells());
+  ASSERT_EQ(bench.stage.control().passes().size(), 1U);
+  EXPECT_EQ(bench.stage.control().passes()[0].stage, "undo");
+  EXPECT_EQ(bench.stage.control().n_changes(), 0U);
 }
 
 TEST(Trial, CellsThatRaiseTheWorstStay) {
@@ -53,7 +49,7 @@ TEST(Trial, CellsThatRaiseTheWorstStay) {
     // Two flat cells on a triangle, which three round the edge between their tips are better than.
     Bench bench(bipyramid(0.2));
     const double before = smallest_dihedral(bench.mesh, {});
-    Trial trial(bench.mesh, bench.work, bench.options, bench.control, goal);
+    Trial trial(bench.stage.run, goal);
     Cavity cavity;
     cavity.dead.push_back(C(0));
     cavity.dead.push_back(C(1));
@@ -61,10 +57,10 @@ TEST(Trial, CellsThatRaiseTheWorstStay) {
     replace(bench.mesh, cavity);
     ASSERT_EQ(check(bench.mesh), Ok);
     ASSERT_GT(smallest_dihedral(bench.mesh, {}), before + 1);
-    bench.work.attach(bench.mesh, {});
+    bench.stage.run.work.attach(bench.mesh, {});
     EXPECT_TRUE(trial.settle()) << goal;
     EXPECT_EQ(bench.mesh.n_cells(), 3U);
-    EXPECT_TRUE(bench.control.passes().empty());
+    EXPECT_TRUE(bench.stage.control().passes().empty());
   }
 }
 

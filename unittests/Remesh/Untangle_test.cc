@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Untangle.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/StageBench.hh"
 
 namespace hfr::test {
 namespace {
@@ -132,6 +133,15 @@ TEST(MinCells, CellsStayCloseToTheInputUnlessTheLargestAngleIsAskedFor) {
     fewer_at_any_cost += improve(free, options).after.cells < bounded.n_cells() ? 1 : 0;
   }
   EXPECT_GT(fewer_at_any_cost, 0U) << "nothing was held back";
+}
+
+TEST(Untangle, StopsWhenNothingIsInvertedAndTouchesNothingElse) {
+  TetMesh mesh = jittered(5, 0.1, 1);
+  const TetMesh before = mesh;
+  StageBench bench(mesh, serial());
+  untangle(bench.run, UntangleEffort{});
+  EXPECT_TRUE(identical(mesh, before));
+  EXPECT_TRUE(bench.control().passes().empty());
 }
 
 }  // namespace

@@ -9,7 +9,8 @@
 #include "HalfFace/Errors.hh"
 #include "IO/Hash.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/PatchSearch.hh"
+#include "Remesh/StageBench.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
@@ -103,12 +104,9 @@ TEST(Periodic, PatchesThatAreSearchedLeaveThemAlone) {
   options.ops = ImproveOptions{}.ops;
   std::array<decltype(shadow(mesh, 1)), 2> before = {shadow(mesh, 1), shadow(mesh, 3)};
   const double worst = smallest_dihedral(mesh, {});
-  RunControl control(options);
   SurfaceMesh surface(mesh, options.surface);
-  control.set_surface(&surface);
-  Workspace work;
-  work.attach(mesh, {});
-  EXPECT_TRUE(search_patches(mesh, work, options, control, 40, kLittleEffort));
+  StageBench bench(mesh, options, &surface);
+  EXPECT_TRUE(search_patches(bench.run, 40, kLittleEffort));
   EXPECT_EQ(check(mesh), Ok);
   EXPECT_TRUE(surface.in_step(mesh));
   EXPECT_GT(smallest_dihedral(mesh, {}), worst);

@@ -8,7 +8,8 @@
 #include "HalfFace/Check.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/Patch.hh"
-#include "Remesh/Pipeline.hh"
+#include "Remesh/PatchSearch.hh"
+#include "Remesh/StageBench.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
@@ -133,12 +134,9 @@ Searched searched(TetMesh mesh, const SurfaceOptions& wanted, int threads) {
   ImproveOptions options;
   options.policy = {threads, 1};
   options.surface = wanted;
-  RunControl control(options);
   SurfaceMesh surface(mesh, wanted);
-  control.set_surface(&surface);
-  Workspace work;
-  work.attach(mesh, {});
-  const bool changed = search_patches(mesh, work, options, control, 40, kLittleEffort);
+  StageBench bench(mesh, options, &surface);
+  const bool changed = search_patches(bench.run, 40, kLittleEffort);
   const bool in_step = surface.in_step(mesh);
   const bool same_faces = boundary_of(mesh) == boundary;
   return {std::move(mesh), changed, in_step, same_faces};

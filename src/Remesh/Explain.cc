@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Explain.hh"
+
+#include <algorithm>
+#include <vector>
+
+#include "Remesh/Limits.hh"
+#include "Remesh/SurfaceRun.hh"
+
+namespace hfr {
+namespace {
+
+/// The first target that the worst cells were raised to in vain; 0: none.
+double missed_target(const Strategy& strategy, double smallest) {
+  const auto& targets = strategy.any_cost ? strategy.any_cost->targets : strategy.targets.targets;
+  const auto at = std::find_if(targets.begin(), targets.end(),
+                               [&](const TargetAngle& target) { return target.degrees > smallest; });
+  return at == targets.end() ? 0.0 : at->degrees;
+}
+
+/// What ended the run before it was done; kNotFound where nothing did.
+Limit ended_by(const ImproveOptions& options, const Result& result) {
+  switch (result.stop) {
+    case Stop::kTimeLimit:
+      return Limit::kTimeLimit;
+    case Stop::kCancelled:
+      return Limit::kCancelled;
+    case Stop::kDeviceLost:
+      return Limit::kDeviceLost;
+    case Stop::kIterations:
+      // Only where the last one that was allowed still changed something.
+      return std::any_of(result.passes.begin(), result.passes.end(),
+                         [&](const PassReport& pass) {
+                           return pass.iteration == options.iterations && pass.winners > 0 &&
+                                  (pass.stage == "bulk" || pass.stage == "polish");
+                         })
+                 ? Limit::kIterations
+                 : Limit::kNotFound;
+    case Stop::kGoal:
+    case Stop::kNoProgress:
+      break;
+  }
+  return Limit::kNotFound;
+}
+
+}  // namespace
+
+void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy& strategy,
+             std::size_t max_cells_met, Result& result) {
+  result.stuck_below =
+      strategy.goal ? strategy.goal->degrees : missed_target(strategy, result.after.min_dihedral.min);
+  if (result.stuck_below == 0) return;
+  std::vector<StuckCell>& stuck = result.stuck;
+  stuck = stuck_cells(mesh, result.stuck_below, result.unfillable_faces, options.policy);
+  const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
+  if (!frozen) blame_features(mesh, stuck, result.stuck_below, options);
+  const Limit ended = ended_by(options, result);
+  for (StuckCell& cell : stuck)
+    if (cell.limit == Limit::kNotFound) cell.limit = ended;
+  if (max_cells_met > 0 && has(options.ops, Ops::kInsert))
+    blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
+  if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, options);
+}
+
+}  // namespace hfr

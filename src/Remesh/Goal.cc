@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Goal.hh"
+
+#include "Remesh/LastCells.hh"
+#include "Remesh/Pipeline.hh"
+#include "Remesh/Polish.hh"
+#include "Remesh/Survey.hh"
+#include "Remesh/Targets.hh"
+#include "Remesh/Trial.hh"
+
+namespace hfr {
+namespace {
+
+double smallest(const Run& run) { return smallest_dihedral(run.mesh, run.policy()); }
+
+/// The cells that miss the goal; what misses it then as far as it goes, and the goal once more if that
+/// helped.
+bool attempt(const Run& run, const GoalEffort& goal) {
+  const Strategy& strategy = run.strategy;
+  if (polish(run, strategy.polish, goal.degrees)) return true;
+  const double missed_at = smallest(run);
+  raise_to_targets(run, strategy.targets.targets);
+  if (!run.control.stopped()) improve_last_cells(run, strategy.last_cells, strategy.targets.targets);
+  return !run.control.stopped() && smallest(run) > missed_at && polish(run, strategy.polish, goal.degrees);
+}
+
+}  // namespace
+
+bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched) {
+  const Strategy& strategy = run.strategy;
+  if (attempt(run, goal)) return true;
+  CellBounds bounds = run.bounds;
+  if (run.findings.met_cell_bound && !run.control.stopped()) {
+    run.findings.forget_cell_bound();
+    const Run beyond = run.within(strategy.bounds_asked);
+    Trial trial(run, goal.degrees);
+    if (attempt(beyond, goal)) return true;
+    if (trial.settle()) bounds = beyond.bounds;
+  }
+  if (run.control.stopped() || !goal.goes_on) return false;
+  const bool many_miss =
+      cells_are_untouched && share_below(run.mesh, goal.degrees, run.policy()) > goal.few_miss;
+  if (!run.surface && !many_miss) return false;
+  const Run further = run.within(bounds);
+  Trial trial(run, goal.degrees);
+  if (!run.surface)
+    improve_all(further, smallest(run), strategy.targets.targets);
+  else if (cells_are_untouched)
+    improve_all(further, smallest(run), strategy.targets.beyond);
+  else
+    raise_worst_angles(further, smallest(run), strategy.targets.beyond);
+  if (polish(further, strategy.polish, goal.degrees)) return true;
+  trial.settle();
+  return false;
+}
+
+}  // namespace hfr

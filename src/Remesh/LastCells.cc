@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/LastCells.hh"
+
+#include "Remesh/Neighbourhoods.hh"
+#include "Remesh/PatchSearch.hh"
+#include "Remesh/Survey.hh"
+
+namespace hfr {
+
+bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span<const TargetAngle> targets) {
+  const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
+  const double at_first = smallest();
+  double now = at_first;
+  for (const TargetAngle& target : targets) {
+    if (target.degrees > effort.up_to || run.control.stopped()) break;
+    if (now >= target.degrees) continue;
+    if (share_below(run.mesh, target.degrees, run.policy()) > target.largest_share) break;
+    const auto search = [&](const std::vector<PatchEffort>& efforts) {
+      for (const PatchEffort& how : efforts)
+        if (now < target.degrees && search_patches(run, target.degrees, how)) now = smallest();
+    };
+    search(effort.patches_first);
+    for (double before = 0; now < target.degrees && now > effort.again * before && !run.control.stopped();) {
+      before = now;
+      const auto& neighbourhoods = run.strategy.neighbourhoods;
+      const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
+      improve_neighbourhoods(run, neighbourhoods,
+                             degrees_with_few_below(run.mesh, target.degrees, few, run.policy()));
+      now = smallest();
+    }
+    if (target.degrees <= effort.patches_up_to) search(effort.patches);
+    if (now < target.degrees) break;
+  }
+  // An invalid cell that cannot become valid has not risen by staying what it is.
+  if (run.findings.is_unfillable && at_first <= 0) return now > at_first;
+  return now > effort.rise * at_first;
+}
+
+}  // namespace hfr

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/PassState.hh"
+
+#include <algorithm>
+#include <utility>
+
+#include "HalfFace/Errors.hh"
+#include "Quality/Metrics.hh"
+#include "Remesh/DevicePasses.hh"
+#include "Remesh/Survey.hh"
+
+namespace hfr {
+
+PassState::PassState(Run run, std::string stage) : run_(run), stage_(std::move(stage)) {
+  std::fill(run_.work.pending.begin(), run_.work.pending.end(), 0xff);
+  run_.work.all_touched = true;
+  count(Focus{});
+}
+
+void PassState::look_again() {
+  to_host();
+  looked_.fill(0);
+  std::fill(run_.work.pending.begin(), run_.work.pending.end(), 0xff);
+}
+
+Worklist PassState::worklist(PassKind kind, std::uint8_t pending_bit, const Focus& focus) {
+  to_host();
+  const TetMesh& mesh = run_.mesh;
+  Workspace& work = run_.work;
+  if (focus.everything()) {
+    HFR_ASSERT(pending_bit != 0);
+    return Worklist(mesh, run_.policy(), [&](CellHandle c) {
+      if (!(work.pending[c.idx()] & pending_bit)) return false;
+      work.pending[c.idx()] = static_cast<std::uint8_t>(work.pending[c.idx()] & ~pending_bit);
+      return true;
+    });
+  }
+  const std::uint32_t since = std::exchange(looked_[static_cast<std::size_t>(kind)], work.clock);
+  return Worklist(mesh, run_.policy(), poor(focus.below), [&](CellHandle c) {
+    const auto& v = mesh.cell(c).v;
+    return std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return work.changed[u.idx()] > since; }) &&
+           (focus.around.empty() || std::any_of(v.begin(), v.end(), [&](VertexHandle u) {
+              return u.idx() >= focus.around.size() || focus.around[u.idx()];
+            }));
+  });
+}
+
+Worklist PassState::changed_since(std::uint32_t since, const Focus& focus) {
+  const TetMesh& mesh = run_.mesh;
+  const auto has_changed = [&](CellHandle c) {
+    for (VertexHandle v : mesh.cell(c).v)
+      if (run_.work.changed[v.idx()] > since) return true;
+    return false;
+  };
+  if (focus.everything()) return Worklist(mesh, run_.policy(), has_changed);
+  return Worklist(mesh, run_.policy(), poor(focus.below), has_changed);
+}
+
+std::span<const Index> PassState::poor(double value) {
+  to_host();
+  Workspace& work = run_.work;
+  const auto& quality = work.quality;
+  if (work.all_touched || value != poor_below_) {
+    poor_ =
+        par::compact<Index>(run_.policy(), quality.size(), [&](std::size_t i) { return quality[i] < value; });
+  } else if (!work.touched.empty()) {
+    std::erase_if(poor_, [&](Index c) { return !(quality[c] < value); });
+    const auto n_old = static_cast<std::ptrdiff_t>(poor_.size());
+    for (Index c : work.touched)
+      if (quality[c] < value) poor_.push_back(c);
+    std::sort(poor_.begin() + n_old, poor_.end());
+    std::inplace_merge(poor_.begin(), poor_.begin() + n_old, poor_.end());
+    poor_.erase(std::unique(poor_.begin(), poor_.end()), poor_.end());
+  }
+  poor_below_ = value;
+  work.clear_touched();
+  return poor_;
+}
+
+void PassState::count(const Focus& focus) {
+  to_host();
+  struct Sum {
+    std::size_t invalid = 0;
+    double worst = std::numeric_limits<double>::infinity();
+  };
+  const auto& quality = run_.work.quality;
+  const auto sum_over = [&](std::size_t n, auto&& cell) {
+    return par::reduce(
+        run_.policy(), n, Sum{},
+        [&](std::size_t i) {
+          const double q = quality[cell(i)];
+          return Sum{static_cast<std::size_t>(q > 0 ? 0 : 1), q};
+        },
+        [](Sum a, Sum b) {
+          return Sum{a.invalid + b.invalid, std::min(a.worst, b.worst)};
+        });
+  };
+  Sum sum;
+  if (!focus.everything() && focus.below > 0) {
+    const auto cells = poor(focus.below);
+    sum = sum_over(cells.size(), [&](std::size_t i) { return cells[i]; });
+  }
+  if (!(sum.worst < focus.below)) sum = sum_over(quality.size(), [](std::size_t i) { return i; });
+  n_invalid_ = sum.invalid;
+  worst_ = sum.worst;
+}
+
+void PassState::report(const char* op, const Turn& turn, const RoundCounts& counts, double seconds) {
+  if (turn.replayed_rounds) return;
+  const bool on_device = device_ && device_->is_resident();
+  PassReport pass;
+  pass.stage = stage_;
+  pass.op = op;
+  pass.iteration = turn.iteration;
+  pass.rounds = counts.rounds;
+  pass.seeds = counts.seeds;
+  pass.candidates = counts.candidates;
+  pass.winners = counts.winners;
+  pass.sub_rounds = counts.sub_rounds;
+  pass.n_inverted = n_invalid_;
+  pass.worst = worst_;
+  pass.seconds = seconds;
+  pass.seconds_evaluate = counts.seconds_evaluate;
+  pass.seconds_select = counts.seconds_select;
+  pass.seconds_commit = counts.seconds_commit;
+  pass.on_device = on_device;
+  run_.control.add(std::move(pass));
+  run_.control.tell(stage_, turn.iteration, n_invalid_, [&] {
+    return on_device ? report_value(Metric::kMinDihedral, run_.device.mesh()->smallest_dihedral())
+                     : smallest_dihedral(run_.mesh, run_.policy());
+  });
+}
+
+void PassState::to_host() {
+  if (device_) device_->bring_back();
+}
+
+}  // namespace hfr

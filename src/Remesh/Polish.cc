@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Polish.hh"
+
+#include <algorithm>
+
+#include "Remesh/Survey.hh"
+
+namespace hfr {
+
+template <class Metric>
+bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, double decision,
+                   const FewCells& few) {
+  RunControl& control = runner.run().control;
+  std::size_t n_poor = runner.n_below(decision);
+  double worst = runner.worst();
+  int idle = 0;
+  bool has_dug = false;
+  std::size_t n_poor_dug = 0;  // when vertices were last inserted
+  double worst_dug = 0;
+  for (int i = 1; i <= effort.iterations && n_poor > 0 && !control.stopped(); ++i) {
+    const Turn turn{i, Focus{decision}};
+    const std::size_t changes = runner.iterate(turn);
+    const std::size_t n_poor_now = runner.n_below(decision);
+    const double enough = worst > 0 ? worst * effort.gain : worst;
+    const std::size_t at_least = n_poor > effort.many ? n_poor / effort.least_fewer : 0;
+    const bool fewer = n_poor_now + at_least < n_poor;
+    idle = fewer || runner.worst() > enough ? 0 : idle + 1;
+    n_poor = n_poor_now;
+    worst = runner.worst();
+    if (n_poor == 0 || (changes > 0 && idle < effort.idle)) continue;
+    // What helps from here on is tried once; the next idle iteration goes on to what is dearer.
+    if (runner.pass(PassKind::kFan, turn) > 0) {
+      idle = effort.idle - 1;
+      continue;
+    }
+    // Cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex. Where
+    // the last ones have not paid, more of them would only fill the place with poor cells.
+    const bool pays =
+        !has_dug || 10 * n_poor <= effort.dig_again_tenths * n_poor_dug || worst > worst_dug * effort.gain;
+    if (n_poor <= few.to_dig && pays) {
+      has_dug = true;
+      n_poor_dug = n_poor;
+      worst_dug = worst;
+      if (runner.pass(PassKind::kInsert, turn) > 0) {
+        idle = effort.idle - 1;
+        continue;
+      }
+    }
+    if (n_poor > few.to_search || runner.pass(PassKind::kCluster, turn) == 0) break;
+    idle = effort.idle - 1;
+  }
+  return n_poor == 0;
+}
+template bool iterate_below(PassRunner<MinSine2>&, const PolishEffort&, double, const FewCells&);
+template bool iterate_below(PassRunner<MinDihedral>&, const PolishEffort&, double, const FewCells&);
+
+bool polish(const Run& run, const PolishEffort& effort, double degrees, double largest_share) {
+  return polish_to(run, effort, dihedral_decision(degrees), largest_share);
+}
+
+bool polish_to(const Run& run, const PolishEffort& effort, double decision, double largest_share) {
+  FewCells few;
+  few.to_dig = std::max(effort.few_to_dig, run.mesh.n_logical_cells() / effort.dig_share);
+  few.to_search = effort.few_to_search > 0 ? effort.few_to_search : few.to_dig;
+  {
+    PassRunner<MinSine2> runner(run, MinSine2{}, "polish", effort.selection);
+    const auto n_poor = static_cast<double>(runner.n_below(decision));
+    if (n_poor > largest_share * static_cast<double>(run.mesh.n_logical_cells())) return false;
+    if (iterate_below(runner, effort, decision, few)) return true;
+  }
+  // What is left may be obtuse only, or give way once obtuse angles do not count.
+  PassRunner<MinDihedral> runner(run, MinDihedral{}, "finish", effort.selection);
+  return iterate_below(runner, effort, decision, few);
+}
+
+}  // namespace hfr

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Refine.hh"
+
+#include <algorithm>
+
+#include "Remesh/PassRunner.hh"
+#include "Remesh/Survey.hh"
+#include "Remesh/Trial.hh"
+
+namespace hfr {
+
+void insert_where_poor(const Run& run, const RefineEffort& effort) {
+  PassRunner<MinSine2> runner(run, MinSine2{}, "refine");
+  const Focus focus{dihedral_decision(effort.below)};
+  std::size_t n_poor = runner.n_below(focus.below);
+  for (int i = 1; i <= effort.iterations && n_poor > 0 && !run.control.stopped(); ++i) {
+    const Turn turn{i, focus, /*removes_vertices=*/false};
+    runner.iterate(turn);
+    const std::size_t n_left = runner.n_below(focus.below);
+    const bool helps = static_cast<double>(n_left) < effort.fewer * static_cast<double>(n_poor);
+    n_poor = n_left;
+    if (!helps && runner.insert(turn, effort.gain) * effort.one_in <= n_poor) return;
+  }
+}
+
+bool refine(const Run& run, const RefineEffort& effort) {
+  if (run.control.stopped() || smallest_dihedral(run.mesh, run.policy()) >= effort.below) return false;
+  const double share = share_below(run.mesh, effort.below, run.policy());
+  if (share <= effort.least_share || share >= effort.largest_share) return false;
+  const Findings before = run.findings;
+  CellBounds bounds = run.bounds;
+  if (bounds.max > 0) bounds.max = std::max<std::size_t>(bounds.max * effort.of_hundred / 100, 1);
+  const Run part = run.within(bounds);
+  Trial trial(part, effort.below);
+  insert_where_poor(part, effort);
+  trial.settle();
+  if (!before.met_cell_bound) run.findings.forget_cell_bound();
+  return true;
+}
+
+}  // namespace hfr

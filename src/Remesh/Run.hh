@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_RUN_HH
+#define HFR_REMESH_RUN_HH
+
+#include "HalfFace/TetMesh.hh"
+#include "Remesh/Checkpoint.hh"
+#include "Remesh/DeviceSession.hh"
+#include "Remesh/RunControl.hh"
+#include "Remesh/Strategy.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+class SurfaceMesh;
+
+/// What a run finds out on its way.
+struct Findings {
+  /// The boundary lies on or goes through itself somewhere: then positive cells may overlap, too, and rounds
+  /// hold the link condition throughout.
+  bool is_folded = false;
+  /// Every mesh with this boundary has an invalid cell: see unfillable_faces().
+  bool is_unfillable = false;
+  /// Something was left undone for the number of cells; and the bound on more of them at that time, 0: none.
+  bool met_cell_bound = false;
+  std::size_t max_cells_met = 0;
+
+  void note_cell_bound(const CellBounds& bounds) {
+    met_cell_bound = true;
+    max_cells_met = bounds.max;
+  }
+  void forget_cell_bound() {
+    met_cell_bound = false;
+    max_cells_met = 0;
+  }
+};
+
+/// A run as its stages see it: what they work on, and what was decided about it. A stage may go on with a
+/// copy that has other bounds; everything else is shared.
+struct Run {
+  TetMesh& mesh;
+  Workspace& work;  ///< attached to the mesh
+  const Strategy& strategy;
+  RunControl& control;
+  Findings& findings;
+  DeviceSession& device;
+  SurfaceMesh* surface = nullptr;    ///< that operators may work on; null while it is frozen
+  Checkpoint* checkpoint = nullptr;  ///< null where the caller sees to the mesh, as for tries on a copy
+  CellBounds bounds = {};
+  /// Whether a new vertex may leave as many poor cells as it takes.
+  bool spares_nothing = false;
+
+  par::Policy policy() const { return strategy.pass.policy; }
+  /// The same run within other bounds on cells.
+  Run within(CellBounds other) const {
+    Run run = *this;
+    run.bounds = other;
+    return run;
+  }
+  /// Before something that may leave the mesh worse; see Checkpoint::keep().
+  void keep(bool valid) const {
+    if (checkpoint) checkpoint->keep(mesh, valid, control.n_changes());
+  }
+};
+
+/// What a run consists of beside its mesh, for a caller that has no more than a strategy: a try on a copy, or
+/// a stage by itself.
+class LoneRun {
+ public:
+  LoneRun(TetMesh& mesh, Strategy strategy, double time_limit = std::numeric_limits<double>::infinity())
+      : strategy_(std::move(strategy)), control_(time_limit), mesh_(mesh) {
+    work_.attach(mesh, strategy_.pass.policy);
+  }
+  LoneRun(const LoneRun&) = delete;
+  LoneRun& operator=(const LoneRun&) = delete;
+
+  Workspace& work() { return work_; }
+  RunControl& control() { return control_; }
+  Findings& findings() { return findings_; }
+  Run run(SurfaceMesh* surface = nullptr) {
+    return {mesh_, work_, strategy_, control_, findings_, device_, surface, nullptr, strategy_.bounds};
+  }
+
+ private:
+  Strategy strategy_;
+  Workspace work_;
+  RunControl control_;
+  Findings findings_;
+  DeviceSession device_;
+  TetMesh& mesh_;
+};
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Strategy.hh"
+
+#include <span>
+
+#include "Quality/Metrics.hh"
+#include "Remesh/Survey.hh"
+
+namespace hfr {
+namespace {
+
+/// Degrees. Where no goal is given, the worst cells are raised from one of these to the next.
+constexpr std::array<double, 13> kTargets = {1, 2, 4, 7, 10, 15, 20, 22.5, 25, 27.5, 30, 32.5, 35};
+/// The same where the worst angle is raised at any cost.
+constexpr std::array<TargetAngle, 23> kTargetsAtAnyCost = {
+    {{1},  {2},    {3},  {4},    {5.5}, {7},    {8.5}, {10},          {12}, {14},          {16}, {18},
+     {20}, {22.5}, {25}, {27.5}, {30},  {32.5}, {35},  {37.5, 1, 30}, {40}, {42.5, 1, 30}, {45}}};
+
+/// Cells that a run may leave of 100, and make of them, where the options do not say.
+constexpr std::size_t kLeastOfHundred = 81;
+constexpr std::size_t kMostOfHundred = 119;
+
+/// The questions that the options are asked, each in one place.
+class Asked {
+ public:
+  explicit Asked(const ImproveOptions& options) : options_(options) {}
+
+  bool has_goal() const { return options_.min_dihedral.has_value(); }
+  bool any_cost() const { return options_.raise_min_dihedral; }
+  bool coarsens() const { return options_.coarsen; }
+  bool is_compat() const { return options_.compat != Compat::kNone; }
+  bool is_frozen() const { return options_.surface.mode == SurfaceMode::kFrozen; }
+  bool is_flat() const { return options_.surface.mode == SurfaceMode::kFlat; }
+  /// Whether the surface may change its shape.
+  bool is_free() const { return options_.surface.mode == SurfaceMode::kFree; }
+  bool limits_iterations() const { return options_.iterations > 0; }
+  int iterations_or(int most) const { return limits_iterations() ? options_.iterations : most; }
+  const ImproveOptions& options() const { return options_; }
+
+ private:
+  const ImproveOptions& options_;
+};
+
+/// Whether the number of cells is to stay about what it is where the options do not say. A surface that may
+/// change gives its cells good angles with fewer or more vertices, as they are needed; but where a goal was
+/// asked for or the worst angle is raised at any cost, small meshes would come to several times their cells,
+/// and others would lose so many that there is no room left to work in. (In free mode neither was seen.)
+bool keeps_size(const Asked& asked) {
+  if (asked.is_compat() || asked.is_free() || (asked.any_cost() && asked.coarsens())) return false;
+  return asked.is_frozen() || asked.any_cost() || asked.has_goal();
+}
+
+CellBounds bounds_of(const Asked& asked, std::size_t n_cells) {
+  CellBounds bounds = {asked.options().min_cells, asked.options().max_cells};
+  if (asked.coarsens() && bounds.max == 0) bounds.max = n_cells;
+  if (!keeps_size(asked)) return bounds;
+  // Towards a goal a flat surface gives its cells good angles with fewer of them, in a third of the time.
+  const bool may_lose = asked.coarsens() || (asked.is_flat() && asked.has_goal());
+  if (bounds.min == 0 && !may_lose) bounds.min = n_cells * kLeastOfHundred / 100;
+  if (bounds.max == 0) bounds.max = n_cells * kMostOfHundred / 100;
+  return bounds;
+}
+
+Selection selection_of(const Asked& asked) {
+  const Ops ops = asked.options().ops;
+  if (has(ops, Ops::kEdge) + has(ops, Ops::kFace) + has(ops, Ops::kNode) < 2) return Selection::kByKind;
+  switch (asked.options().rounds) {
+    case Rounds::kByKind:
+      return Selection::kByKind;
+    case Rounds::kMixed:
+      return Selection::kMixed;
+    case Rounds::kAuto:
+      break;
+  }
+  return asked.has_goal() ? Selection::kByKind : Selection::kMixedOnAngles;
+}
+
+PassEffort pass_effort(const Asked& asked) {
+  const ImproveOptions& options = asked.options();
+  PassEffort pass;
+  pass.ops = options.ops;
+  pass.smoother = asked.is_compat() ? Smoother::kCandidates : options.smoother;
+  pass.selection = selection_of(asked);
+  pass.seed = options.seed;
+  pass.policy = options.policy;
+  pass.ranks_exactly = asked.is_compat();
+  if (options.device.kind == DeviceChoice::Kind::kOpenCl) pass.device_from = 0;
+  pass.device_only_smooths = options.hybrid;
+  if (asked.is_frozen()) pass.promise_of_many = 0.5;
+  if (asked.is_free()) pass.move_gain = 1.05;
+  return pass;
+}
+
+/// `any_cost`: whether the worst angle is raised as far as it goes at the time.
+PolishEffort polish_effort(const Asked& asked, bool any_cost) {
+  PolishEffort polish;
+  polish.iterations = asked.iterations_or(polish.iterations);
+  if (asked.is_free()) polish.many = 200;
+  if (any_cost)
+    polish.dig_share = 4;
+  else if (asked.is_free())
+    polish.dig_share = 32;
+  if (any_cost || asked.has_goal()) polish.few_to_search = 0;
+  polish.selection = selection_of(asked);
+  return polish;
+}
+
+FirstPolish first_polish(const Asked& asked, const PolishEffort& polish) {
+  FirstPolish first{.polish = polish};
+  // Few cells, so kind by kind, as towards a goal.
+  if (asked.options().rounds == Rounds::kAuto) first.polish.selection = Selection::kByKind;
+  return first;
+}
+
+BulkEffort bulk_effort(const Asked& asked) {
+  BulkEffort bulk;
+  bulk.metric = asked.options().metric;
+  bulk.iterations = asked.iterations_or(bulk.iterations);
+  if (bulk.metric == Metric::kVolumeLength) bulk.focus = 0.45;
+  bulk.removes_vertices = asked.options().bulk_nodes;
+  return bulk;
+}
+
+/// With a surface that may change its shape, what many cells suffer from can be mended, too. Beyond the angle
+/// that such runs are for, that is dear: noisy surfaces would cost twice what they cost frozen.
+double largest_share(const Asked& asked, double degrees) {
+  constexpr double kElsewhere = 0.1, kFreeUpTo = 20, kUpToThere = 0.35, kBeyond = 0.2;
+  if (!asked.is_free()) return kElsewhere;
+  return degrees > kFreeUpTo ? kBeyond : kUpToThere;
+}
+
+TargetEffort target_effort(const Asked& asked) {
+  TargetEffort effort;
+  const double goal = asked.options().min_dihedral.value_or(kLargestGoal);
+  for (double degrees : kTargets) {
+    const TargetAngle target{degrees, largest_share(asked, degrees)};
+    effort.beyond.push_back(target);
+    if (degrees < goal) effort.targets.push_back(target);
+  }
+  if (asked.has_goal()) effort.targets.push_back({goal, largest_share(asked, goal)});
+  return effort;
+}
+
+RefineEffort refine_effort(const Asked& asked, std::size_t of_hundred, bool any_cost) {
+  RefineEffort refine;
+  refine.iterations = asked.iterations_or(refine.iterations);
+  refine.of_hundred = of_hundred;
+  if (any_cost) {
+    refine.gain = 1.3;
+    refine.least_share = -1;
+    refine.largest_share = std::numeric_limits<double>::infinity();
+  } else {
+    refine.least_share = 0.08;
+    refine.largest_share = 0.6;
+  }
+  return refine;
+}
+
+LastCellsEffort last_cells_effort(const Asked& asked) {
+  LastCellsEffort last;
+  if (asked.coarsens() || asked.has_goal()) last.up_to = std::numeric_limits<double>::infinity();
+  // Where the surface may change its shape there is always something that gives way by little.
+  if (asked.is_free()) last.again = 1.02;
+  const PatchEffort& effort = asked.any_cost()    ? kAllEfforts[0]
+                              : asked.is_frozen() ? kLittleEffort
+                                                  : kSurfaceEffort;
+  if (asked.has_goal() && asked.is_flat()) last.patches_first = {effort};
+  last.patches = {effort};
+  last.patches.insert(last.patches.end(), kLastEfforts.begin(), kLastEfforts.end());
+  if (asked.is_free()) last.patches_up_to = 20;
+  return last;
+}
+
+GoalEffort goal_effort(const Asked& asked) {
+  GoalEffort goal;
+  goal.degrees = *asked.options().min_dihedral;
+  if (asked.limits_iterations()) {
+    goal.many_miss = std::numeric_limits<double>::infinity();
+    goal.goes_on = false;
+  }
+  if (asked.coarsens()) goal.many_miss = -1;  // which takes all cells
+  return goal;
+}
+
+AnyCostEffort any_cost_effort(const Asked& asked, CellBounds bounds) {
+  AnyCostEffort effort;
+  effort.bounds.min = bounds.min;  // what is left out now is missing for the last cells
+  effort.bounds.max = asked.options().max_cells;
+  if (effort.bounds.max > 0) {
+    effort.most_of_hundred = 0;
+  } else if (asked.coarsens() || asked.is_flat()) {
+    effort.bounds.max = bounds.max;
+    effort.most_of_hundred = 0;
+  }
+  effort.polish = polish_effort(asked, true);
+  effort.targets.assign(kTargetsAtAnyCost.begin(), kTargetsAtAnyCost.end());
+  effort.neighbourhoods = asked.coarsens();
+  effort.patches.assign(kAllEfforts.begin(), kAllEfforts.end());
+  if (asked.is_frozen() && !asked.coarsens()) {
+    effort.refine = refine_effort(asked, 90, true);
+    effort.refine_again = refine_effort(asked, 96, true);
+  }
+  return effort;
+}
+
+}  // namespace
+
+Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t n_cells) {
+  const Asked asked(options);
+  Strategy strategy;
+  strategy.course = asked.is_compat()  ? Course::kCompat
+                    : asked.has_goal() ? Course::kGoal
+                    : asked.any_cost() ? Course::kAnyCost
+                                       : Course::kDefault;
+  strategy.pass = pass_effort(asked);
+  strategy.bounds = bounds_of(asked, n_cells);
+  strategy.bounds_asked = {options.min_cells, options.max_cells};
+  if (found.n_invalid > 0 && !asked.is_compat()) strategy.untangle.emplace();
+  strategy.floor = report_value(Metric::kMinDihedral, std::clamp(found.worst, 0.0, kRegularDihedral));
+  // With coarsening, the default run goes as far as it can at once.
+  strategy.polish = polish_effort(asked, asked.any_cost() && asked.coarsens());
+  strategy.first_polish = first_polish(asked, strategy.polish);
+  if (asked.coarsens()) strategy.coarsen.emplace();
+  strategy.bulk = bulk_effort(asked);
+  strategy.targets = target_effort(asked);
+  if (asked.is_frozen()) {
+    strategy.refine = refine_effort(asked, 92, false);
+    if (!asked.limits_iterations()) strategy.refine_again = refine_effort(asked, 98, false);
+  }
+  if (!asked.limits_iterations()) {
+    strategy.neighbourhoods.emplace();
+    if (asked.is_free()) strategy.neighbourhoods->few_to_dig = 300;
+  }
+  strategy.patch.enabled = has(options.ops, Ops::kInsert) && !asked.limits_iterations();
+  strategy.patch.has_surface = asked.is_flat();
+  strategy.last_cells = last_cells_effort(asked);
+  if (asked.has_goal()) strategy.goal = goal_effort(asked);
+  if (asked.any_cost()) strategy.any_cost = any_cost_effort(asked, strategy.bounds);
+  if (asked.is_free()) strategy.volume = VolumeEffort{.keeps_angles_only = asked.has_goal()};
+  strategy.compat.iterations = asked.iterations_or(strategy.compat.iterations);
+  return strategy;
+}
+
+Strategy strategy_of_patch(const Strategy& whole) {
+  Strategy patch;
+  patch.pass.ops = whole.pass.ops;
+  patch.pass.seed = whole.pass.seed;
+  patch.pass.policy = {};
+  const int n_kinds =
+      has(patch.pass.ops, Ops::kEdge) + has(patch.pass.ops, Ops::kFace) + has(patch.pass.ops, Ops::kNode);
+  patch.pass.selection = n_kinds < 2 ? Selection::kByKind : Selection::kMixedOnAngles;
+  if (!whole.patch.has_surface) patch.pass.promise_of_many = 0.5;
+  patch.polish.iterations = whole.patch.iterations;
+  patch.polish.dig_share = 4;  // as many vertices as it takes
+  patch.polish.few_to_search = 0;
+  patch.polish.selection = patch.pass.selection;
+  return patch;
+}
+
+Strategy strategy_to_connect(const Strategy& patch) {
+  Strategy connecting = patch;
+  connecting.pass.ops = without(without(patch.pass.ops, Ops::kNode), Ops::kInsert);
+  const bool both = has(patch.pass.ops, Ops::kEdge) && has(patch.pass.ops, Ops::kFace);
+  connecting.pass.selection = both ? Selection::kMixedOnAngles : Selection::kByKind;
+  connecting.polish.selection = connecting.pass.selection;
+  return connecting;
+}
+
+}  // namespace hfr

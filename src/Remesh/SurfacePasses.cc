@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/SurfacePasses.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "Operators/Metrics.hh"
+#include "Remesh/PassState.hh"
+#include "Scheduler/Round.hh"
+#include "Scheduler/SmoothPass.hh"
+#include "Surface/InterfaceSwap.hh"
+#include "Surface/PeriodicSmooth.hh"
+#include "Surface/SurfaceCollapse.hh"
+#include "Surface/SurfaceMesh.hh"
+#include "Surface/SurfaceSmooth.hh"
+#include "Surface/SurfaceSplit.hh"
+#include "Surface/SurfaceSwap.hh"
+
+namespace hfr {
+namespace {
+
+/// About how long SurfaceCollapse::may_gain() takes.
+constexpr double kMayGainNanoseconds = 1'000;
+
+/// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
+std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
+                                        const Workspace& work, const Worklist& list) {
+  std::vector<VertexHandle> vertices;
+  std::vector<std::uint8_t> seen(mesh.n_vertices(), 0);
+  for (Index c : list.cells()) {
+    for (VertexHandle v : mesh.cell(CellHandle(c)).v) {
+      if (!work.frozen[v.idx()] || seen[v.idx()]) continue;  // the surface is frozen for what works inside
+      seen[v.idx()] = 1;
+      const SurfaceKind kind = surface.freedom(v).kind;
+      if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+/// Takes the vertices that periodic patches bind out of the list; returns the first vertex of each orbit.
+std::vector<VertexHandle> take_bound(const SurfaceMesh& surface, std::vector<VertexHandle>& vertices) {
+  std::vector<VertexHandle> first;
+  std::erase_if(vertices, [&](VertexHandle v) {
+    const auto orbit = surface.orbit(v);
+    if (!orbit.empty()) first.push_back(orbit[0]);
+    return !orbit.empty();
+  });
+  std::sort(first.begin(), first.end());
+  first.erase(std::unique(first.begin(), first.end()), first.end());
+  return first;
+}
+
+}  // namespace
+
+template <class Metric>
+template <class Allow>
+std::vector<EdgeHandle> SurfacePasses<Metric>::edges(const Worklist& list, bool inside, Allow&& allow) const {
+  const Run& run = state_.run();
+  std::vector<EdgeHandle> seeds;
+  for (Index c : list.cells()) {
+    const auto& v = run.mesh.cell(CellHandle(c)).v;
+    for (Index e = 0; e < 6; ++e) {
+      const VertexHandle a = v[kEdgeCorners[e][0]];
+      const VertexHandle b = v[kEdgeCorners[e][1]];
+      if (!run.work.frozen[a.idx()] || !run.work.frozen[b.idx()]) continue;  // not of the surface
+      bool smallest = true;  // of the listed cells round the edge
+      const auto look = [&](CellHandle other, VertexHandle, VertexHandle) {
+        smallest = smallest && (!list.has(other) || other.idx() >= c);
+        return smallest;
+      };
+      const bool closed = run.mesh.walk_ring(CellHandle(c), static_cast<int>(e), look);
+      if (!smallest || closed != inside) continue;
+      if (!closed) run.mesh.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
+      if (smallest && allow(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
+    }
+  }
+  return seeds;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::split(const Turn& turn) {
+  using Op = SurfaceSplit<Metric>;
+  const Run& run = state_.run();
+  SurfaceMesh& surface = *run.surface;
+  const double start = run.control.seconds();
+  const std::uint32_t since = looked_[kSplits];
+  looked_[kSplits] = run.work.clock;
+  std::vector<typename Op::Seed> seeds;
+  for (EdgeHandle e : edges(state_.changed_since(since, turn.focus), /*inside=*/false,
+                            [&](VertexHandle a, VertexHandle b) { return surface.may_split(a, b); }))
+    seeds.push_back(typename Op::Seed(e));
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    RoundOptions round_options{run.policy(), /*check_links=*/true, run.strategy.pass.seed};
+    round_options.may_gain = run.bounds.may_gain(run.mesh.n_logical_cells());
+    Round<Op> round(run.mesh, run.work, round_options);
+    const Op op{metric_, run.work.quality, &surface};
+    // The ends of the edges are asked for before the cells that name them are gone.
+    std::map<Index, std::array<VertexHandle, 2>> ends;
+    for (const auto& seed : seeds) ends[seed.edge.idx()] = run.mesh.edge_vertices(seed.edge);
+    counts = round.run(op, seeds);
+    if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
+    round.for_committed([&](const auto& plan, VertexHandle middle) {
+      const auto [a, b] = ends.at(plan.seed.edge.idx());
+      surface.was_split(a, b, middle, plan.place);
+      run.work.frozen[middle.idx()] = 1;  // for what works inside
+    });
+    surface.write_labels(run.mesh);
+  }
+  state_.count(turn.focus);
+  state_.report("surface split", turn, counts, run.control.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+template <class Op>
+std::size_t SurfacePasses<Metric>::swaps(const char* name, bool inside, const Turn& turn,
+                                         const Worklist& list) {
+  const Run& run = state_.run();
+  SurfaceMesh& surface = *run.surface;
+  const double start = run.control.seconds();
+  const std::vector<EdgeHandle> seeds =
+      edges(list, inside, [&](VertexHandle a, VertexHandle b) { return surface.may_swap(a, b); });
+  RoundCounts counts;
+  if (!seeds.empty()) {
+    Round<Op> round(run.mesh, run.work, {run.policy(), /*check_links=*/true, run.strategy.pass.seed});
+    counts = round.run(Op{metric_, run.work.quality, &surface}, seeds);
+    round.for_committed([&](const auto& plan, VertexHandle) { surface.swapped(plan.edge[0], plan.edge[1]); });
+    surface.write_labels(run.mesh);
+  }
+  state_.report(name, turn, counts, run.control.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::swaps(const Turn& turn, const Worklist& list) {
+  const Run& run = state_.run();
+  const std::size_t n_listed = run.mesh.n_cells();
+  std::size_t changes = swaps<SurfaceSwap<Metric>>("surface swap", /*inside=*/false, turn, list);
+  if (!run.surface->has_interfaces()) return changes;
+  // There are cells now that the list does not know.
+  const Worklist left(run.mesh, run.policy(),
+                      [&](CellHandle c) { return c.idx() < n_listed && list.has(c); });
+  changes += swaps<InterfaceSwap<Metric>>("surface interface", /*inside=*/true, turn, left);
+  return changes;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::collapses(const Turn& turn, const Worklist& list) {
+  using Op = SurfaceCollapse<Metric>;
+  const Run& run = state_.run();
+  SurfaceMesh& surface = *run.surface;
+  const double start = run.control.seconds();
+  const std::vector<VertexHandle> all = free_vertices(run.mesh, surface, run.work, list);
+  std::vector<VertexHandle> targets;
+  const Op op{metric_, run.work.quality, &surface, {}};
+  std::vector<VertexHandle> vertices;
+  const par::Policy by_cost = run.policy().for_items_of(kMayGainNanoseconds);
+  for (std::size_t i : par::compact<std::size_t>(
+           by_cost, all.size(), [&](std::size_t k) { return op.may_gain(run.mesh, all[k]); }))
+    vertices.push_back(all[i]);
+  drop_pinched(run.mesh, run.work.star_size, vertices, run.policy());
+  std::vector<typename Op::Seed> seeds;
+  for (VertexHandle v : vertices) {
+    const auto first = static_cast<std::uint32_t>(targets.size());
+    surface.collapse_targets(v, targets);
+    const auto n = static_cast<std::uint32_t>(targets.size()) - first;
+    if (n > 0) seeds.push_back({v, first, n});
+  }
+  RoundCounts counts;
+  const auto has_target = [&](VertexHandle v) {
+    std::vector<VertexHandle> only = {v};
+    drop_pinched(run.mesh, run.work.star_size, only, run.policy());
+    if (!only.empty()) surface.collapse_targets(v, targets);
+    return !targets.empty();
+  };
+  // A round in which none of the legal collapses gains counts, too: the clock salts the ranks of later ones.
+  if (!seeds.empty() || std::any_of(all.begin(), all.end(), has_target)) {
+    Round<Op> round(run.mesh, run.work, {run.policy(), /*check_links=*/true, run.strategy.pass.seed});
+    counts = round.run(Op{metric_, run.work.quality, &surface, targets}, seeds);
+    round.for_committed(
+        [&](const auto& plan, VertexHandle) { surface.collapsed(plan.seed.vertex, plan.onto); });
+    surface.write_labels(run.mesh);
+  }
+  state_.report("surface node", turn, counts, run.control.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::moves(const Turn& turn, const Worklist& list) {
+  const Run& run = state_.run();
+  SurfaceMesh& surface = *run.surface;
+  const double start = run.control.seconds();
+  std::vector<VertexHandle> vertices = free_vertices(run.mesh, surface, run.work, list);
+  const std::vector<VertexHandle> bound = take_bound(surface, vertices);
+  RoundCounts counts;
+  if (!bound.empty()) counts = periodic_moves(bound);
+  if (!vertices.empty()) {
+    SurfaceSearch search{&surface};
+    const PassEffort& effort = run.strategy.pass;
+    const bool many =
+        vertices.size() > std::min(effort.many_moves, run.mesh.n_vertices() / effort.many_moves_share);
+    if (many && effort.move_gain > 0) search.gain = effort.move_gain;
+    counts += hfr::smooth_pass(run.mesh, run.work, search, metric_, vertices, run.policy());
+    surface.moved(run.mesh, vertices);
+  }
+  state_.report("surface smooth", turn, counts, run.control.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
+RoundCounts SurfacePasses<Metric>::periodic_moves(std::span<const VertexHandle> first_of_orbits) {
+  const Run& run = state_.run();
+  SurfaceMesh& surface = *run.surface;
+  RoundCounts counts;
+  counts.rounds = 1;
+  ++run.work.clock;
+  Star star;
+  for (VertexHandle first : first_of_orbits) {
+    const auto orbit = surface.orbit(first);
+    ++counts.seeds;
+    const auto is_partly_known = [&](VertexHandle v) {
+      return !run.work.pinched.empty() && run.work.pinched[v.idx()];
+    };
+    if (std::any_of(orbit.begin(), orbit.end(), is_partly_known)) continue;
+    const auto plan = PeriodicSmooth<Metric>{metric_, run.work.quality, &surface}.evaluate(run.mesh, orbit);
+    if (!plan) continue;
+    ++counts.candidates;
+    ++counts.winners;
+    std::vector<CellHandle> cells;
+    for (std::size_t i = 0; i < orbit.size(); ++i) {
+      run.mesh.set_point(orbit[i], plan->targets[i]);
+      run.mesh.gather_star(orbit[i], star);
+      cells.insert(cells.end(), star.cells.begin(), star.cells.begin() + star.size);
+    }
+    for (CellHandle c : cells) {
+      const auto& v = run.mesh.cell(c).v;
+      run.work.quality[c.idx()] =
+          metric_(run.mesh.point(v[0]), run.mesh.point(v[1]), run.mesh.point(v[2]), run.mesh.point(v[3]));
+      run.work.pending[c.idx()] = 0xff;
+      for (VertexHandle u : v) run.work.changed[u.idx()] = run.work.clock;
+    }
+    if (!run.work.all_touched) run.work.touch(cells);
+    surface.moved(run.mesh, orbit);
+  }
+  return counts;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::iterate(const Turn& turn) {
+  const Run& run = state_.run();
+  const Ops ops = run.strategy.pass.ops;
+  std::size_t changes = 0;
+  const auto look = [&](Looked kind, auto&& pass) {
+    if (run.control.stopped()) return;
+    const Worklist list = state_.changed_since(std::exchange(looked_[kind], run.work.clock), turn.focus);
+    if (!list.cells().empty()) changes += pass(list);
+    if (state_.n_invalid() > 0) state_.count(turn.focus);
+  };
+  if (has(ops, Ops::kEdge)) look(kSwaps, [&](const Worklist& list) { return swaps(turn, list); });
+  if (turn.removes_vertices && has(ops, Ops::kNode))
+    look(kCollapses, [&](const Worklist& list) { return collapses(turn, list); });
+  if (has(ops, Ops::kSmooth)) look(kMoves, [&](const Worklist& list) { return moves(turn, list); });
+  state_.count(turn.focus);
+  return changes;
+}
+
+template <class Metric>
+void SurfacePasses<Metric>::restore_volume(const VolumeEffort& effort) {
+  const Run& run = state_.run();
+  SurfaceMesh& surface = *run.surface;
+  const Worklist all(run.mesh, run.policy(), [](CellHandle) { return true; });
+  std::vector<VertexHandle> vertices = free_vertices(run.mesh, surface, run.work, all);
+  take_bound(surface, vertices);  // those of periodic patches stay
+  for (int i = 1; i <= effort.passes && std::abs(surface.volume_gain()) > effort.enough; ++i) {
+    const double start = run.control.seconds();
+    const RoundCounts counts = hfr::smooth_pass(run.mesh, run.work, SurfaceOffset{&surface, state_.worst()},
+                                                metric_, vertices, run.policy());
+    surface.moved(run.mesh, vertices);
+    state_.count(Focus{});
+    state_.report("surface volume", {.iteration = i}, counts, run.control.seconds() - start);
+    if (counts.winners == 0) break;
+  }
+}
+
+template class SurfacePasses<VolumeLength>;
+template class SurfacePasses<Untangling>;
+template class SurfacePasses<MinSine2>;
+template class SurfacePasses<MinDihedral>;
+template class SurfacePasses<CustomMetric>;
+
+}  // namespace hfr

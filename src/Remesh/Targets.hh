@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_TARGETS_HH
+#define HFR_REMESH_TARGETS_HH
+
+#include <span>
+
+#include "Remesh/Run.hh"
+
+namespace hfr {
+
+/// Raises the worst angles from target to target; one that is missed is no reason to stop, because what holds
+/// a cell below it may give way on the next.
+/// Expects: any mesh. Guarantees: what polish() does. Ends: after the last target, or with the run.
+void raise_to_targets(const Run& run, std::span<const TargetAngle> targets);
+/// Raises the worst angles as far as a limited effort takes them: back to `floor` degrees, where they stood
+/// before the bulk stage, then vertices where they are missing, the targets, and the last few cells.
+void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngle> targets);
+
+}  // namespace hfr
+
+#endif
