@@ -22,6 +22,7 @@
 #include "Json.hh"
 #include "Labels.hh"
 #include "Numbers.hh"
+#include "Remesh/Plan.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Report.hh"
 #include "Signals.hh"
@@ -35,6 +36,7 @@ constexpr double kLargestDihedral = 70.5;  // degrees; the regular tetrahedron h
 struct CommandLine {
   std::string input, output;
   bool dry_run = false;
+  bool plan = false;
   bool progress = false;
   bool label_features = false;
   bool ignore_labels = false;
@@ -357,6 +359,17 @@ ExitCode run_on_surface(io::MeshData data, const CommandLine& line, const Improv
                          std::move(data), common, report);
 }
 
+/// What a run would do, in place of the run.
+ExitCode print_plan(const LoadedMesh& loaded, const ImproveOptions& options, const CommonOptions& common,
+                    Json& report) {
+  const std::string text = plan(loaded.mesh, options);
+  report["plan"] = text;
+  report["notes"] = loaded.notes;
+  if (!common.quiet) print_notes(loaded.notes);
+  if (common.prints_table()) print("{}", text);
+  return ExitCode::kDone;
+}
+
 /// Improves the mesh of `data` and writes it; `seconds` has the time of reading.
 ExitCode run_on_mesh(io::MeshData data, const CommandLine& line, const ImproveOptions& options,
                      const io::WriteOptions& write_options, Seconds seconds, const CommonOptions& common,
@@ -365,6 +378,7 @@ ExitCode run_on_mesh(io::MeshData data, const CommandLine& line, const ImproveOp
   LoadedMesh loaded = load_for_run(std::move(data), line, options, common);
   seconds.build = loaded.seconds_build;
   report["input"].update(to_json(loaded.report));
+  if (line.plan) return print_plan(loaded, options, common, report);
 
   const SignalGuard signals;  // from here on there is something to save
   const Stopwatch improving;
@@ -402,13 +416,16 @@ ExitCode run_on_mesh(io::MeshData data, const CommandLine& line, const ImproveOp
 }
 
 ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report) {
-  if (line.output.empty() && !line.dry_run)
+  const bool writes = !line.dry_run && !line.plan;
+  if (line.plan && !line.ids.empty())
+    throw Failure(ExitCode::kUsage, "--plan runs nothing, so there are no cells for --ids");
+  if (line.output.empty() && writes)
     throw Failure(ExitCode::kUsage, "-o FILE is required (or --dry-run); try 'hfremesh improve --help'");
   const ImproveOptions options = improve_options(line, common);
   report["input"]["file"] = line.input;
   report["options"] = options_json(line, options);
   io::WriteOptions write_options;
-  if (!line.dry_run) {
+  if (writes) {
     report["output"]["file"] = line.output;
     write_options = require_writable_mesh(line.output, line.write, common);
   }
@@ -416,7 +433,10 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
   const Stopwatch reading;
   io::MeshData data = read_data(line.input, common);
   const double seconds_read = reading.seconds();
-  if (data.cells.empty() && !data.triangles.empty())
+  const bool is_surface = data.cells.empty() && !data.triangles.empty();
+  if (is_surface && line.plan)
+    throw Failure(ExitCode::kUsage, "--plan is for tetrahedra, and " + line.input + " has none");
+  if (is_surface)
     return run_on_surface(std::move(data), line, options, write_options, seconds_read, common, report);
   return run_on_mesh(std::move(data), line, options, write_options, {.read = seconds_read}, common, report);
 }
@@ -443,6 +463,7 @@ Run add_improve(CLI::App& app, CommonOptions& common) {
       ->transform(stream_name());
   add_format_options(*command, common, true, true);
   command->add_flag("--dry-run", line->dry_run, "Report only, write no mesh");
+  command->add_flag("--plan", line->plan, "Print the stages and numbers of the run instead of doing it");
   command
       ->add_option(
           "--min-dihedral", line->min_dihedral,

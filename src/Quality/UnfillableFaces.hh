@@ -18,8 +18,8 @@ namespace hfr {
 /// have none. Cost: that of sorting the boundary's faces three times, and a few microseconds a face.
 std::vector<HalfFaceHandle> unfillable_faces(const TetMesh& mesh, std::span<const HalfFaceHandle> faces,
                                              par::Policy policy = {});
-/// The same of the faces in question where the cells `invalid` are left: `folded`, the boundary faces that lie
-/// on one another (folded_faces()), and the boundary faces of these cells. Ascending.
+/// The same of the faces in question where the cells `invalid` are left: `folded`, the boundary faces that
+/// lie on one another (folded_faces()), and the boundary faces of these cells. Ascending.
 std::vector<HalfFaceHandle> unfillable_faces(const TetMesh& mesh, std::span<const CellHandle> invalid,
                                              std::span<const HalfFaceHandle> folded, par::Policy policy = {});
 

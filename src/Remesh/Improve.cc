@@ -22,20 +22,6 @@
 namespace hfr {
 namespace {
 
-void validate(const ImproveOptions& options) {
-  HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
-              "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
-                  std::to_string(options.min_dihedral.value_or(0)));
-  HFR_REQUIRE(
-      !options.min_dihedral || !options.raise_min_dihedral,
-      "raise_min_dihedral asks for the largest angle that can be had, min_dihedral for a certain one: "
-      "give one of them");
-  HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
-  HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
-  HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
-  HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
-}
-
 /// Before the end of a run that may have left the mesh worse than its input: works on what has fallen below
 /// the input's smallest angle, if that is all, and puts back what was kept if that does not do. False when it
 /// did that.

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Strategy.hh"
 
-#include <span>
+#include <string>
 
+#include "HalfFace/Errors.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Survey.hh"
 
@@ -204,6 +205,20 @@ AnyCostEffort any_cost_effort(const Asked& asked, CellBounds bounds) {
 }
 
 }  // namespace
+
+void validate(const ImproveOptions& options) {
+  HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
+              "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
+                  std::to_string(options.min_dihedral.value_or(0)));
+  HFR_REQUIRE(
+      !options.min_dihedral || !options.raise_min_dihedral,
+      "raise_min_dihedral asks for the largest angle that can be had, min_dihedral for a certain one: "
+      "give one of them");
+  HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
+  HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
+  HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
+  HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
+}
 
 Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t n_cells) {
   const Asked asked(options);

@@ -329,6 +329,8 @@ struct Strategy {
   const PolishEffort& mending() const { return any_cost ? any_cost->polish : polish; }
 };
 
+/// Throws InvalidInput for options out of range.
+void validate(const ImproveOptions& options);
 /// The strategy of a run over a mesh of n_cells in which survey() has found that.
 Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t n_cells);
 /// That of a try on a copy of a patch, which runs beside others on one thread.

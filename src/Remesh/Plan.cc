@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Plan.hh"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <vector>
+
+#include "Quality/Metrics.hh"
+#include "Remesh/Strategy.hh"
+#include "Remesh/Survey.hh"
+
+namespace hfr {
+namespace {
+
+/// A sentence of words and numbers, these as short as they can be.
+template <class... Words>
+std::string say(const Words&... words) {
+  std::ostringstream text;
+  (text << ... << words);
+  return text.str();
+}
+
+template <class Integer>
+std::string counted(Integer n) {
+  return n == static_cast<Integer>(kNoLimit) ? "any number of" : say(n);
+}
+
+std::string percent(double share) { return say(100 * share, " %"); }
+
+std::string listed(const std::vector<TargetAngle>& targets) {
+  std::ostringstream text;
+  for (const TargetAngle& target : targets) {
+    text << (&target == targets.data() ? "" : ", ") << target.degrees;
+    if (target.from > 0) text << " (from " << target.from << ')';
+  }
+  return text.str();
+}
+
+std::string named(Selection selection) {
+  switch (selection) {
+    case Selection::kByKind:
+      return "kinds of operators in turn";
+    case Selection::kMixedOnAngles:
+      return "kinds of operators in one selection where angles are raised";
+    case Selection::kMixed:
+      return "kinds of operators in one selection";
+  }
+  return {};
+}
+
+std::string named(Course course) {
+  switch (course) {
+    case Course::kDefault:
+      return "default";
+    case Course::kGoal:
+      return "goal";
+    case Course::kAnyCost:
+      return "any cost";
+    case Course::kCompat:
+      return "jpdc2013";
+  }
+  return {};
+}
+
+/// Lines of a plan: the name of a stage, then what it does.
+class Lines {
+ public:
+  void add(const std::string& stage, const std::string& what) {
+    constexpr int kWidth = 16;
+    text_ << std::left << std::setw(kWidth) << (stage == last_ ? "" : stage) << what << '\n';
+    last_ = stage;
+  }
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+  std::string last_;
+};
+
+void add_bounds(Lines& lines, const std::string& stage, const CellBounds& bounds) {
+  lines.add(stage, bounds.min > 0 ? say("no vertex is removed below ", bounds.min, " cells")
+                                  : "vertices may be removed down to any number of cells");
+  lines.add(stage, bounds.max > 0 ? say("no vertex is inserted above ", bounds.max, " cells")
+                                  : "vertices may be inserted up to any number of cells");
+}
+
+void add_refine(Lines& lines, const std::string& stage, const RefineEffort& refine) {
+  std::string when;
+  if (refine.least_share >= 0)
+    when = say(" where ", percent(refine.least_share), " to ", percent(refine.largest_share),
+               " of the cells are");
+  lines.add(stage, say("vertices for cells below ", refine.below, " degrees", when, ", up to ",
+                       refine.of_hundred, " of 100 cells that there may be"));
+  lines.add(stage, say("each raises sin² of the worst of its cells by ", refine.gain,
+                       "; until fewer than 1 in ", refine.one_in, " poor cells gets one"));
+}
+
+void add_patches(Lines& lines, const std::string& stage, const PatchEffort& effort) {
+  lines.add(stage, say("patches of ", effort.layers, " layers round at most ", effort.few, " cells, ",
+                       effort.patches, " at a time, ", effort.turns, " turns, ", effort.degrees,
+                       " degrees beyond the worst; tries: ", effort.rows, " rows of apexes, ",
+                       effort.vertices, " new vertices, ", effort.removals, " removals"));
+}
+
+void add_all_cells(Lines& lines, const Strategy& strategy) {
+  const FirstPolish& first = strategy.first_polish;
+  lines.add("first polish", say("cells below ", first.target, " degrees, if at most ",
+                                percent(first.largest_share), " of all; ", named(first.polish.selection)));
+  if (strategy.coarsen)
+    lines.add("coarsen", say("vertices out of cells below ", strategy.coarsen->below, " degrees, ",
+                             strategy.coarsen->iterations, " iterations, while each takes ",
+                             percent(1 - strategy.coarsen->still), " of the cells"));
+  const BulkEffort& bulk = strategy.bulk;
+  lines.add("bulk",
+            say("all cells", std::isfinite(bulk.focus) ? say(" of decision value below ", bulk.focus) : "",
+                " in ", metric_name(bulk.metric), ", ", bulk.iterations, " iterations",
+                bulk.removes_vertices ? ", with vertex removal" : ""));
+  lines.add("floor", say("cells below ", strategy.floor, " degrees, the input's worst"));
+}
+
+void add_targets(Lines& lines, const Strategy& strategy) {
+  const PolishEffort& polish = strategy.polish;
+  if (strategy.refine) add_refine(lines, "refine", *strategy.refine);
+  lines.add("targets", say("degrees: ", listed(strategy.targets.targets)));
+  lines.add("targets", say("each where at most ", percent(strategy.targets.targets.back().largest_share),
+                           " of the cells are below; beyond ", strategy.targets.in_turn_beyond,
+                           " only if the one before was reached"));
+  lines.add("targets", say(polish.iterations, " iterations; ", polish.idle,
+                           " idle ones (no fewer cells, and the worst not raised by ", polish.gain,
+                           ") end it; ", named(polish.selection)));
+  lines.add("targets", say("vertices for at most ", polish.few_to_dig, " cells or 1 in ", polish.dig_share));
+  if (strategy.refine_again) add_refine(lines, "refine again", *strategy.refine_again);
+  const LastCellsEffort& last = strategy.last_cells;
+  const std::string up_to = std::isfinite(last.up_to) ? say("targets up to ", last.up_to) : "all targets";
+  lines.add("last cells", up_to);
+  for (const PatchEffort& effort : last.patches_first) add_patches(lines, "last cells", effort);
+  if (strategy.neighbourhoods) {
+    const NeighbourhoodEffort& around = *strategy.neighbourhoods;
+    std::ostringstream tries;
+    for (const auto& attempt : around.tries)
+      tries << (&attempt == around.tries.data() ? "" : ", ") << attempt.layers << " layers + "
+            << attempt.degrees;
+    lines.add("last cells",
+              say("neighbourhoods of at most ", around.few, " cells: ", tries.str(), " degrees"));
+  }
+  if (strategy.patch.enabled)
+    for (const PatchEffort& effort : last.patches) add_patches(lines, "last cells", effort);
+}
+
+void add_goal(Lines& lines, const Strategy& strategy, const GoalEffort& goal) {
+  if (std::isfinite(goal.many_miss) && goal.many_miss >= 0)
+    lines.add("goal",
+              say("first the stages above, if more than ", percent(goal.many_miss), " of the cells miss it"));
+  lines.add("goal",
+            say("cells below ", goal.degrees, " degrees; then targets and last cells; then these again"));
+  if (strategy.bounds.min != strategy.bounds_asked.min || strategy.bounds.max != strategy.bounds_asked.max)
+    lines.add("goal", "the same without bounds that were not asked for, where these were in the way");
+  if (goal.goes_on)
+    lines.add("goal", say("all cells, if more than ", percent(goal.few_miss), " still miss it"));
+}
+
+void add_any_cost(Lines& lines, const AnyCostEffort& effort) {
+  if (effort.most_of_hundred > 0)
+    lines.add("any cost", say("up to ", effort.most_of_hundred, " of 100 cells that there are by then"));
+  else
+    add_bounds(lines, "any cost", effort.bounds);
+  for (const PatchEffort& patch : effort.patches) add_patches(lines, "any cost", patch);
+  if (effort.refine) add_refine(lines, "any cost", *effort.refine);
+  lines.add("any cost", say("degrees: ", listed(effort.targets)));
+  lines.add("any cost", say("until ", effort.missed, " in a row are missed, again while the worst rises by ",
+                            effort.gain, ", and from the patches on while it rises by ", effort.again));
+}
+
+}  // namespace
+
+std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
+  validate(options);
+  const Survey found = survey(mesh, options.policy);
+  const Strategy strategy = resolve(options, found, mesh.n_logical_cells());
+  Lines lines;
+  lines.add("course", named(strategy.course));
+  lines.add("operators", ops_to_list(strategy.pass.ops));
+  if (strategy.course == Course::kCompat) {
+    lines.add("jpdc2013", say(strategy.compat.iterations, " iterations: edge, face, node, smooth"));
+    return lines.text();
+  }
+  add_bounds(lines, "cells", strategy.bounds);
+  if (strategy.untangle) {
+    const UntangleEffort& effort = *strategy.untangle;
+    lines.add("untangle", say(found.n_invalid, " cells: vertices moved together within ",
+                              effort.widths.front().layers, " to ", effort.widths.back().layers,
+                              " layers, then reconnected, ", effort.restarts, " times"));
+  }
+  if (strategy.goal && !std::isfinite(strategy.goal->many_miss)) {
+    lines.add("all cells", "not before the goal was worked for");
+  } else {
+    add_all_cells(lines, strategy);
+  }
+  add_targets(lines, strategy);
+  if (strategy.goal) add_goal(lines, strategy, *strategy.goal);
+  if (strategy.any_cost) add_any_cost(lines, *strategy.any_cost);
+  if (strategy.volume)
+    lines.add("volume", say("moved back to ", percent(strategy.volume->enough), ", ", strategy.volume->passes,
+                            " passes"));
+  return lines.text();
+}
+
+}  // namespace hfr
