@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Coarsen.hh"
 
+#include "Quality/Metrics.hh"
 #include "Remesh/PassRunner.hh"
 #include "Remesh/Survey.hh"
 

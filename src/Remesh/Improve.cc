@@ -9,6 +9,7 @@
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Reorder.hh"
 #include "Quality/FoldedFaces.hh"
+#include "Quality/Metrics.hh"
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/Coordinates.hh"
 #include "Remesh/Explain.hh"

@@ -2,42 +2,14 @@
 #include "Remesh/Neighbourhoods.hh"
 
 #include <algorithm>
-#include <span>
 #include <vector>
 
+#include "HalfFace/Layers.hh"
+#include "Quality/Metrics.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
-namespace {
-
-/// Marks the vertices of cells and of so many layers round them.
-std::vector<std::uint8_t> surroundings(const TetMesh& mesh, std::span<const CellHandle> cells, int layers) {
-  std::vector<std::uint8_t> marked(mesh.n_vertices(), 0);
-  std::vector<VertexHandle> rim, next;
-  const auto mark = [&](CellHandle c) {
-    for (VertexHandle v : mesh.cell(c).v) {
-      if (marked[v.idx()]) continue;
-      marked[v.idx()] = 1;
-      next.push_back(v);
-    }
-  };
-  for (CellHandle c : cells) mark(c);
-  Star star;
-  for (int i = 0; i < layers; ++i) {
-    rim.swap(next);
-    next.clear();
-    for (VertexHandle v : rim) {
-      if (!mesh.gather_star(v, star))
-        for (CellHandle c : mesh.vertex_cells(v)) mark(c);
-      for (int k = 0; k < star.size; ++k) mark(star.cells[static_cast<std::size_t>(k)]);
-    }
-  }
-  return marked;
-}
-
-}  // namespace
-
 bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEffort>& effort,
                             double degrees) {
   if (!effort) return false;
@@ -47,7 +19,7 @@ bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
     const std::vector<CellHandle> left = cells_below(run.mesh, degrees, run.policy());
     if (left.empty()) return true;
     if (left.size() > effort->few || run.control.stopped()) return false;
-    const auto around = surroundings(run.mesh, left, attempt.layers);
+    const auto around = vertices_within(run.mesh, left, attempt.layers);
     PassRunner<MinSine2> runner(run, MinSine2{}, "relief");
     const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, effort->largest)), around};
     for (int i = 1; i <= effort->iterations && !run.control.stopped(); ++i) {

@@ -24,14 +24,6 @@
 #include "Scheduler/SmoothPass.hh"
 
 namespace hfr {
-namespace {
-
-/// Metrics that measure dihedral angles.
-template <class Metric>
-constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
-
-}  // namespace
-
 // What there is in improve(), but for the surface: a new operator is its files, one row here, and one line of
 // help in the tool.
 template <class Metric>

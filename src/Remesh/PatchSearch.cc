@@ -14,6 +14,7 @@
 #include "Operators/Replace.hh"
 #include "Operators/VertexInsertion.hh"
 #include "Operators/VertexRemoval.hh"
+#include "Quality/Metrics.hh"
 #include "Remesh/Patch.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/SurfaceRun.hh"

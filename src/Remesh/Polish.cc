@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "Quality/Metrics.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "Quality/Metrics.hh"
 #include "Remesh/PassRunner.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Trial.hh"

@@ -2,9 +2,7 @@
 #include "Remesh/Survey.hh"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "Quality/Decisions.hh"
@@ -24,11 +22,6 @@ double min_dihedral_of(const TetMesh& mesh, CellHandle c) {
 }
 
 }  // namespace
-
-double dihedral_decision(double degrees) {
-  const double sine = std::sin(degrees * (std::numbers::pi / 180.0));
-  return sine * sine;
-}
 
 Survey survey(const TetMesh& mesh, par::Policy policy) {
   const std::size_t n = mesh.n_cells();

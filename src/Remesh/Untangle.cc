@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
+#include "HalfFace/Layers.hh"
 #include "Operators/Unfold.hh"
+#include "Parallel/DisjointSets.hh"
 #include "Quality/Damage.hh"
 #include "Remesh/PassRunner.hh"
 #include "Remesh/Survey.hh"
@@ -70,24 +71,14 @@ class Unfolding {
 
   /// Vertices of the invalid cells and of so many layers round them, ascending; without those that must stay.
   void gather(int layers, std::span<const CellHandle> invalid) {
-    std::vector<std::uint8_t> seen(mesh_.n_vertices(), 0);
-    std::vector<VertexHandle> rim, next;
-    const auto see = [&](CellHandle c) {
-      for (VertexHandle v : mesh_.cell(c).v) {
-        if (seen[v.idx()]) continue;
-        seen[v.idx()] = 1;
-        next.push_back(v);
-      }
-    };
-    for (CellHandle c : invalid) see(c);
-    for (int i = 0; i < layers; ++i) {
-      rim.swap(next);
-      next.clear();
-      std::sort(rim.begin(), rim.end());
-      const StarTable stars(mesh_, rim, work_.star_size, policy_);
+    const auto cells_round = [&](std::span<const VertexHandle> rim, auto&& visit) {
+      std::vector<VertexHandle> ascending(rim.begin(), rim.end());
+      std::sort(ascending.begin(), ascending.end());
+      const StarTable stars(mesh_, ascending, work_.star_size, policy_);
       for (std::size_t k = 0; k < stars.size(); ++k)
-        for (HalfFaceHandle h : stars.link(k)) see(cell_of(h));
-    }
+        for (HalfFaceHandle h : stars.link(k)) visit(cell_of(h));
+    };
+    const std::vector<std::uint8_t> seen = vertices_within(mesh_, invalid, layers, cells_round);
     vertices_.clear();
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (seen[i] && !work_.frozen[i]) vertices_.push_back(VertexHandle(i));
@@ -132,19 +123,14 @@ class Unfolding {
     std::vector<std::uint32_t> number(mesh_.n_vertices(), kNone);
     for (std::size_t i = 0; i < vertices_.size(); ++i)
       number[vertices_[i].idx()] = static_cast<std::uint32_t>(i);
-    std::vector<std::uint32_t> parent(vertices_.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root = [&](std::uint32_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
+    par::DisjointSets<std::uint32_t> patches(vertices_.size());
     for (CellHandle c : cells_) {
       std::uint32_t first = kNone;
       for (VertexHandle v : mesh_.cell(c).v) {
-        if (number[v.idx()] == kNone) continue;
-        const std::uint32_t r = root(number[v.idx()]);
-        if (first != kNone && r != first) parent[std::max(r, first)] = std::min(r, first);
-        first = first == kNone ? r : std::min(r, first);
+        const std::uint32_t n = number[v.idx()];
+        if (n == kNone) continue;
+        if (first != kNone) patches.join(first, n);
+        first = n;
       }
     }
     std::vector<Damage> old_damage(vertices_.size()), new_damage(vertices_.size());
@@ -156,7 +142,7 @@ class Unfolding {
         const std::uint32_t n = number[v[k].idx()];
         now[k] = mesh_.point(v[k]);
         old[k] = n == kNone ? now[k] : before[n];
-        if (n != kNone && patch == kNone) patch = root(n);
+        if (n != kNone && patch == kNone) patch = patches.find(n);
       }
       old_damage[patch].add(old[0], old[1], old[2], old[3]);
       new_damage[patch].add(now[0], now[1], now[2], now[3]);
@@ -169,7 +155,7 @@ class Unfolding {
     std::size_t n_kept = 0;
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
       if (stars.link(i).empty()) continue;
-      if (!helps(root(i)))
+      if (!helps(patches.find(i)))
         mesh_.set_point(vertices_[i],
                         before[i]);  // also where it has moved from 0 to -0, which compare equal
       else if (mesh_.point(vertices_[i]) != before[i])
