@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "HalfFace/TetMesh.hh"
 #include "IO/MeshData.hh"
 #include "Quality/Statistics.hh"
 #include "Remesh/Improve.hh"

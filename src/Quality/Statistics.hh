@@ -7,10 +7,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Parallel/Parallel.hh"
+#include "HalfFace/Handles.hh"
+#include "HalfFace/Vec3.hh"
+#include "Parallel/Policy.hh"
 
 namespace hfr {
+
+class TetMesh;
 
 /// Percentages at which a Distribution is given.
 inline constexpr std::array<double, 9> kPercentiles = {0.1, 1, 5, 25, 50, 75, 95, 99, 100};

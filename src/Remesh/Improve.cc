@@ -9,6 +9,8 @@
 #include "Quality/FoldedFaces.hh"
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/Coordinates.hh"
+#include "Remesh/Limits.hh"
+#include "Remesh/MapRecorder.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/RunControl.hh"
 #include "Remesh/SurfaceRun.hh"

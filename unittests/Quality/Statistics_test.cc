@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "HalfFace/Generate.hh"
+#include "HalfFace/TetMesh.hh"
 #include "Quality/FixedSum.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/Tets.hh"
