@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "HalfFace/Writer.hh"
 #include "Operators/Operator.hh"
 #include "Operators/Replace.hh"
 #include "Parallel/Atomic.hh"
@@ -49,7 +50,8 @@ struct RoundOptions {
 template <LocalOperator Op>
 class Round {
  public:
-  Round(TetMesh& mesh, Workspace& work, RoundOptions options) : mesh_(mesh), work_(work), options_(options) {}
+  Round(TetMesh& mesh, Workspace& work, RoundOptions options)
+      : mesh_(mesh), writer_(mesh), work_(work), options_(options) {}
 
   /// Looks at every seed of the list.
   RoundCounts run(const Op& op, std::span<const typename Op::Seed> seeds) {
@@ -368,7 +370,7 @@ class Round {
   /// All in rank order, so slots do not depend on threads.
   void assign_slots(const Op& op) {
     slots_.clear();
-    std::vector<CellHandle>& free = mesh_.free_cells();
+    std::vector<CellHandle>& free = writer_.free_cells();
     freed_.clear();
     std::size_t n_cells = mesh_.n_cells();
     std::vector<std::pair<CellHandle, CellHandle>>
@@ -399,7 +401,7 @@ class Round {
         mesh_.copy_vertex_data(nearest_vertex(mesh_, cavity), winner.new_vertex);
       }
     }
-    mesh_.resize_cells(n_cells);
+    writer_.resize_cells(n_cells);
     work_.grow(mesh_);
     for (const auto& [from, to] : fresh) mesh_.copy_cell_data(from, to);
     for (std::size_t i = freed_.size(); i-- > 0;) free.push_back(freed_[i]);
@@ -412,11 +414,11 @@ class Round {
       if (!note.behind.is_valid()) continue;
       const std::uint32_t other = work_.claim[cell_of(note.behind).idx()];
       if (other == kUnclaimed || winners_[other].notes.empty()) {
-        mesh_.set_mate(note.behind, note.after);
+        writer_.set_mate(note.behind, note.after);
         continue;
       }
       for (const OuterFace& theirs : winners_[other].notes)
-        if (theirs.before == note.behind) mesh_.set_mate(note.after, theirs.after);
+        if (theirs.before == note.behind) writer_.set_mate(note.after, theirs.after);
     }
   }
 
@@ -440,7 +442,7 @@ class Round {
         work_.claim[c.idx()] = kUnclaimed;
         for (VertexHandle u : v) {
           store(work_.changed[u.idx()], work_.clock);
-          if (!moves) store(mesh_.mutable_hook(u), CellHandle());
+          if (!moves) store(writer_.hook(u), CellHandle());
         }
       }
     });
@@ -458,11 +460,11 @@ class Round {
       work_.claim[c.idx()] = kUnclaimed;
     }
     for (const Winner& winner : winners_)
-      if (winner.removed.is_valid()) mesh_.mark_deleted(winner.removed);
+      if (winner.removed.is_valid()) writer_.mark_deleted(winner.removed);
   }
 
   void lower_hook(VertexHandle v, CellHandle c) {
-    const auto hook = par::atomic(mesh_.mutable_hook(v));
+    const auto hook = par::atomic(writer_.hook(v));
     par::before_shared_access();
     CellHandle now = hook.load(std::memory_order_relaxed);
     while (c < now) {
@@ -472,6 +474,7 @@ class Round {
   }
 
   TetMesh& mesh_;
+  TetMesh::Writer writer_;
   Workspace& work_;
   RoundOptions options_;
   ChunkedArray<Plan> candidates_;
