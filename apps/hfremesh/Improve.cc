@@ -22,7 +22,7 @@
 #include "Json.hh"
 #include "Labels.hh"
 #include "Numbers.hh"
-#include "Remesh/SurfaceRun.hh"
+#include "Surface/FeatureLabels.hh"
 #include "Report.hh"
 #include "Signals.hh"
 
@@ -370,7 +370,7 @@ ExitCode run_on_mesh(io::MeshData data, const CommandLine& line, const ImproveOp
   const Stopwatch improving;
   const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
   seconds.improve = result.seconds;
-  if (line.label_features) add_feature_labels(loaded.mesh, options.surface, options.policy);
+  if (line.label_features) label_features(loaded.mesh, options.surface, options.policy);
   seconds.statistics = improving.seconds() - result.seconds;
 
 #ifndef NDEBUG  // improve() has tested what it changed; a second look takes three times as long as a short

@@ -21,6 +21,10 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
 void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
                      std::size_t max_cells, par::Policy policy = {});
 
+/// The cells that the frozen surface is proven to keep, or that nothing was found for and all of whose
+/// vertices it has.
+std::vector<CellHandle> cells_held_back(const std::vector<StuckCell>& stuck);
+
 }  // namespace hfr
 
 #endif
