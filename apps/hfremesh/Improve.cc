@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hfremesh improve IN -o OUT: what the tool does when no subcommand is named.
-#include "Remesh/Improve.hh"
+#include "hfremesh/Remesh/Improve.hh"
+#include "hfremesh/Surface/FeatureLabels.hh"
 
 #include <fmt/format.h>
 
@@ -17,14 +18,13 @@
 #include "Console.hh"
 #include "Fields.hh"
 #include "Files.hh"
-#include "IO/Assemble.hh"
 #include "ImproveSurface.hh"
 #include "Json.hh"
 #include "Labels.hh"
 #include "Numbers.hh"
-#include "Surface/FeatureLabels.hh"
 #include "Report.hh"
 #include "Signals.hh"
+#include "hfremesh/IO/Assemble.hh"
 
 namespace hfr::app {
 namespace {

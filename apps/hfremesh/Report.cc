@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "Console.hh"
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 namespace hfr::app {
 namespace {

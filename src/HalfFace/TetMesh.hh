@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/Cell.hh"
-#include "HalfFace/Errors.hh"
-#include "HalfFace/Handles.hh"
-#include "HalfFace/Labels.hh"
-#include "HalfFace/PropertyAccess.hh"
-#include "HalfFace/Vec3.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/Cell.hh"
+#include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Labels.hh"
+#include "hfremesh/HalfFace/PropertyAccess.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 namespace hfr {
 
@@ -557,7 +557,7 @@ bool TetMesh::walk_ring_back(CellHandle c, int edge, Visit&& visit) const {
 
 }  // namespace hfr
 
-#include "HalfFace/Circulators.hh"
-#include "HalfFace/TupleUse.hh"
+#include "hfremesh/HalfFace/Circulators.hh"
+#include "hfremesh/HalfFace/TupleUse.hh"
 
 #endif

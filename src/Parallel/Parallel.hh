@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "Parallel/Policy.hh"
+#include "hfremesh/Parallel/Policy.hh"
 
 /// The ground floor: the only folder that knows the thread library.
 /// Every function gives the same result for any number of threads.

@@ -6,13 +6,13 @@
 #include <concepts>
 #include <functional>
 
-#include "HalfFace/Errors.hh"
-#include "HalfFace/Vec3.hh"
-#include "Quality/Metric.hh"
-#include "kernels/dihedral.h"
-#include "kernels/shape.h"
-#include "kernels/tet_volume.h"
-#include "kernels/volume_length.h"
+#include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
+#include "hfremesh/Quality/Metric.hh"
+#include "hfremesh/kernels/dihedral.h"
+#include "hfremesh/kernels/shape.h"
+#include "hfremesh/kernels/tet_volume.h"
+#include "hfremesh/kernels/volume_length.h"
 
 /// Quality of one tetrahedron (a, b, c, d), positive when det(b-a, c-a, d-a) > 0.
 /// Every metric has a decision form (higher is better; > 0 only for a cell whose volume is positive beyond

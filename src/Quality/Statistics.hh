@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
-#include "HalfFace/Vec3.hh"
-#include "Parallel/Policy.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
+#include "hfremesh/Parallel/Policy.hh"
 
 namespace hfr {
 

@@ -2,8 +2,8 @@
 #ifndef HFR_REMESH_IMPROVE_HH
 #define HFR_REMESH_IMPROVE_HH
 
-#include "Remesh/Options.hh"
-#include "Remesh/Result.hh"
+#include "hfremesh/Remesh/Options.hh"
+#include "hfremesh/Remesh/Result.hh"
 
 namespace hfr {
 

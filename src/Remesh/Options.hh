@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
-#include "Device/Device.hh"
-#include "Parallel/Policy.hh"
-#include "Quality/Metric.hh"
-#include "Surface/SurfaceOptions.hh"
+#include "hfremesh/Device/Device.hh"
+#include "hfremesh/Parallel/Policy.hh"
+#include "hfremesh/Quality/Metric.hh"
+#include "hfremesh/Surface/SurfaceOptions.hh"
 
 namespace hfr {
 

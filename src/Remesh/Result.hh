@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "Device/Device.hh"
-#include "HalfFace/Handles.hh"
-#include "Quality/Statistics.hh"
-#include "Surface/SurfaceOptions.hh"
+#include "hfremesh/Device/Device.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/Quality/Statistics.hh"
+#include "hfremesh/Surface/SurfaceOptions.hh"
 
 namespace hfr {
 

@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Operator.hh"
-#include "Parallel/Parallel.hh"
-#include "Scheduler/ChunkedArray.hh"
-#include "Scheduler/Workspace.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Operator.hh"
+#include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Scheduler/ChunkedArray.hh"
+#include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr {
 

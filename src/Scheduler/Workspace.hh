@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Operator.hh"
-#include "Parallel/Parallel.hh"
-#include "Quality/Decisions.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Operator.hh"
+#include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Quality/Decisions.hh"
 
 namespace hfr {
 

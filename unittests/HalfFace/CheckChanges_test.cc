@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HalfFace/CheckChanges.hh"
+#include "HalfFace/Check.hh"
 
 #include <gtest/gtest.h>
 
