@@ -12,6 +12,7 @@
 #include "HalfFace/Generate.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/TetMesh.hh"
+#include "HalfFace/Writer.hh"
 #include "Operators/Operator.hh"
 #include "Scheduler/StarTable.hh"
 
@@ -226,7 +227,7 @@ void DeleteCellAfterWriting(benchmark::State& state) {
   std::size_t bytes = mesh.memory_bytes();
   Index next = static_cast<Index>(mesh.n_cells() / 2);
   for (auto _ : state) {
-    mesh.mutable_cell(CellHandle(0));
+    TetMesh::Writer(mesh).cell(CellHandle(0));
     mesh.delete_cell(CellHandle(next++));
   }
   bytes = mesh.memory_bytes() - bytes;

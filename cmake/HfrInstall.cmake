@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Install rules: the library with its headers below include/hfremesh, the CMake package, the pkg-config file and
+# Install rules: the library (its headers: HfrLayer.cmake), the CMake package, the pkg-config file and
 # the tool. All of it may be moved as a whole after installing.
 include(CMakePackageConfigHelpers)
 
 set(hfr_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hfremesh)
-set(hfr_include_dir ${CMAKE_INSTALL_INCLUDEDIR}/hfremesh)
 
 install(TARGETS hfremesh EXPORT hfremeshTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  FILE_SET HEADERS DESTINATION ${hfr_include_dir}
-  FILE_SET eigen DESTINATION ${hfr_include_dir}
-  FILE_SET kernels DESTINATION ${hfr_include_dir}
-  FILE_SET generated DESTINATION ${hfr_include_dir})
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT hfremeshTargets NAMESPACE hfremesh:: DESTINATION ${hfr_package_dir})
 if(TARGET hfremesh_tool)
   install(TARGETS hfremesh_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -3,6 +3,10 @@
 # is an object library of its own that tests can link without what stands above it.
 set(HFR_LAYERS Parallel HalfFace Quality IO Operators Surface Scheduler Device Remesh)
 
+# Where users find the headers: they include <hfremesh/LAYER/NAME.hh>, so that no folder of ours (IO, Device) lands
+# in anybody's include path.
+set(HFR_INCLUDE_DIR ${CMAKE_INSTALL_INCLUDEDIR}/hfremesh)
+
 # What our headers need from whoever compiles them, users included. Bit-identical results need every rounding
 # to be the one written: no contraction into fused multiply-add.
 set(HFR_PUBLIC_OPTIONS -ffp-contract=off)
@@ -25,12 +29,28 @@ endif()
 target_compile_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 target_link_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 
-# hfr_layer(NAME [SOURCES ...] [HEADERS ...] [PRIVATE_LIBRARIES ...])
-# HEADERS are public: verified to compile alone, and installed below include/hfremesh/NAME.
+# hfr_public_headers(FOLDER NAME FILES ...): headers of FOLDER that users include as <hfremesh/NAME/FILE>. Installed
+# below include/hfremesh/NAME; in the build tree a header of one line stands there for each, so that whoever has
+# the project as a subfolder finds what an installed copy has, and nothing else.
+function(hfr_public_headers FOLDER NAME)
+  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "" "FILES")
+  set(forwards ${PROJECT_BINARY_DIR}/include/hfremesh/${NAME})
+  foreach(file IN LISTS ARG_FILES)
+    file(CONFIGURE OUTPUT ${forwards}/${file} CONTENT "#include \"${FOLDER}/${file}\"\n" @ONLY)
+    set_property(GLOBAL APPEND PROPERTY HFR_PUBLIC_HEADERS ${forwards}/${file})
+    if(HFR_INSTALL)
+      install(FILES ${FOLDER}/${file} DESTINATION ${HFR_INCLUDE_DIR}/${NAME})
+    endif()
+  endforeach()
+endfunction()
+
+# hfr_layer(NAME [SOURCES ...] [HEADERS ...] [PRIVATE_HEADERS ...] [PRIVATE_LIBRARIES ...])
+# HEADERS are public: see hfr_public_headers(). They include each other by the names that users have for them, and
+# nothing else of the project. PRIVATE_HEADERS stay here. All are verified to compile alone.
 # PRIVATE_LIBRARIES appear in no public header; cmake/HfrInstall.cmake knows how users of a static library
 # find them.
 function(hfr_layer NAME)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;HEADERS;PRIVATE_LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;HEADERS;PRIVATE_HEADERS;PRIVATE_LIBRARIES")
   if(ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "hfr_layer(${NAME}): unknown arguments ${ARG_UNPARSED_ARGUMENTS}")
   endif()
@@ -45,8 +65,9 @@ function(hfr_layer NAME)
   add_library(${target}_headers INTERFACE)
   target_include_directories(${target}_headers INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/include)
   target_link_libraries(${target}_headers INTERFACE hfr_kernels ${below})
-  list(TRANSFORM ARG_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
-  set_property(GLOBAL APPEND PROPERTY HFR_PUBLIC_HEADERS ${ARG_HEADERS})
+  hfr_public_headers(${CMAKE_CURRENT_SOURCE_DIR} ${NAME} FILES ${ARG_HEADERS})
+  list(TRANSFORM ARG_PRIVATE_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY HFR_PRIVATE_HEADERS ${ARG_PRIVATE_HEADERS})
   if(ARG_SOURCES)
     add_library(${target} OBJECT ${ARG_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From file to file: reads a mesh with all that is attached to it, improves it, and writes it again.
 // Usage: example_file_to_file [INPUT OUTPUT]     without files it makes its own; docs/library.md explains it.
-#include <HalfFace/Generate.hh>
-#include <IO/ReadWrite.hh>
-#include <Operators/EdgeRemoval.hh>
-#include <Remesh/Improve.hh>
-#include <Scheduler/RunUntilQuiet.hh>
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <hfremesh/HalfFace/Generate.hh>
+#include <hfremesh/IO/ReadWrite.hh>
+#include <hfremesh/Operators/EdgeRemoval.hh>
+#include <hfremesh/Remesh/Improve.hh>
+#include <hfremesh/Scheduler/RunUntilQuiet.hh>
 
 std::atomic<bool> stop_wanted = false;  // a signal handler or another thread may set it
 

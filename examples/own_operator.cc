@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "HalfFace/Check.hh"
-#include "HalfFace/Generate.hh"
-#include "Scheduler/Round.hh"
+#include <hfremesh/HalfFace/Check.hh>
+#include <hfremesh/HalfFace/Generate.hh>
+#include <hfremesh/Scheduler/Round.hh>
 
 using namespace hfr;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <HalfFace/Circulators.hh>
-#include <HalfFace/Generate.hh>
-#include <Remesh/Improve.hh>
 #include <algorithm>
+#include <hfremesh/HalfFace/Circulators.hh>
+#include <hfremesh/HalfFace/Generate.hh>
+#include <hfremesh/Remesh/Improve.hh>
 #include <iostream>
 
 int main() {

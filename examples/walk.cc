@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Walks the shell of an edge and the star of a vertex; docs/half-face-kernel.md explains it.
-#include <HalfFace/Circulators.hh>
-#include <HalfFace/Generate.hh>
-#include <HalfFace/TetMesh.hh>
+#include <hfremesh/HalfFace/Circulators.hh>
+#include <hfremesh/HalfFace/Generate.hh>
+#include <hfremesh/HalfFace/TetMesh.hh>
 #include <iostream>
 
 int main() {

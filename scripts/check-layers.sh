@@ -4,8 +4,10 @@
 #   - a folder includes only itself and the folders before it;
 #   - only src/Parallel knows OpenMP and oneTBB;
 #   - nothing in src/ prints, exits or aborts;
-#   - every header in kernels/ is listed in kernels/CMakeLists.txt, every source in its folder's CMakeLists.txt;
-#   - apps/ and examples/ use public headers only.
+#   - every header in kernels/ is listed in kernels/CMakeLists.txt, every source and header in its folder's
+#     CMakeLists.txt;
+#   - public headers, apps/ and examples/ include public headers only, by the names that users have for them:
+#     hfremesh/LAYER/NAME.hh.
 # Usage: scripts/check-layers.sh [ROOT]     prints one line for each fault; exit 1 when there is one.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)}
@@ -33,13 +35,13 @@ for layer in "${order[@]}"; do
   allowed+=("$layer")
   mine=$(IFS='|'; echo "${allowed[*]}")
   for file in $(sources "src/$layer"); do
-    { grep -nE "^ *# *include +[<\"]($any_layer)/" "$file" || true; } |
-      { grep -vE "^[0-9]+: *# *include +[<\"]($mine)/" || true; } |
+    { grep -nE "^ *# *include +[<\"](hfremesh/)?($any_layer)/" "$file" || true; } |
+      { grep -vE "^[0-9]+: *# *include +[<\"](hfremesh/)?($mine)/" || true; } |
       sed -E "s|^([0-9]+):(.*)|$file:\1: $layer stands below what it includes: \2|" >> "$faults"
   done
 done
 for file in $(sources kernels); do
-  { grep -nE "^ *# *include +[<\"]($any_layer)/" "$file" || true; } |
+  { grep -nE "^ *# *include +[<\"](hfremesh/)?($any_layer)/" "$file" || true; } |
     sed -E "s|^([0-9]+):(.*)|$file:\1: kernels stand below what they include: \2|" >> "$faults"
 done
 
@@ -61,19 +63,39 @@ for file in kernels/*.h; do
   grep -qwF -- "$(basename "$file")" kernels/CMakeLists.txt ||
     echo "$file: not listed in kernels/CMakeLists.txt, so not installed" >> "$faults"
 done
-for file in $(sources src | grep '\.cc$'); do
+for file in $(sources src | grep -E '\.(cc|hh)$'); do
   grep -qwF -- "$(basename "$file")" "$(dirname "$file")/CMakeLists.txt" ||
     echo "$file: not listed in $(dirname "$file")/CMakeLists.txt" >> "$faults"
 done
 
-for file in $(sources apps examples); do
-  { grep -noE "^ *# *include +[<\"]($any_layer)/[A-Za-z0-9_]+\.hh" "$file" || true; } |
+# public_headers CMAKELISTS: what it has after HEADERS of hfr_layer() or FILES of hfr_public_headers().
+public_headers() {
+  [ -e "$1" ] || return 0
+  sed -E 's/#.*//; s/[()]/ & /g' "$1" | awk -v folder="$(basename "$(dirname "$1")")" '
+    { for (i = 1; i <= NF; ++i)
+        if ($i == "HEADERS" || $i == "FILES") on = 1
+        else if ($i ~ /^([A-Z_]+|\))$/) on = 0
+        else if (on && $i ~ /\.hh?$/) print folder "/" $i }'
+}
+public=$(mktemp)
+trap 'rm -f "$faults" "$public"' EXIT
+for list in kernels/CMakeLists.txt src/*/CMakeLists.txt; do public_headers "$list"; done | LC_ALL=C sort -u > "$public"
+
+# only_public FILE: what it includes of the project is public and has the name that users have for it.
+only_public() {
+  { grep -noE "^ *# *include +[<\"](hfremesh/)?($any_layer|kernels)/[A-Za-z0-9_]+\.hh?" "$1" || true; } |
     sed -E 's|^([0-9]+):.*[<"](.*)$|\1 \2|' | while read -r line header; do
-      [ "$header" = HalfFace/Config.hh ] && continue
-      grep -qwF -- "$(basename "$header")" "src/$(dirname "$header")/CMakeLists.txt" 2>/dev/null ||
-        echo "$file:$line: $header is not a public header" >> "$faults"
-    done
-done
+      if ! grep -qxF -- "${header#hfremesh/}" "$public"; then
+        echo "$1:$line: ${header#hfremesh/} is not a public header"
+      elif [ "$header" = "${header#hfremesh/}" ]; then
+        echo "$1:$line: users know $header as hfremesh/$header"
+      fi
+    done >> "$faults"
+}
+for file in $(sources apps examples); do only_public "$file"; done
+while read -r header; do
+  if [ -e "src/$header" ]; then only_public "src/$header"; fi
+done < "$public"
 
 cat "$faults"
 if [ -s "$faults" ]; then

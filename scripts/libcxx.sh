@@ -11,8 +11,15 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 [ -n "${HFR_LIBCXX:-}" ] || "$root/scripts/install-deps.sh" --libcxx
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$work/HalfFace"
-sed -E 's/@[A-Z_]+@/0/; /^#cmakedefine/d' "$root/src/HalfFace/Config.hh.in" > "$work/HalfFace/Config.hh"
+# The build tree's <hfremesh/...>, without CMake.
+mkdir -p "$work/config"
+sed -E 's/@[A-Z_]+@/0/; /^#cmakedefine/d' "$root/src/HalfFace/Config.hh.in" > "$work/config/Config.hh"
+for header in "$root"/src/*/*.hh "$root"/kernels/*.h "$work/config/Config.hh"; do
+  folder=$work/include/hfremesh/$(basename "$(dirname "$header")")
+  folder=${folder/%config/HalfFace}
+  mkdir -p "$folder"
+  printf '#include "%s"\n' "$header" > "$folder/$(basename "$header")"
+done
 
 cd "$root"
 read -ra flags <<< "${HFR_LIBCXX:--stdlib=libc++}"
@@ -25,5 +32,5 @@ done
 sources+=(src/Scheduler/Round.hh src/Scheduler/RunUntilQuiet.hh src/Scheduler/SmoothPass.hh)
 printf '%s\n' "${sources[@]}" | xargs -P "$(scripts/jobs.sh)" -I{} \
   "${CXX:-clang++}" "${flags[@]}" -std=c++20 -fsyntax-only -Wall -Wextra -Werror -Wno-pragma-once-outside-header \
-  -ffp-contract=off -I src -I . -I "$work" -x c++ {}
+  -ffp-contract=off -I src -I . -I "$work/include" -x c++ {}
 echo "libcxx: ${#sources[@]} files compile"

@@ -11,11 +11,11 @@
 #include "Commands.hh"
 #include "Console.hh"
 #include "Files.hh"
-#include "HalfFace/Check.hh"
 #include "Json.hh"
 #include "Numbers.hh"
-#include "Quality/FoldedFaces.hh"
 #include "Report.hh"
+#include "hfremesh/HalfFace/Check.hh"
+#include "hfremesh/Quality/FoldedFaces.hh"
 
 namespace hfr::app {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "Remesh/Improve.hh"
+#include "hfremesh/Remesh/Improve.hh"
 
 namespace hfr::app {
 

@@ -10,9 +10,9 @@
 #include "Commands.hh"
 #include "Console.hh"
 #include "Files.hh"
-#include "IO/Assemble.hh"
 #include "Json.hh"
 #include "Report.hh"
+#include "hfremesh/IO/Assemble.hh"
 
 namespace hfr::app {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "Commands.hh"
 #include "Console.hh"
-#include "Device/Device.hh"
 #include "Json.hh"
+#include "hfremesh/Device/Device.hh"
 
 namespace hfr::app {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <new>
 
-#include "HalfFace/Errors.hh"
+#include "hfremesh/HalfFace/Errors.hh"
 
 namespace hfr::app {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "IO/MeshData.hh"
+#include "hfremesh/IO/MeshData.hh"
 
 namespace hfr::app {
 

@@ -5,10 +5,10 @@
 
 #include "Console.hh"
 #include "ExitCode.hh"
-#include "HalfFace/Check.hh"
-#include "IO/Assemble.hh"
-#include "IO/OutputFile.hh"
 #include "Paths.hh"
+#include "hfremesh/HalfFace/Check.hh"
+#include "hfremesh/IO/Assemble.hh"
+#include "hfremesh/IO/OutputFile.hh"
 
 namespace hfr::app {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "ExitCode.hh"
-#include "HalfFace/TetMesh.hh"
-#include "IO/MeshData.hh"
-#include "IO/MeshFile.hh"
 #include "Options.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshData.hh"
+#include "hfremesh/IO/MeshFile.hh"
 
 /// Reading and writing with the tool's exit codes: what is wrong with an input is a Failure of code 2, an
 /// output that cannot be written one of code 1.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hfremesh generate SHAPE: meshes of simple shapes, and the cavity that the paper's figures are measured on.
-#include "HalfFace/Generate.hh"
+#include "hfremesh/HalfFace/Generate.hh"
 
 #include <CLI/CLI.hpp>
 #include <map>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hfremesh improve IN -o OUT: what the tool does when no subcommand is named.
-#include "Remesh/Improve.hh"
+#include "hfremesh/Remesh/Improve.hh"
+#include "hfremesh/Surface/FeatureLabels.hh"
 
 #include <fmt/format.h>
 
@@ -17,15 +18,13 @@
 #include "Console.hh"
 #include "Fields.hh"
 #include "Files.hh"
-#include "IO/Assemble.hh"
 #include "ImproveSurface.hh"
 #include "Json.hh"
 #include "Labels.hh"
 #include "Numbers.hh"
-#include "Remesh/Plan.hh"
-#include "Remesh/SurfaceRun.hh"
 #include "Report.hh"
 #include "Signals.hh"
+#include "hfremesh/IO/Assemble.hh"
 
 namespace hfr::app {
 namespace {
@@ -384,7 +383,7 @@ ExitCode run_on_mesh(io::MeshData data, const CommandLine& line, const ImproveOp
   const Stopwatch improving;
   const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
   seconds.improve = result.seconds;
-  if (line.label_features) add_feature_labels(loaded.mesh, options.surface, options.policy);
+  if (line.label_features) label_features(loaded.mesh, options.surface, options.policy);
   seconds.statistics = improving.seconds() - result.seconds;
 
 #ifndef NDEBUG  // improve() has tested what it changed; a second look takes three times as long as a short

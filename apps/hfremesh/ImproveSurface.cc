@@ -11,9 +11,9 @@
 #include "Json.hh"
 #include "Labels.hh"
 #include "Paths.hh"
-#include "Remesh/ImproveTriangles.hh"
 #include "Report.hh"
 #include "Signals.hh"
+#include "hfremesh/Remesh/ImproveTriangles.hh"
 
 namespace hfr::app {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "ExitCode.hh"
-#include "IO/MeshFile.hh"
 #include "Options.hh"
-#include "Surface/SurfaceOptions.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/Surface/SurfaceOptions.hh"
 
 namespace hfr::app {
 

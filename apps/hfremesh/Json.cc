@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "HalfFace/Config.hh"
-#include "IO/Hash.hh"
+#include "hfremesh/HalfFace/Config.hh"
+#include "hfremesh/IO/Hash.hh"
 
 namespace hfr::app {
 namespace {

@@ -5,9 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "IO/MeshData.hh"
-#include "Quality/Statistics.hh"
-#include "Remesh/Improve.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshData.hh"
+#include "hfremesh/Quality/Statistics.hh"
+#include "hfremesh/Remesh/Improve.hh"
 
 /// The parts of the JSON report; docs/json.md describes the schema.
 namespace hfr::app {

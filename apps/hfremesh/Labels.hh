@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "IO/MeshData.hh"
-#include "Surface/SurfaceOptions.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshData.hh"
+#include "hfremesh/Surface/SurfaceOptions.hh"
 
 /// What the triangles, edges and labels of a file forbid a run to change, and how to go without.
 namespace hfr::app {

@@ -3,9 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "IO/InputFile.hh"
-#include "IO/OutputFile.hh"
 #include "Numbers.hh"
+#include "hfremesh/IO/MeshFile.hh"
 
 namespace hfr::app {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "IO/MeshFile.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 namespace CLI {
 class App;

@@ -10,9 +10,9 @@
 #include <system_error>
 
 #include "ExitCode.hh"
-#include "HalfFace/Errors.hh"
-#include "IO/InputFile.hh"
-#include "IO/OutputFile.hh"
+#include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/IO/OutputFile.hh"
 
 namespace hfr::app {
 namespace {

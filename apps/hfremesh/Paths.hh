@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "IO/MeshFile.hh"
 #include "Options.hh"
+#include "hfremesh/IO/MeshFile.hh"
 
 /// What can be known of files before any of them is read.
 namespace hfr::app {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "Console.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 namespace hfr::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "IO/MeshData.hh"
-#include "Quality/Statistics.hh"
-#include "Remesh/Improve.hh"
+#include "hfremesh/IO/MeshData.hh"
+#include "hfremesh/Quality/Statistics.hh"
+#include "hfremesh/Remesh/Improve.hh"
 
 /// Tables for humans, on stdout.
 namespace hfr::app {

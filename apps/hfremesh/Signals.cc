@@ -7,7 +7,7 @@
 
 #include <cerrno>
 
-#include "IO/OutputFile.hh"
+#include "hfremesh/IO/OutputFile.hh"
 
 namespace hfr::app {
 namespace {

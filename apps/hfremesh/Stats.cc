@@ -9,9 +9,9 @@
 #include "Commands.hh"
 #include "Console.hh"
 #include "Files.hh"
-#include "IO/Hash.hh"
 #include "Json.hh"
 #include "Report.hh"
+#include "hfremesh/IO/Hash.hh"
 
 namespace hfr::app {
 namespace {

@@ -15,11 +15,11 @@
 #include "Commands.hh"
 #include "Console.hh"
 #include "Files.hh"
-#include "HalfFace/Config.hh"
 #include "Json.hh"
 #include "Paths.hh"
 #include "Signals.hh"
 #include "Threads.hh"
+#include "hfremesh/HalfFace/Config.hh"
 
 namespace hfr::app {
 namespace {

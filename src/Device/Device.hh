@@ -2,6 +2,7 @@
 #ifndef HFR_DEVICE_DEVICE_HH
 #define HFR_DEVICE_DEVICE_HH
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -42,6 +43,21 @@ struct DeviceChoice {
   int device = -1;
 
   bool operator==(const DeviceChoice&) const = default;
+};
+
+/// How device code is launched; the results do not depend on it.
+struct DeviceTuning {
+  unsigned work_group = 0;  ///< work-items of a group: 1, or a power of two up to 256; 0: by kind of device
+  unsigned groups = 0;      ///< work-groups of a launch; 0: by the number of compute units
+  bool profile = false;     ///< measure every kernel; see DeviceMesh::profile()
+  unsigned spare = 0;  ///< room at first for so many more cells, and for so many candidates; 0: by the mesh
+};
+
+/// Time that one kernel took, over all its launches.
+struct KernelTime {
+  std::string kernel;
+  std::size_t launches = 0;
+  double seconds = 0;
 };
 
 /// From "cpu", "auto", "opencl" or "opencl:PLATFORM.DEVICE". Throws InvalidInput that lists the forms.

@@ -10,6 +10,7 @@
 
 #include "Device/Queue.hh"
 #include "HalfFace/Generate.hh"
+#include "HalfFace/Writer.hh"
 #include "kernels/counters.h"
 #include "kernels/volume_length.h"
 
@@ -275,15 +276,16 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
   std::vector<std::pair<std::size_t, std::size_t>> inherits;  // a slot, and whose data it takes
   for (std::size_t c = 0; c < origin.size(); ++c)
     if (origin[c] != c) inherits.emplace_back(c, origin[c]);
+  TetMesh::Writer writer(mesh);
   // By way of spare slots: a slot may give its data away and take another's.
-  mesh.resize_cells(m.n_cells + inherits.size());
+  writer.resize_cells(m.n_cells + inherits.size());
   for (std::size_t i = 0; i < inherits.size(); ++i)
     mesh.copy_cell_data(CellHandle(inherits[i].second), CellHandle(m.n_cells + i));
   for (std::size_t i = 0; i < inherits.size(); ++i)
     mesh.copy_cell_data(CellHandle(m.n_cells + i), CellHandle(inherits[i].first));
-  mesh.resize_cells(m.n_cells);
+  writer.resize_cells(m.n_cells);
   for (std::size_t c = 0; c < m.n_cells; ++c) {
-    Cell& cell = mesh.mutable_cell(CellHandle(c));
+    Cell& cell = writer.cell(CellHandle(c));
     for (std::size_t k = 0; k < 4; ++k) {
       cell.v[k] = VertexHandle(cells[8 * c + k]);
       cell.mate[k] = HalfFaceHandle(cells[8 * c + 4 + k]);
@@ -292,12 +294,12 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
   std::copy(points.begin(), points.end(), mesh.point_data());
   for (std::size_t v = 0; v < m.n_vertices; ++v) {
     if (hooks[v] == kNone && mesh.hook(VertexHandle(v)).is_valid())
-      mesh.mark_deleted(VertexHandle(v));  // only a vertex that was removed loses its cells
+      writer.mark_deleted(VertexHandle(v));  // only a vertex that was removed loses its cells
     else
-      mesh.set_hook(VertexHandle(v), CellHandle(hooks[v]));
+      writer.set_hook(VertexHandle(v), CellHandle(hooks[v]));
   }
-  mesh.free_cells().clear();
-  for (cl_uint c : free_cells) mesh.free_cells().push_back(CellHandle(c));
+  writer.free_cells().clear();
+  for (cl_uint c : free_cells) writer.free_cells().push_back(CellHandle(c));
   work.quality = std::move(quality);
   work.pending = std::move(pending);
   work.star_size = std::move(star_size);

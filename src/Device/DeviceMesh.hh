@@ -15,21 +15,6 @@
 
 namespace hfr {
 
-/// How device code is launched; the results do not depend on it.
-struct DeviceTuning {
-  unsigned work_group = 0;  ///< work-items of a group: 1, or a power of two up to 256; 0: by kind of device
-  unsigned groups = 0;      ///< work-groups of a launch; 0: by the number of compute units
-  bool profile = false;     ///< measure every kernel; see DeviceMesh::profile()
-  unsigned spare = 0;  ///< room at first for so many more cells, and for so many candidates; 0: by the mesh
-};
-
-/// Time that one kernel took, over all its launches.
-struct KernelTime {
-  std::string kernel;
-  std::size_t launches = 0;
-  double seconds = 0;
-};
-
 /// Cells that a pass looks at: those with a pending bit of `pending_bit`, or, when that is 0, those with a
 /// decision value below `below` and a vertex that has changed after clock `since`.
 struct DeviceLook {

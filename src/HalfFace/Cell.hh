@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "HalfFace/Handles.hh"
-#include "HalfFace/RawArray.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/RawArray.hh"
 
 /// The record of a cell, and scratch memory for the neighbourhoods of a mesh.
 namespace hfr {

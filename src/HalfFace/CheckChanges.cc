@@ -4,7 +4,7 @@
 // make a connected surface of triangles, its link. Of a closed one with T triangles V - T/2 is at most 2, of
 // one with B edges on its boundary V - (T + B)/2 at most 1. Where the different vertices alone make up that
 // number, the link has each of them once: every edge of the vertex has one ring of cells.
-#include "HalfFace/CheckChanges.hh"
+#include "HalfFace/Check.hh"
 
 #include <algorithm>
 #include <map>

@@ -9,7 +9,7 @@
 #include <ranges>
 #include <type_traits>
 
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 /// Ranges over the things of a mesh and over neighbourhoods. All are views in the sense of C++20, forward,
 /// and none allocates: what a star needs is kept inside the range object (1 kB for vertex_vertices, 2.4 kB

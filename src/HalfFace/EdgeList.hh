@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 namespace hfr {
 

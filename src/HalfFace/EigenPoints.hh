@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 /// The points of a mesh as Eigen matrices and vectors, without copying. Needs Eigen 3.3, which the library
 /// itself does not.

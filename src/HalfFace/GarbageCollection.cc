@@ -62,7 +62,7 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
     }
   });
   cells_ = std::move(cells);
-  outdate_hand_index();
+  hand_index_state_ = kVoid;
   free_cells_.clear();
   n_deleted_vertices_ = 0;
   hook_.assign(n_vertices, CellHandle());

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
-#include "HalfFace/Vec3.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
 
 /// Meshes of simple shapes as plain arrays, ready for build(): for tests, benchmarks and first steps. Every
 /// call with the same arguments gives the same bits on one system; exp and sin of the C library take part in

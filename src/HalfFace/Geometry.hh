@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 /// Lengths, normals and volumes of the things of a mesh, in the units of its points. Nothing is checked: the
 /// handles are of things that exist.

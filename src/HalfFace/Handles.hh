@@ -10,7 +10,7 @@
 #include <functional>
 #include <limits>
 
-#include "HalfFace/Config.hh"
+#include "hfremesh/HalfFace/Config.hh"
 
 namespace hfr {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "HalfFace/TupleMap.hh"
+#include "hfremesh/HalfFace/TupleMap.hh"
 
 namespace hfr {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "HalfFace/CellOrder.hh"
+#include "HalfFace/Writer.hh"
 #include "Parallel/Atomic.hh"
 #include "Parallel/DisjointSets.hh"
 
@@ -119,17 +120,18 @@ std::vector<VertexHandle> split_pinched(TetMesh& mesh) {
                      halfface_of(cell_of(m), mesh.cell(cell_of(m)).corner(v)).idx());
     }
   }
+  TetMesh::Writer writer(mesh);
   std::vector<VertexHandle> copied;
   std::vector<std::uint8_t> taken(mesh.n_vertices(), 0);  // a part has the vertex
   std::vector<VertexHandle> of_root(4 * mesh.n_cells());  // where that is not the vertex itself
   for (Index corner = 0; corner < 4 * mesh.n_cells(); ++corner) {
     const Index root = corners.find(corner);
     const CellHandle c(corner / 4);
-    VertexHandle& v = mesh.mutable_cell(c).v[corner % 4];
+    VertexHandle& v = writer.cell(c).v[corner % 4];
     if (root == corner && taken[v.idx()] != 0) {
       copied.push_back(v);
       of_root[root] = mesh.add_vertex(mesh.point(v));
-      mesh.set_hook(of_root[root], c);
+      writer.set_hook(of_root[root], c);
     }
     taken[v.idx()] = 1;
     if (of_root[root].is_valid()) v = of_root[root];

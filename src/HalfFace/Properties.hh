@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
-#include "HalfFace/TupleMap.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/TupleMap.hh"
 
 namespace hfr {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "HalfFace/Properties.hh"
+#include "hfremesh/HalfFace/Properties.hh"
 
 namespace hfr {
 

@@ -2,7 +2,7 @@
 #ifndef HFR_HALFFACE_REORDER_HH
 #define HFR_HALFFACE_REORDER_HH
 
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 namespace hfr {
 

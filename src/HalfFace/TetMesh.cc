@@ -66,7 +66,7 @@ void TetMesh::restore(TetMesh saved) {
   mine.take(saved.properties_, saved.n_vertices(), saved.n_cells());
   *this = std::move(saved);
   properties_ = std::move(mine);
-  outdate_hand_index();
+  hand_index_state_ = kVoid;
 }
 
 VertexHandle TetMesh::add_vertex(Vec3 p) {
@@ -80,7 +80,7 @@ VertexHandle TetMesh::add_vertex(Vec3 p) {
 }
 
 void TetMesh::resize_cells(std::size_t n) {
-  outdate_hand_index();
+  hand_index_state_ = kVoid;
   grow_cells(n);
 }
 

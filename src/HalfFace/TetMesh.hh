@@ -8,14 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/Cell.hh"
-#include "HalfFace/Errors.hh"
-#include "HalfFace/Handles.hh"
-#include "HalfFace/Labels.hh"
-#include "HalfFace/PropertyAccess.hh"
-#include "HalfFace/Vec3.hh"
-#include "Parallel/Atomic.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/Cell.hh"
+#include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Labels.hh"
+#include "hfremesh/HalfFace/PropertyAccess.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 namespace hfr {
 
@@ -394,6 +393,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
   void restore(TetMesh saved);
 
   // --- by hand, one at a time ---
+  VertexHandle add_vertex(Vec3 p);
   /// Appends a cell and links it with its neighbours. The first call after building or other writing makes a
   /// table of all faces: O(n). Throws InvalidInput, leaving the mesh as it was, when a vertex does not exist
   /// or comes twice, when a face has two cells already, or when the order contradicts a neighbour.
@@ -433,23 +433,9 @@ class TetMesh : public PropertyAccess<TetMesh> {
   void swap_vertices(VertexHandle a, VertexHandle b);
   void swap_cells(CellHandle a, CellHandle b);
 
-  // --- low-level writing, for operators and builders; nothing is checked ---
-  VertexHandle add_vertex(Vec3 p);
-  void resize_cells(std::size_t n);  ///< new cells are deleted ones, not on the free list
-  Cell& mutable_cell(CellHandle c) {
-    outdate_hand_index();
-    return cells_[c.idx()];
-  }
-  void set_mate(HalfFaceHandle h, HalfFaceHandle m) {
-    outdate_hand_index();
-    cells_[h.idx() / 4].mate[h.idx() % 4] = m;
-  }
-  void set_hook(VertexHandle v, CellHandle c) { hook_[v.idx()] = c; }
-  CellHandle& mutable_hook(VertexHandle v) { return hook_[v.idx()]; }
-  void mark_deleted(CellHandle c) { mutable_cell(c) = Cell{}; }
-  void mark_deleted(VertexHandle v);
+  /// Low-level writing, for builders and operators; see Writer.hh.
+  class Writer;
   /// Deleted cells that wait for reuse, in the order in which they are to be taken (from the back).
-  std::vector<CellHandle>& free_cells() { return free_cells_; }
   const std::vector<CellHandle>& free_cells() const { return free_cells_; }
 
  private:
@@ -481,10 +467,6 @@ class TetMesh : public PropertyAccess<TetMesh> {
     std::vector<Index> n_cells;                                                       // per vertex
   };
   enum HandIndexState : std::uint8_t { kVoid, kCounts, kCountsAndFaces };
-  void outdate_hand_index() {  // operators write from several threads at once
-    const auto state = par::atomic(hand_index_state_);
-    if (state.load(std::memory_order_relaxed) != kVoid) state.store(kVoid, std::memory_order_relaxed);
-  }
   void count_cells();
   void make_hand_index();
   void outdate_hand_faces() {
@@ -499,6 +481,8 @@ class TetMesh : public PropertyAccess<TetMesh> {
   void split_labels(const Cell& parent, std::span<const VertexHandle> simplex, VertexHandle middle);
   bool labels_can_join(const Star& star, VertexHandle v, VertexHandle w) const;
   void join_labels(const Star& star, VertexHandle v, VertexHandle w);
+  void resize_cells(std::size_t n);
+  void mark_deleted(VertexHandle v);
   void grow_cells(std::size_t n);
   void drop_labels_of_nothing(const Cell& dead);
 
@@ -573,7 +557,7 @@ bool TetMesh::walk_ring_back(CellHandle c, int edge, Visit&& visit) const {
 
 }  // namespace hfr
 
-#include "HalfFace/Circulators.hh"
-#include "HalfFace/TupleUse.hh"
+#include "hfremesh/HalfFace/Circulators.hh"
+#include "hfremesh/HalfFace/TupleUse.hh"
 
 #endif

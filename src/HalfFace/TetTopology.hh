@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 namespace hfr {
 

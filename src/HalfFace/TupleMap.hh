@@ -9,8 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
-#include "kernels/priority.h"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/kernels/priority.h"
 
 namespace hfr {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "HalfFace/TupleMap.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/HalfFace/TupleMap.hh"
 
 namespace hfr {
 

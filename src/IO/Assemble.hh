@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "IO/MeshData.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshData.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 namespace hfr::io {
 

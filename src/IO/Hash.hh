@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "HalfFace/TetMesh.hh"
-#include "IO/MeshData.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshData.hh"
 
 namespace hfr::io {
 

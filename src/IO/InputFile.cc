@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "HalfFace/Errors.hh"
+#include "IO/MeshFile.hh"
 
 namespace hfr::io {
 namespace {

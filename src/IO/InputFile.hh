@@ -9,9 +9,6 @@
 
 namespace hfr::io {
 
-/// What the standard input of the process is called as a file.
-inline constexpr const char* kStandardInput = "/dev/stdin";
-
 /// A whole file, mapped read-only into memory; the standard input is read to its end instead.
 class InputFile {
  public:

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
-#include "HalfFace/Vec3.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
 
 namespace hfr::io {
 

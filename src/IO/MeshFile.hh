@@ -7,9 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "IO/MeshData.hh"
+#include "hfremesh/IO/MeshData.hh"
 
 namespace hfr::io {
+
+/// What the standard input of the process is called as a file, and its standard output as a target; they are
+/// read and written as they were opened.
+inline constexpr const char* kStandardInput = "/dev/stdin";
+inline constexpr const char* kStandardOutput = "/dev/stdout";
 
 /// How a file is to be written.
 struct WriteOptions {

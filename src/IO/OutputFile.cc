@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "HalfFace/Errors.hh"
+#include "IO/MeshFile.hh"
 
 namespace hfr::io {
 namespace {

@@ -10,9 +10,6 @@
 
 namespace hfr::io {
 
-/// What the standard output of the process is called as a target; it is written to as it was opened.
-inline constexpr const char* kStandardOutput = "/dev/stdout";
-
 /// `path` with its symbolic links followed, to a file that need not be there yet. Throws IoError where links
 /// lead round in a circle.
 std::filesystem::path link_target(const std::filesystem::path& path);

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "IO/MeshFile.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 /// From file to mesh and back in one call each. Who wants the arrays in between takes read_mesh() and
 /// assemble(), disassemble() and write_mesh().

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "Operators/PinchedStars.hh"
 #include "Quality/Damage.hh"
 
 namespace hfr {

@@ -8,8 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/PinchedStars.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
 
 namespace hfr {
 
@@ -88,6 +87,15 @@ inline std::array<CavityPart, 2> parts_of(std::size_t n_dead, std::size_t n_born
 inline std::array<CavityPart, 2> parts_of(const Cavity& cavity) {
   return parts_of(cavity.dead.size(), cavity.born.size(), cavity.n_dead_first, cavity.n_born_first);
 }
+
+class PinchedStars;
+
+/// What is known of the stars of a mesh, for who asks whether an edge or face exists: only a vertex all of
+/// whose cells are known can say that it does not.
+struct StarKnowledge {
+  std::span<const std::uint32_t> star_size = {};  ///< number of cells per vertex; empty: not known
+  const PinchedStars* pinched = nullptr;
+};
 
 /// True when the cavity may be committed as far as labels, regions and, if `check_links`, the link condition
 /// go:

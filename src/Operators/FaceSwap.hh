@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Operator.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Operator.hh"
 
 namespace hfr {
 

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Cavity.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Cavity.hh"
 
 namespace hfr {
 

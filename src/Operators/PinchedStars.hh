@@ -29,13 +29,6 @@ class PinchedStars {
   std::vector<CellHandle> cells_;
 };
 
-/// What is known of the stars of a mesh, for who asks whether an edge or face exists: only a vertex all of
-/// whose cells are known can say that it does not.
-struct StarKnowledge {
-  std::span<const std::uint32_t> star_size = {};  ///< number of cells per vertex; empty: not known
-  const PinchedStars* pinched = nullptr;
-};
-
 }  // namespace hfr
 
 #endif

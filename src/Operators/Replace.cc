@@ -2,6 +2,7 @@
 // The paper's CONFORM for one cavity. Faces are matched by their vertices; a cavity has a dozen cells as a
 // rule, a few hundred at most, so an open-addressing table on the stack serves.
 #include "Operators/Replace.hh"
+#include "HalfFace/Writer.hh"
 
 #include <algorithm>
 #include <vector>
@@ -70,6 +71,7 @@ void for_outer_faces(const TetMesh& mesh, const Cavity& cavity, Visit&& visit) {
 void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> slots,
                  VertexHandle new_vertex, std::vector<OuterFace>& notes) {
   HFR_ASSERT(slots.size() == cavity.born.size());
+  TetMesh::Writer writer(mesh);
   const std::size_t first_note = notes.size();
   OpenFaces open(4 * (cavity.born.size() + cavity.dead.size()));
   for_outer_faces(mesh, cavity, [&](HalfFaceHandle h, HalfFaceHandle m) {
@@ -78,10 +80,10 @@ void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle
   });
   for (const CavityPart& part : parts_of(cavity))
     for (std::size_t i = part.n_born; i < part.n_dead; ++i)
-      mesh.mark_deleted(cavity.dead[part.first_dead + i]);
+      writer.mark_deleted(cavity.dead[part.first_dead + i]);
   const auto n_notes = static_cast<std::int32_t>(notes.size() - first_note);
   for (std::size_t i = 0; i < cavity.born.size(); ++i) {
-    Cell& cell = mesh.mutable_cell(slots[i]);
+    Cell& cell = writer.cell(slots[i]);
     cell.v = cavity.born[i];
     cell.mate = {};  // a face that nothing is behind, new or old, stays on the boundary
     for (VertexHandle& v : cell.v)
@@ -94,12 +96,12 @@ void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle
       if (partner < n_notes) {
         OuterFace& note = notes[first_note + static_cast<std::size_t>(partner)];
         note.after = h;
-        mesh.set_mate(h, note.behind);
+        writer.set_mate(h, note.behind);
       } else {
         const std::int32_t other = partner - n_notes;
         const HalfFaceHandle g = halfface_of(slots[static_cast<std::size_t>(other / 4)], other % 4);
-        mesh.set_mate(h, g);
-        mesh.set_mate(g, h);
+        writer.set_mate(h, g);
+        writer.set_mate(g, h);
       }
     }
   }
@@ -110,14 +112,15 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
     mesh.set_point(cavity.moved, cavity.target);
     return;
   }
+  TetMesh::Writer writer(mesh);
   std::vector<CellHandle> slots, freed;
-  std::vector<CellHandle>& free = mesh.free_cells();
+  std::vector<CellHandle>& free = writer.free_cells();
   for (const CavityPart& part : parts_of(cavity)) {
     const CellHandle* dead = cavity.dead.begin() + part.first_dead;
     for (std::size_t i = 0; i < part.n_dead; ++i) (i < part.n_born ? slots : freed).push_back(dead[i]);
     for (std::size_t i = part.n_dead; i < part.n_born; ++i) {
       if (free.empty()) {
-        mesh.resize_cells(mesh.n_cells() + 1);
+        writer.resize_cells(mesh.n_cells() + 1);
         free.push_back(CellHandle(mesh.n_cells() - 1));
       }
       slots.push_back(free.back());
@@ -136,11 +139,11 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
   std::vector<OuterFace> notes;
   write_cells(mesh, cavity, slots, new_vertex, notes);
   for (const OuterFace& note : notes)
-    if (note.behind.is_valid()) mesh.set_mate(note.behind, note.after);
+    if (note.behind.is_valid()) writer.set_mate(note.behind, note.after);
   for (std::size_t i = slots.size(); i-- > 0;)
-    for (VertexHandle v : mesh.cell(slots[i]).v) mesh.set_hook(v, slots[i]);
+    for (VertexHandle v : mesh.cell(slots[i]).v) writer.set_hook(v, slots[i]);
   inherit_labels(mesh, heirs, new_vertex);
-  if (cavity.removed.is_valid()) mesh.mark_deleted(cavity.removed);
+  if (cavity.removed.is_valid()) writer.mark_deleted(cavity.removed);
 }
 
 }  // namespace hfr

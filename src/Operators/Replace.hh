@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Cavity.hh"
-#include "Operators/Operator.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Cavity.hh"
+#include "hfremesh/Operators/Operator.hh"
 
 namespace hfr {
 

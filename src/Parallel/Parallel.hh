@@ -10,28 +10,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "hfremesh/Parallel/Policy.hh"
+
 /// The ground floor: the only folder that knows the thread library.
 /// Every function gives the same result for any number of threads.
 namespace hfr::par {
-
-/// How a parallel loop runs; passed by value, there is no global state.
-struct Policy {
-  int threads = 1;                  ///< ≥ 1; Policy::all() for every core that the process may use
-  std::size_t serial_below = 2048;  ///< loops shorter than this stay on the calling thread
-
-  static Policy all();
-
-  /// The same policy for a loop whose items cost about this much each: serial only where a second thread
-  /// would cost more to wake than it saves.
-  Policy for_items_of(double nanoseconds) const {
-    Policy out = *this;
-    out.serial_below = std::min(serial_below, static_cast<std::size_t>(kForkNanoseconds / nanoseconds) + 2);
-    return out;
-  }
-
- private:
-  static constexpr double kForkNanoseconds = 100'000;
-};
 
 /// Number of threads that a loop of n items would use under the policy.
 int thread_count(Policy policy, std::size_t n);

@@ -2,8 +2,8 @@
 #ifndef HFR_QUALITY_CELL_QUALITY_HH
 #define HFR_QUALITY_CELL_QUALITY_HH
 
-#include "HalfFace/TetMesh.hh"
-#include "Quality/Metrics.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Quality/Metrics.hh"
 
 namespace hfr {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "HalfFace/TetMesh.hh"
-#include "Quality/Metrics.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Quality/Metrics.hh"
 
 namespace hfr {
 

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 
+#include "HalfFace/TetMesh.hh"
+#include "Parallel/Parallel.hh"
+
 namespace hfr::detail {
 namespace {
 

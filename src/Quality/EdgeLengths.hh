@@ -2,6 +2,7 @@
 #ifndef HFR_QUALITY_EDGE_LENGTHS_HH
 #define HFR_QUALITY_EDGE_LENGTHS_HH
 
+#include "Parallel/Policy.hh"
 #include "Quality/Statistics.hh"
 
 /// The part of statistics() that tells how long edges are; internal to this folder.

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 namespace hfr {
 

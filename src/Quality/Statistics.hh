@@ -7,10 +7,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
+#include "hfremesh/Parallel/Policy.hh"
 
 namespace hfr {
+
+class TetMesh;
 
 /// Percentages at which a Distribution is given.
 inline constexpr std::array<double, 9> kPercentiles = {0.1, 1, 5, 25, 50, 75, 95, 99, 100};

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "HalfFace/CheckChanges.hh"
+#include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Survey.hh"

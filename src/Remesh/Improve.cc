@@ -13,6 +13,8 @@
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/Coordinates.hh"
 #include "Remesh/Explain.hh"
+#include "Remesh/Limits.hh"
+#include "Remesh/MapRecorder.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/RestoreVolume.hh"

@@ -9,11 +9,11 @@
 #include <optional>
 #include <vector>
 
-#include "Parallel/Parallel.hh"
-#include "Quality/Statistics.hh"
-#include "Remesh/Improve.hh"
-#include "Surface/SurfaceOptions.hh"
-#include "Surface/TriangleMesh.hh"
+#include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Quality/Statistics.hh"
+#include "hfremesh/Remesh/Improve.hh"
+#include "hfremesh/Surface/SurfaceOptions.hh"
+#include "hfremesh/Surface/TriangleMesh.hh"
 
 namespace hfr {
 

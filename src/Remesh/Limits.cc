@@ -146,4 +146,12 @@ std::array<std::size_t, kLimitNames.size()> count_limits(const std::vector<Stuck
   return counts;
 }
 
+std::vector<CellHandle> cells_held_back(const std::vector<StuckCell>& stuck) {
+  std::vector<CellHandle> cells;
+  for (const StuckCell& cell : stuck)
+    if (is_proof(cell.limit) || (cell.limit == Limit::kNotFound && cell.n_frozen_vertices == 4))
+      cells.push_back(cell.cell);
+  return cells;
+}
+
 }  // namespace hfr

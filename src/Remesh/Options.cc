@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Options.hh"
+
 #include <array>
 #include <sstream>
 #include <utility>
 
 #include "HalfFace/Errors.hh"
-#include "Remesh/Improve.hh"
 
 namespace hfr {
 namespace {

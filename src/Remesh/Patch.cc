@@ -7,6 +7,7 @@
 
 #include "HalfFace/Layers.hh"
 #include "HalfFace/TupleMap.hh"
+#include "HalfFace/Writer.hh"
 
 namespace hfr {
 
@@ -80,12 +81,13 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
     }
   }
   std::unordered_set<std::array<VertexHandle, 3>, TupleHash> kept;
+  TetMesh::Writer writer(whole);
   std::vector<VertexHandle> vertices = vertices_;
   for (std::size_t i = 0; i < changed.n_vertices(); ++i) {
     const VertexHandle local(i);
     if (i < vertices_.size()) {
       if (changed.is_deleted(local))
-        whole.mark_deleted(vertices[i]);
+        writer.mark_deleted(vertices[i]);
       else
         whole.set_point(vertices[i], changed.point(local));
       continue;
@@ -101,7 +103,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
   }
   // Slots: those of the cells that go, then free ones, then new ones.
   std::vector<CellHandle> slots(changed.n_cells());
-  std::vector<CellHandle>& free = whole.free_cells();
+  std::vector<CellHandle>& free = writer.free_cells();
   std::size_t n_used = 0;
   for (std::size_t i = 0; i < changed.n_cells(); ++i) {
     if (changed.is_deleted(CellHandle(i))) continue;
@@ -110,7 +112,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
       continue;
     }
     if (free.empty()) {
-      whole.resize_cells(whole.n_cells() + 1);
+      writer.resize_cells(whole.n_cells() + 1);
       free.push_back(CellHandle(whole.n_cells() - 1));
     }
     slots[i] = free.back();
@@ -118,28 +120,28 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
     whole.copy_cell_data(cells_[0], slots[i]);
   }
   for (std::size_t i = n_used; i < cells_.size(); ++i) {
-    whole.mark_deleted(cells_[i]);
+    writer.mark_deleted(cells_[i]);
     free.push_back(cells_[i]);
   }
   for (std::size_t i = 0; i < changed.n_cells(); ++i) {
     const CellHandle local(i);
     if (changed.is_deleted(local)) continue;
-    Cell& cell = whole.mutable_cell(slots[i]);
+    Cell& cell = writer.cell(slots[i]);
     for (std::size_t k = 0; k < 4; ++k) {
       cell.v[k] = vertices[changed.cell(local).v[k].idx()];
-      whole.set_hook(cell.v[k], slots[i]);
+      writer.set_hook(cell.v[k], slots[i]);
     }
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(slots[i], k);
       const HalfFaceHandle m = changed.opposite_halfface(halfface_of(local, k));
       if (m.is_valid()) {
-        whole.set_mate(h, halfface_of(slots[cell_of(m).idx()], static_cast<int>(m.idx() % 4)));
+        writer.set_mate(h, halfface_of(slots[cell_of(m).idx()], static_cast<int>(m.idx() % 4)));
         continue;
       }
       const auto face = whole.halfface_vertices(h);
       const auto at = behind.find(AnyOrder::key(face));
       if (at == behind.end()) {  // new on the surface
-        whole.set_mate(h, HalfFaceHandle());
+        writer.set_mate(h, HalfFaceHandle());
         const auto& known = changed.labels().faces;
         const std::size_t entry = known.position(changed.halfface_vertices(halfface_of(local, k)));
         if (entry == known.size()) continue;
@@ -149,8 +151,8 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
         continue;
       }
       kept.insert(at->first);
-      whole.set_mate(h, at->second);
-      if (at->second.is_valid()) whole.set_mate(at->second, h);
+      writer.set_mate(h, at->second);
+      if (at->second.is_valid()) writer.set_mate(at->second, h);
     }
   }
   for (const auto& face : gone)

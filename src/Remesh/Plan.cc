@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Remesh/Plan.hh"
-
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <vector>
 
 #include "Quality/Metrics.hh"
+#include "Remesh/Improve.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
 

@@ -4,17 +4,13 @@
 #include <map>
 
 #include "HalfFace/Errors.hh"
+#include "Remesh/Limits.hh"
 #include "Remesh/Surfaces.hh"
-#ifdef HFR_HAS_SURFACE
-#include "Surface/FeatureLabels.hh"
 #include "Surface/HeldCells.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceUnfold.hh"
-#endif
 
 namespace hfr {
-
-#ifdef HFR_HAS_SURFACE
 namespace {
 
 /// What the boundary encloses; interfaces take no part.
@@ -124,62 +120,24 @@ void SurfaceCopy::put_back(SurfaceMesh* surface) const {
   if (surface) surface->take_back(*copy_);
 }
 
-#else
-
-struct SurfaceRun::Impl {};
-
-SurfaceRun::SurfaceRun(TetMesh&, const ImproveOptions& options, bool, std::vector<PassReport>&) {
-  HFR_REQUIRE(options.surface.mode == SurfaceMode::kFrozen,
-              "this hfremesh was built without OpenMesh and can only leave the surface as it is: "
-              "use --surface frozen, or build with -DHFR_SURFACE=ON");
-}
-SurfaceMesh* SurfaceRun::get() const { return nullptr; }
-SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
-PartOfSurface::PartOfSurface(const TetMesh&, const SurfaceMesh*, std::span<const VertexHandle>) {}
-SurfaceMesh* PartOfSurface::get() const { return nullptr; }
-void take_again(SurfaceMesh*, const TetMesh&, par::Policy) {}
-SurfaceCopy::SurfaceCopy(const SurfaceMesh*) {}
-void SurfaceCopy::put_back(SurfaceMesh*) const {}
-
-#endif
-
 SurfaceRun::~SurfaceRun() = default;
-
-void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
-#ifdef HFR_HAS_SURFACE
-  label_features(mesh, options, policy);
-#else
-  static_cast<void>(mesh), static_cast<void>(options), static_cast<void>(policy);
-  throw InvalidInput(
-      "this hfremesh was built without OpenMesh and finds no features: build it with "
-      "-DHFR_SURFACE=ON");
-#endif
-}
 
 HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
                      const ImproveOptions& options) {
-  std::vector<CellHandle> cells;
-  for (const StuckCell& cell : stuck)
-    if (is_proof(cell.limit) || (cell.limit == Limit::kNotFound && cell.n_frozen_vertices == 4))
-      cells.push_back(cell.cell);
+  const std::vector<CellHandle> cells = cells_held_back(stuck);
   HeldCells held;
   held.cells = cells.size();
-#ifdef HFR_HAS_SURFACE
   held.known = true;
   for (FreedBy by : freed_by(mesh, cells, degrees, options.surface, options.policy)) {
     if (by == FreedBy::kFlat) ++held.by_flat;
     if (by == FreedBy::kFree) ++held.by_free;
     if (by == FreedBy::kShape) ++held.by_shape;
   }
-#else
-  static_cast<void>(mesh), static_cast<void>(degrees), static_cast<void>(options);
-#endif
   return held;
 }
 
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
                     const ImproveOptions& options) {
-#ifdef HFR_HAS_SURFACE
   std::vector<CellHandle> cells;
   for (const StuckCell& cell : stuck) cells.push_back(cell.cell);
   const auto held = held_by_features(mesh, cells, degrees, options.surface, options.policy);
@@ -192,9 +150,6 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
       limit = Limit::kSurfaceFeature;
     if (limit != Limit::kInputFeature) stuck[i].ceiling = 180;
   }
-#else
-  static_cast<void>(mesh), static_cast<void>(stuck), static_cast<void>(degrees), static_cast<void>(options);
-#endif
 }
 
 }  // namespace hfr

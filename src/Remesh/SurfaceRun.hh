@@ -66,10 +66,6 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
                     const ImproveOptions& options);
 
-/// Labels on the feature edges and corners of the surface as it is now: see Surface/FeatureLabels.hh. Throws
-/// InvalidInput in a build without OpenMesh.
-void add_feature_labels(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
-
 }  // namespace hfr
 
 #endif

@@ -3,27 +3,9 @@
 
 #include <algorithm>
 
-#ifdef HFR_HAS_SURFACE
 #include "Surface/SurfaceMesh.hh"
-#endif
 
 namespace hfr {
-
-double enclosed_volume(const std::vector<std::array<Vec3, 3>>& triangles) {
-  if (triangles.empty()) return 0;
-  const Vec3 origin = triangles[0][0];
-  double sum = 0;
-  double lost = 0;  // Kahan's
-  for (const auto& t : triangles) {
-    const double term = dot(t[0] - origin, cross(t[1] - origin, t[2] - origin)) / 6.0 - lost;
-    const double next = sum + term;
-    lost = (next - sum) - term;
-    sum = next;
-  }
-  return sum;
-}
-
-#ifdef HFR_HAS_SURFACE
 
 namespace {
 
@@ -64,7 +46,5 @@ void measure_surfaces(const std::vector<std::array<Vec3, 3>>& before,
   report.diagonal = diagonal(before);
   if (volume_before != 0) report.volume_change = (volume_after - volume_before) / volume_before;
 }
-
-#endif
 
 }  // namespace hfr

@@ -2,25 +2,19 @@
 #ifndef HFR_SCHEDULER_ROUND_HH
 #define HFR_SCHEDULER_ROUND_HH
 
-#include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
-#include <unordered_set>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Operator.hh"
-#include "Operators/Replace.hh"
-#include "Parallel/Atomic.hh"
-#include "Parallel/Interleave.hh"
-#include "Parallel/Parallel.hh"
-#include "Scheduler/ChunkedArray.hh"
-#include "Scheduler/Rank.hh"
-#include "Scheduler/Select.hh"
-#include "Scheduler/Workspace.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Operator.hh"
+#include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Scheduler/ChunkedArray.hh"
+#include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr {
 
@@ -41,15 +35,58 @@ struct RoundOptions {
   std::size_t may_gain = std::numeric_limits<std::size_t>::max();
 };
 
+namespace detail {
+
+/// A round whatever its operator: compiled once, in Round.cc, and told of the operator's candidates by
+/// Round. They are asked for from several threads at once.
+class RoundCore {
+ protected:
+  RoundCore(TetMesh& mesh, Workspace& work, RoundOptions options, bool ranks_by_gain);
+  virtual ~RoundCore();
+  RoundCore(const RoundCore&) = delete;
+  RoundCore& operator=(const RoundCore&) = delete;
+
+  virtual std::size_t n_candidates() const = 0;
+  virtual const PlanBase& candidate(std::size_t i) const = 0;
+  virtual void scope(const PlanBase& plan, Scope& out) const = 0;
+  virtual void cavity(const PlanBase& plan, Cavity& out) const = 0;
+  virtual Tet identity(const PlanBase& plan) const = 0;
+  virtual double quality(Vec3 a, Vec3 b, Vec3 c, Vec3 d) const = 0;
+  /// Brings the workspace's qualities of these cells up to date.
+  virtual void measure(std::span<const CellHandle> cells) const = 0;
+  /// Fills the candidates in the order of the seeds; returns how many seeds there were.
+  virtual std::size_t evaluate() = 0;
+
+  RoundCounts run();
+  /// Whether candidates have to pass may_be_committed(); before the first is asked about.
+  bool needs_admission();
+  bool may_be_committed(const PlanBase& plan, bool check, Cavity& cavity, Star& scratch) const;
+  std::size_t n_winners() const;
+  std::size_t candidate_of(std::size_t winner) const;
+  VertexHandle new_vertex_of(std::size_t winner) const;
+
+  TetMesh& mesh_;
+  Workspace& work_;
+  RoundOptions options_;
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace detail
+
 /// One round of one operator kind, or of several that compete (see AnyOf): evaluate the seeds in parallel,
 /// rank what improves, select the first independent set in rank order, hand out slots, commit in bulk,
 /// refresh. The result depends on mesh, seeds (as a set) and options, not on the number of threads. What lost
 /// is not remembered: it shared a cell with a winner, so its evaluation is void; the winner's new cells are
 /// pending instead.
 template <LocalOperator Op>
-class Round {
+class Round : private detail::RoundCore {
  public:
-  Round(TetMesh& mesh, Workspace& work, RoundOptions options) : mesh_(mesh), work_(work), options_(options) {}
+  Round(TetMesh& mesh, Workspace& work, RoundOptions options)
+      : RoundCore(
+            mesh, work, options, requires { Op::kRankByGain; }) {}
 
   /// Looks at every seed of the list.
   RoundCounts run(const Op& op, std::span<const typename Op::Seed> seeds) {
@@ -60,60 +97,48 @@ class Round {
   /// they are evaluated, while their cells are in cache, and never stored.
   template <class VisitSeeds>
   RoundCounts run(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
-    using Clock = std::chrono::steady_clock;
-    const auto since = [](Clock::time_point t) {
-      return std::chrono::duration<double>(Clock::now() - t).count();
-    };
-    RoundCounts counts;
-    counts.rounds = 1;
-    auto start = Clock::now();
-    counts.seeds = evaluate(op, n_sources, visit_seeds);
-    counts.candidates = candidates_.size();
-    counts.seconds_evaluate = since(start);
-    start = Clock::now();
-    rank_all(op);
-    counts.sub_rounds = select(op);
-    const std::size_t n_selected = winners_.size();
-    keep_number_of_cells();
-    counts.winners = winners_.size();
-    counts.held_back = n_selected - winners_.size();
-    counts.seconds_select = since(start);
-    start = Clock::now();
-    ++work_.clock;
-    if (!winners_.empty()) commit(op);
-    counts.seconds_commit = since(start);
-    return counts;
+    op_ = &op;
+    const auto evaluate_seeds = [&] { return evaluate(n_sources, visit_seeds); };
+    evaluate_ = {[](const void* context) { return (*static_cast<decltype(&evaluate_seeds)>(context))(); },
+                 &evaluate_seeds};
+    return RoundCore::run();
   }
 
   /// visit(plan, new vertex or invalid) for what the last run() committed, in rank order: for bookkeeping
   /// that is not the round's.
   template <class Visit>
   void for_committed(Visit&& visit) const {
-    for (const Winner& winner : winners_) visit(candidates_[winner.candidate], winner.new_vertex);
+    for (std::size_t w = 0; w < n_winners(); ++w) visit(candidates_[candidate_of(w)], new_vertex_of(w));
   }
 
  private:
   static constexpr int kPiecesAThread = 16;
-  static constexpr double kCommitNanoseconds = 3'000;
   using Plan = typename Op::Plan;
-  struct Winner {
-    std::uint32_t candidate = 0;
-    std::uint32_t rank = 0;
-    VertexHandle new_vertex, removed;
-    std::size_t first_slot = 0;
-    std::span<OuterFace> notes;
-  };
 
-  /// Fills candidates_ in the order of the seeds; returns how many seeds there were.
+  static const Plan& own(const PlanBase& plan) { return static_cast<const Plan&>(plan); }
+  std::size_t n_candidates() const override { return candidates_.size(); }
+  const PlanBase& candidate(std::size_t i) const override { return candidates_[i]; }
+  void scope(const PlanBase& plan, Scope& out) const override { op_->scope(mesh_, own(plan).seed, out); }
+  void cavity(const PlanBase& plan, Cavity& out) const override { op_->commit(mesh_, own(plan), out); }
+  Tet identity(const PlanBase& plan) const override { return op_->identity(mesh_, own(plan).seed); }
+  double quality(Vec3 a, Vec3 b, Vec3 c, Vec3 d) const override { return op_->metric(a, b, c, d); }
+  void measure(std::span<const CellHandle> cells) const override {
+    for (CellHandle c : cells) {
+      const auto& v = mesh_.cell(c).v;
+      work_.quality[c.idx()] =
+          op_->metric(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
+    }
+  }
+  std::size_t evaluate() override { return evaluate_.call(evaluate_.context); }
+
   template <class VisitSeeds>
-  std::size_t evaluate(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
+  std::size_t evaluate(std::size_t n_sources, VisitSeeds&& visit_seeds) {
     // Seeds differ much in cost, so threads take pieces as they come; pieces are joined in their order.
     const int n_threads = par::thread_count(options_.policy.for_items_of(seed_nanoseconds<Op>()), n_sources);
     const int n_pieces = n_threads == 1 ? 1 : kPiecesAThread * n_threads;
     std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_pieces));
     std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_pieces), 0);
     const bool check = needs_admission();
-    pinched_stars_ = PinchedStars(mesh_, work_.pinched, options_.policy);
     par::Policy pieces = options_.policy;
     pieces.serial_below = 0;
     par::for_each_dynamic(pieces, static_cast<std::size_t>(n_pieces), 1, [&](std::size_t piece) {
@@ -125,8 +150,8 @@ class Round {
       for (std::size_t i = par::part_begin(n_sources, n_pieces, static_cast<int>(piece)); i < end; ++i) {
         visit_seeds(i, [&](typename Op::Seed seed) {
           ++n;
-          const std::optional<Plan> plan = op.evaluate(mesh_, seed);
-          if (plan && may_be_committed(op, *plan, check, cavity, scratch)) mine.push_back(*plan);
+          const std::optional<Plan> plan = op_->evaluate(mesh_, seed);
+          if (plan && may_be_committed(*plan, check, cavity, scratch)) mine.push_back(*plan);
         });
       }
       n_seeds[piece] = n;
@@ -136,351 +161,12 @@ class Round {
     return std::accumulate(n_seeds.begin(), n_seeds.end(), std::size_t{0});
   }
 
-  bool needs_admission() const {
-    const Labels& labels = mesh_.labels();
-    return options_.check_links || mesh_.has_regions() || !labels.faces.empty() || !labels.edges.empty() ||
-           !labels.vertices.empty() || !mesh_.locks().empty() || !work_.pinched.empty();
-  }
-
-  bool may_be_committed(const Op& op, const Plan& plan, bool check, Cavity& cavity, Star& scratch) const {
-    const bool damaged = !(plan.old_worst > 0);
-    if (!check && !damaged) return true;
-    op.commit(mesh_, plan, cavity);
-    if (cavity.moved.is_valid() && !work_.pinched.empty() && work_.pinched[cavity.moved.idx()]) return false;
-    const StarKnowledge known{work_.star_size, &pinched_stars_};
-    if (!admissible(mesh_, cavity, options_.check_links, scratch, known)) return false;
-    if (!options_.check_links && holds_links(cavity) && makes_twice(mesh_, cavity, scratch, known))
-      return false;
-    return !((damaged || options_.check_links) && worsens_damage(op, plan, cavity));
-  }
-
-  bool holds_links(const Cavity& cavity) const {
-    return options_.check_links || work_.has_two_pinched(mesh_, cavity.dead);
-  }
-
-  /// By the metric as well as by the volumes of the cells.
-  bool worsens_damage(const Op& op, const Plan& plan, const Cavity& cavity) const {
-    Scope star;
-    if (cavity.moved.is_valid()) op.scope(mesh_, plan.seed, star);
-    using Cells = std::span<const CellHandle>;
-    const Cells cells = cavity.moved.is_valid() ? Cells(star) : Cells(cavity.dead);
-    std::ptrdiff_t more = 0;
-    const auto is_invalid = [&](const Tet& t) {
-      const auto at = [&](VertexHandle v) {
-        return v == Cavity::kNewVertex ? *cavity.new_vertex
-               : v == cavity.moved     ? cavity.target
-                                       : mesh_.point(v);
-      };
-      return !(op.metric(at(t[0]), at(t[1]), at(t[2]), at(t[3])) > 0);
-    };
-    for (CellHandle c : cells) {
-      if (!(work_.quality[c.idx()] > 0)) --more;
-      if (cavity.moved.is_valid() && is_invalid(mesh_.cell(c).v)) ++more;
-    }
-    for (const Tet& t : cavity.born)
-      if (is_invalid(t)) ++more;
-    return more > 0 || hfr::worsens_damage(mesh_, cavity, cells);
-  }
-
-  std::uint64_t key(const Plan& plan, const Tet& identity) const {
-    const std::uint64_t salt = options_.seed + work_.clock;
-    if constexpr (requires { Op::kRankByGain; })
-      return priority_by_gain(plan.old_worst, plan.new_worst, identity, salt);
-    else
-      return priority(plan.old_worst, identity, salt);
-  }
-
-  void rank_all(const Op& op) {
-    identities_.resize(candidates_.size());
-    keys_.resize(candidates_.size());
-    par::for_each(options_.policy, candidates_.size(), [&](std::size_t i) {
-      identities_[i] = op.identity(mesh_, candidates_[i].seed);
-      keys_[i] = {key(candidates_[i], identities_[i]), static_cast<std::uint32_t>(i)};
-    });
-    rank(options_.policy, keys_, scratch_, identities_);
-    if (!options_.worst_first) return;
-    for (par::KeyIndex& key : keys_) key.key = worst_first(candidates_[key.index].old_worst);
-    par::stable_sort(options_.policy, keys_, scratch_);
-  }
-
-  /// In rank order, a candidate wins when no cell of its scope is taken.
-  std::size_t select(const Op& op) {
-    scopes_ = ScopeList(options_.policy, keys_.size(), [&](std::size_t i, Scope& out) {
-      op.scope(mesh_, candidates_[keys_[i].index].seed, out);
-    });
-    std::size_t sub_rounds = 1;
-    std::vector<std::uint32_t> ranks;
-    if (options_.check_links || !work_.pinched.empty()) {
-      Cavity cavity;
-      std::unordered_set<std::uint64_t> created;
-      ranks = select_by_marking(scopes_, work_.claim, [&](std::size_t i) {
-        return creates_nothing_twice(op, candidates_[keys_[i].index], cavity, created);
-      });
-    } else {
-      ranks = hfr::select(options_.policy, scopes_, work_.claim, &sub_rounds);
-    }
-    winners_.clear();
-    for (std::uint32_t r : ranks) winners_.push_back({keys_[r].index, r, {}, {}, 0, {}});
-    return sub_rounds;
-  }
-
-  /// Gives up the winners that would take away or add too many cells. Serial, over winners in rank order.
-  void keep_number_of_cells() {
-    const auto loss = [](const Plan& plan) {
-      return plan.removes_vertex && plan.n_dead > plan.n_born ? plan.n_dead - plan.n_born : std::size_t{0};
-    };
-    const auto gain = [](const Plan& plan) {
-      return plan.adds_vertex && plan.n_born > plan.n_dead ? plan.n_born - plan.n_dead : std::size_t{0};
-    };
-    std::size_t lost = 0, gained = 0, n = 0;
-    for (const Winner& winner : winners_) {
-      lost += loss(candidates_[winner.candidate]);
-      gained += gain(candidates_[winner.candidate]);
-    }
-    if (lost <= options_.may_lose && gained <= options_.may_gain) return;
-    std::size_t left = options_.may_lose, room = options_.may_gain;
-    for (const Winner& winner : winners_) {
-      const Plan& plan = candidates_[winner.candidate];
-      const bool stays = loss(plan) <= left && gain(plan) <= room;
-      for (CellHandle c : scopes_[winner.rank])
-        work_.claim[c.idx()] = stays ? static_cast<std::uint32_t>(n) : kUnclaimed;
-      if (!stays) continue;
-      left -= loss(plan);
-      room -= gain(plan);
-      winners_[n++] = winner;
-    }
-    winners_.resize(n);
-  }
-
-  /// Two winners that share no cell could still make the same edge in a folded mesh; the later one is
-  /// refused. Hashes of 64 bits stand for the simplices: a chance collision only refuses a candidate for this
-  /// round.
-  bool creates_nothing_twice(const Op& op, const Plan& plan, Cavity& cavity,
-                             std::unordered_set<std::uint64_t>& created) const {
-    op.commit(mesh_, plan, cavity);
-    if (!holds_links(cavity)) return true;
-    std::vector<std::uint64_t> hashes;
-    for (const Simplex& simplex : created_simplices(mesh_, cavity)) {
-      std::uint64_t h = 0;
-      for (VertexHandle v : simplex) h = mix64(h ^ v.idx()) + 0x9e3779b97f4a7c15ULL;
-      if (created.contains(h)) return false;
-      hashes.push_back(h);
-    }
-    created.insert(hashes.begin(), hashes.end());
-    return true;
-  }
-
-  void commit(const Op& op) {
-    assign_slots(op);
-    const std::size_t n = winners_.size();
-    const int n_parts = par::thread_count(options_.policy.for_items_of(kCommitNanoseconds), n);
-    std::vector<Notes> notes(static_cast<std::size_t>(n_parts));
-    std::vector<std::vector<Inheritance>> inheritances(static_cast<std::size_t>(n_parts));
-    const bool has_labels = !mesh_.labels().faces.empty();
-    const auto for_winners = [&](auto&& body) {
-      par::parts(n_parts, [&](int part) {
-        const std::size_t end = par::part_begin(n, n_parts, part + 1);
-        for (std::size_t w = par::part_begin(n, n_parts, part); w < end; ++w)
-          body(static_cast<std::size_t>(part), w);
-      });
-    };
-    par::parts(n_parts, [&](int part) {  // commit A
-      Cavity cavity;
-      const std::size_t end = par::part_begin(n, n_parts, part + 1);
-      for (std::size_t w = par::part_begin(n, n_parts, part); w < end; ++w) {
-        Winner& winner = winners_[w];
-        op.commit(mesh_, candidates_[winner.candidate], cavity);
-        HFR_ASSERT(disagreement(candidates_[winner.candidate], cavity, scopes_[winner.rank]).empty());
-        winner.removed = cavity.removed;
-        if (cavity.moved.is_valid()) {
-          mesh_.set_point(cavity.moved, cavity.target);
-          continue;
-        }
-        count_stars(cavity, winner.new_vertex);
-        if (has_labels) note_heirs(cavity, winner.new_vertex, inheritances[static_cast<std::size_t>(part)]);
-        std::vector<OuterFace>& mine =
-            room_for(4 * cavity.dead.size(), notes[static_cast<std::size_t>(part)]);
-        const std::size_t first = mine.size();
-        write_cells(mesh_, cavity, slots_of(w), winner.new_vertex, mine);
-        winner.notes = {mine.data() + first, mine.data() + mine.size()};
-      }
-    });
-    for_winners([&](std::size_t, std::size_t w) { mend_mates(w); });
-    refresh(op, for_winners);
-    for (const auto& part : inheritances)  // in rank order
-      for (const Inheritance& one : part) inherit_labels(mesh_, one.heirs, one.new_vertex);
-    freeze_new_vertices();
-  }
-
-  /// Labels that go over to the faces of one winner.
-  struct Inheritance {
-    std::vector<Heir> heirs;
-    VertexHandle new_vertex;
-  };
-
-  void note_heirs(const Cavity& cavity, VertexHandle new_vertex, std::vector<Inheritance>& out) const {
-    Heirs heirs;
-    find_heirs(mesh_, cavity, heirs);
-    if (!heirs.empty()) out.push_back({{heirs.begin(), heirs.end()}, new_vertex});
-  }
-
-  /// A new vertex of the surface must stay, as constrained_vertices() has it for the others.
-  void freeze_new_vertices() {
-    for (std::size_t w = 0; w < winners_.size(); ++w) {
-      const VertexHandle v = winners_[w].new_vertex;
-      if (!v.is_valid()) continue;
-      for (CellHandle c : slots_of(w))
-        for (HalfFaceHandle h : mesh_.cell_halffaces(c))
-          if (mesh_.is_constrained(h) && mesh_.halfface_opposite_vertex(h) != v && mesh_.cell(c).has(v))
-            work_.frozen[v.idx()] = 1;
-    }
-  }
-
-  /// Outer faces of a part's winners, in pieces that never grow beyond what they were made for.
-  using Notes = std::vector<std::vector<OuterFace>>;
-
-  static std::vector<OuterFace>& room_for(std::size_t n, Notes& notes) {
-    constexpr std::size_t kPiece = 8192;
-    if (notes.empty() || notes.back().size() + n > notes.back().capacity()) {
-      notes.emplace_back();
-      notes.back().reserve(std::max(kPiece, n));
-    }
-    return notes.back();
-  }
-
-  /// Keeps star_size right; winners share vertices.
-  void count_stars(const Cavity& cavity, VertexHandle new_vertex) {
-    const auto add = [&](VertexHandle v, std::uint32_t n) {
-      par::before_shared_access();
-      par::atomic(work_.star_size[v.idx()]).fetch_add(n, std::memory_order_relaxed);
-    };
-    for (CellHandle c : cavity.dead)
-      for (VertexHandle v : mesh_.cell(c).v) add(v, static_cast<std::uint32_t>(-1));
-    for (const Tet& t : cavity.born)
-      for (VertexHandle v : t) add(v == Cavity::kNewVertex ? new_vertex : v, 1);
-  }
-
-  std::span<const CellHandle> slots_of(std::size_t w) const {
-    return {slots_.data() + winners_[w].first_slot, candidates_[winners_[w].candidate].n_born};
-  }
-
-  /// Dead cells' slots first, then the free list from its back, then new ones; freed slots go to its back.
-  /// All in rank order, so slots do not depend on threads.
-  void assign_slots(const Op& op) {
-    slots_.clear();
-    std::vector<CellHandle>& free = mesh_.free_cells();
-    freed_.clear();
-    std::size_t n_cells = mesh_.n_cells();
-    std::vector<std::pair<CellHandle, CellHandle>>
-        fresh;  // a dead cell of the cavity, a slot that it extends to
-    Cavity cavity;
-    for (Winner& winner : winners_) {
-      const Plan& plan = candidates_[winner.candidate];
-      const auto scope = scopes_[winner.rank];
-      winner.first_slot = slots_.size();
-      if (plan.n_dead == 0) continue;
-      HFR_ASSERT(scope.size() == plan.n_dead);
-      for (const CavityPart& p : parts_of(plan.n_dead, plan.n_born, plan.n_dead_first, plan.n_born_first)) {
-        for (std::size_t i = 0; i < p.n_dead; ++i)
-          (i < p.n_born ? slots_ : freed_).push_back(scope[p.first_dead + i]);
-        for (std::size_t i = p.n_dead; i < p.n_born; ++i) {
-          if (free.empty()) {
-            slots_.push_back(CellHandle(n_cells++));
-          } else {
-            slots_.push_back(free.back());
-            free.pop_back();
-          }
-          fresh.emplace_back(scope[p.first_dead], slots_.back());
-        }
-      }
-      if (plan.adds_vertex) {
-        op.commit(mesh_, plan, cavity);
-        winner.new_vertex = mesh_.add_vertex(*cavity.new_vertex);
-        mesh_.copy_vertex_data(nearest_vertex(mesh_, cavity), winner.new_vertex);
-      }
-    }
-    mesh_.resize_cells(n_cells);
-    work_.grow(mesh_);
-    for (const auto& [from, to] : fresh) mesh_.copy_cell_data(from, to);
-    for (std::size_t i = freed_.size(); i-- > 0;) free.push_back(freed_[i]);
-  }
-
-  /// Commit B: what lies behind an outer face learns of the new half-face; a neighbour that was itself
-  /// replaced in this round is looked up in its winner's notes.
-  void mend_mates(std::size_t w) {
-    for (const OuterFace& note : winners_[w].notes) {
-      if (!note.behind.is_valid()) continue;
-      const std::uint32_t other = work_.claim[cell_of(note.behind).idx()];
-      if (other == kUnclaimed || winners_[other].notes.empty()) {
-        mesh_.set_mate(note.behind, note.after);
-        continue;
-      }
-      for (const OuterFace& theirs : winners_[other].notes)
-        if (theirs.before == note.behind) mesh_.set_mate(note.after, theirs.after);
-    }
-  }
-
-  /// Qualities, pending bits, change stamps and hooks (the smallest cell made in this round) of what was
-  /// written.
-  template <class ForWinners>
-  void refresh(const Op& op, ForWinners&& for_winners) {
-    const auto store = [](auto& place, auto value) {  // several winners may write the same value
-      par::before_shared_access();
-      par::atomic(place).store(value, std::memory_order_relaxed);
-    };
-    for_winners([&](std::size_t, std::size_t w) {
-      const Winner& winner = winners_[w];
-      const bool moves = candidates_[winner.candidate].n_dead == 0;
-      const std::span<const CellHandle> cells = moves ? scopes_[winner.rank] : slots_of(w);
-      for (CellHandle c : cells) {
-        const auto& v = mesh_.cell(c).v;
-        work_.quality[c.idx()] =
-            op.metric(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
-        work_.pending[c.idx()] = 0xff;
-        work_.claim[c.idx()] = kUnclaimed;
-        for (VertexHandle u : v) {
-          store(work_.changed[u.idx()], work_.clock);
-          if (!moves) store(mesh_.mutable_hook(u), CellHandle());
-        }
-      }
-    });
-    for_winners([&](std::size_t, std::size_t w) {
-      if (candidates_[winners_[w].candidate].n_dead == 0) return;
-      for (CellHandle c : slots_of(w))
-        for (VertexHandle u : mesh_.cell(c).v) lower_hook(u, c);
-    });
-    work_.touch(slots_);
-    for (const Winner& winner : winners_) {
-      if (candidates_[winner.candidate].n_dead == 0) work_.touch(scopes_[winner.rank]);
-    }
-    for (CellHandle c : freed_) {
-      work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
-      work_.claim[c.idx()] = kUnclaimed;
-    }
-    for (const Winner& winner : winners_)
-      if (winner.removed.is_valid()) mesh_.mark_deleted(winner.removed);
-  }
-
-  void lower_hook(VertexHandle v, CellHandle c) {
-    const auto hook = par::atomic(mesh_.mutable_hook(v));
-    par::before_shared_access();
-    CellHandle now = hook.load(std::memory_order_relaxed);
-    while (c < now) {
-      par::before_shared_access();
-      if (hook.compare_exchange_weak(now, c, std::memory_order_relaxed)) return;
-    }
-  }
-
-  TetMesh& mesh_;
-  Workspace& work_;
-  RoundOptions options_;
+  const Op* op_ = nullptr;  // while run() lasts
+  struct {
+    std::size_t (*call)(const void*) = nullptr;
+    const void* context = nullptr;
+  } evaluate_;
   ChunkedArray<Plan> candidates_;
-  std::vector<Tet> identities_;
-  std::vector<par::KeyIndex> keys_, scratch_;
-  PinchedStars pinched_stars_;  // before the round
-  ScopeList scopes_;            // of the candidates, by rank
-  std::vector<Winner> winners_;
-  std::vector<CellHandle> slots_, freed_;
 };
 
 }  // namespace hfr

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "Scheduler/Round.hh"
-#include "Scheduler/Seeds.hh"
-#include "Scheduler/Workspace.hh"
+#include "hfremesh/Scheduler/Round.hh"
+#include "hfremesh/Scheduler/Seeds.hh"
+#include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Parallel/Parallel.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Parallel/Parallel.hh"
 
 namespace hfr {
 

@@ -7,6 +7,7 @@
 
 #include "Parallel/Atomic.hh"
 #include "Parallel/Interleave.hh"
+#include "Scheduler/Workspace.hh"
 
 namespace hfr {
 namespace {

@@ -48,8 +48,6 @@ class ScopeList {
   std::vector<CellHandle> cells_;
 };
 
-/// What a cell that nobody holds has in the array of claims.
-inline constexpr std::uint32_t kUnclaimed = 0xffffffffU;
 /// From here on claims are quicker than marks, which cost a fraction of them but run on one thread.
 inline constexpr int kClaimThreads = 4;
 inline constexpr std::size_t kClaimCandidates = 8192;

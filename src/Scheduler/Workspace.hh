@@ -6,13 +6,15 @@
 #include <span>
 #include <vector>
 
-#include "HalfFace/TetMesh.hh"
-#include "Operators/Operator.hh"
-#include "Parallel/Parallel.hh"
-#include "Quality/Decisions.hh"
-#include "Scheduler/Select.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Operators/Operator.hh"
+#include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Quality/Decisions.hh"
 
 namespace hfr {
+
+/// What a cell that nobody holds has in the array of claims.
+inline constexpr std::uint32_t kUnclaimed = 0xffffffffU;
 
 /// What rounds keep about the mesh between them: 13 bytes a cell, 9 a vertex, and one more where some vertex
 /// is pinched.

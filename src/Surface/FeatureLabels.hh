@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "HalfFace/TetMesh.hh"
-#include "Surface/SurfaceOptions.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Surface/SurfaceOptions.hh"
 
 namespace hfr {
 

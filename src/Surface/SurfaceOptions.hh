@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Handles.hh"
 
 namespace hfr {
 

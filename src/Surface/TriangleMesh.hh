@@ -5,8 +5,8 @@
 #include <array>
 #include <vector>
 
-#include "HalfFace/Handles.hh"
-#include "HalfFace/Vec3.hh"
+#include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/Vec3.hh"
 
 namespace hfr {
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "HalfFace/Check.hh"
+#include "HalfFace/Writer.hh"
 #include "Meshes.hh"
 #include "Oracle.hh"
 
@@ -82,9 +83,9 @@ TEST(AddCell, AfterLowLevelWritingFindsItsNeighbours) {
   const V top = mesh.add_vertex({1, 1, 1});
   mesh.delete_cell(mesh.add_cell(V(1), V(2), V(3), top));  // the table of faces is now there
   const V low = mesh.add_vertex({-1, -1, -1});
-  mesh.mutable_cell(CellHandle(0)).v[0] = low;
-  mesh.set_hook(low, CellHandle(0));
-  mesh.set_hook(V(0), CellHandle());
+  TetMesh::Writer(mesh).cell(CellHandle(0)).v[0] = low;
+  TetMesh::Writer(mesh).set_hook(low, CellHandle(0));
+  TetMesh::Writer(mesh).set_hook(V(0), CellHandle());
   const CellHandle c = mesh.add_cell(low, V(2), V(1), V(0));
   EXPECT_EQ(mesh.cell_cells(c).size(), 1U);
   EXPECT_EQ(check(mesh), Ok);
@@ -106,14 +107,14 @@ TEST(DeleteCell, EveryCellInRandomOrder) {
 
 TEST(DeleteCell, AfterLowLevelWritingHashesNoFaces) {
   TetMesh mesh = test::kuhn_box(10);
-  mesh.mutable_cell(CellHandle(0));  // as an operator writes
+  TetMesh::Writer(mesh).cell(CellHandle(0));  // as an operator writes
   const std::size_t before = mesh.memory_bytes();
   mesh.delete_cell(CellHandle(mesh.n_cells() / 2));
   EXPECT_LT(mesh.memory_bytes() - before, 64U) << "a table over the whole mesh was made";
   EXPECT_EQ(check(mesh, structure()), Ok);
   for (std::size_t i : shuffled(mesh.n_cells(), 3)) {
     if (mesh.is_deleted(CellHandle(i))) continue;
-    if (i % 16 == 0) mesh.mutable_cell(CellHandle(i));
+    if (i % 16 == 0) TetMesh::Writer(mesh).cell(CellHandle(i));
     mesh.delete_cell(CellHandle(i));
     if (i % 32 != 0) continue;
     ASSERT_EQ(check(mesh, structure()), Ok) << check(mesh, structure());

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "HalfFace/CheckChanges.hh"
+#include "HalfFace/Check.hh"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "HalfFace/Writer.hh"
 #include "Meshes.hh"
 
 namespace hfr {
@@ -90,21 +91,24 @@ TEST(CheckChanges, EachRuleOfTheKernelIsTested) {
     std::swap(cell.v[0], cell.v[1]);
     std::swap(cell.v[2], cell.v[3]);
   };
-  EXPECT_NE(broken_by([&](TetMesh& m) { turn(m.mutable_cell(c)); }), Ok);  // its mates were not turned
-  EXPECT_EQ(broken_by([&](TetMesh& m) { m.mutable_cell(c).v[1] = VertexHandle(1000); }), Rule::kIndexRange);
-  EXPECT_EQ(broken_by([&](TetMesh& m) { m.mutable_cell(c).v[1] = m.cell(c).v[0]; }), Rule::kRepeatedVertex);
-  EXPECT_NE(broken_by([&](TetMesh& m) { m.mark_deleted(c); }), Ok);
+  EXPECT_NE(broken_by([&](TetMesh& m) { turn(TetMesh::Writer(m).cell(c)); }),
+            Ok);  // its mates were not turned
+  EXPECT_EQ(broken_by([&](TetMesh& m) { TetMesh::Writer(m).cell(c).v[1] = VertexHandle(1000); }),
+            Rule::kIndexRange);
+  EXPECT_EQ(broken_by([&](TetMesh& m) { TetMesh::Writer(m).cell(c).v[1] = m.cell(c).v[0]; }),
+            Rule::kRepeatedVertex);
+  EXPECT_NE(broken_by([&](TetMesh& m) { TetMesh::Writer(m).mark_deleted(c); }), Ok);
   EXPECT_EQ(broken_by([&](TetMesh& m) {
               m.delete_cell(c);
-              m.free_cells().clear();
+              TetMesh::Writer(m).free_cells().clear();
             }),
             Rule::kFreeList);
   EXPECT_EQ(broken_by([&](TetMesh& m) {
               const auto v = m.cell(c).v;
               m.delete_cell(c);
               m.add_cell(v[0], v[1], v[2], v[3]);
-              m.set_hook(v[0], CellHandle(0));
-              if (m.cell(CellHandle(0)).has(v[0])) m.set_hook(v[0], CellHandle());
+              TetMesh::Writer(m).set_hook(v[0], CellHandle(0));
+              if (m.cell(CellHandle(0)).has(v[0])) TetMesh::Writer(m).set_hook(v[0], CellHandle());
             }),
             Rule::kHook);
 }

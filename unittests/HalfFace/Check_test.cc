@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "HalfFace/Writer.hh"
 #include "Meshes.hh"
 
 namespace hfr {
@@ -20,7 +21,7 @@ TEST(Check, BuiltMeshesAreSound) {
 
 TEST(Check, VertexOutOfRange) {
   TetMesh mesh = kuhn_box(1);
-  mesh.mutable_cell(CellHandle(2)).v[1] = VertexHandle(8);
+  TetMesh::Writer(mesh).cell(CellHandle(2)).v[1] = VertexHandle(8);
   const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kIndexRange);
   EXPECT_EQ(result.cells, std::vector{CellHandle(2)});
@@ -29,25 +30,25 @@ TEST(Check, VertexOutOfRange) {
 
 TEST(Check, MateInADeletedCell) {
   TetMesh mesh = kuhn_box(1);
-  mesh.mark_deleted(CellHandle(3));
+  TetMesh::Writer(mesh).mark_deleted(CellHandle(3));
   EXPECT_EQ(check(mesh), Rule::kIndexRange);
 }
 
 TEST(Check, VertexTwiceInACell) {
   TetMesh mesh = test::single_cell();
-  mesh.mutable_cell(CellHandle(0)).v[1] = VertexHandle(0);
+  TetMesh::Writer(mesh).cell(CellHandle(0)).v[1] = VertexHandle(0);
   EXPECT_EQ(check(mesh), Rule::kRepeatedVertex);
 }
 
 TEST(Check, DeletedCellThatIsNotFree) {
   TetMesh mesh = test::single_cell();
-  mesh.resize_cells(2);
+  TetMesh::Writer(mesh).resize_cells(2);
   EXPECT_EQ(check(mesh), Rule::kFreeList);
-  mesh.free_cells().push_back(CellHandle(1));
+  TetMesh::Writer(mesh).free_cells().push_back(CellHandle(1));
   EXPECT_EQ(check(mesh), Ok);
-  mesh.free_cells().push_back(CellHandle(1));
+  TetMesh::Writer(mesh).free_cells().push_back(CellHandle(1));
   EXPECT_EQ(check(mesh), Rule::kFreeList);
-  mesh.free_cells().back() = CellHandle(0);
+  TetMesh::Writer(mesh).free_cells().back() = CellHandle(0);
   EXPECT_EQ(check(mesh), Rule::kFreeList);
 }
 
@@ -59,7 +60,7 @@ HalfFaceHandle inner_halfface(const TetMesh& mesh) {
 TEST(Check, MateThatNamesAnother) {
   TetMesh mesh = kuhn_box(2);
   const HalfFaceHandle h = inner_halfface(mesh);
-  mesh.set_mate(mesh.opposite_halfface(h), HalfFaceHandle());
+  TetMesh::Writer(mesh).set_mate(mesh.opposite_halfface(h), HalfFaceHandle());
   const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kMateSymmetry);
   ASSERT_EQ(result.halffaces.size(), 2U);
@@ -68,37 +69,37 @@ TEST(Check, MateThatNamesAnother) {
 
 TEST(Check, MatesOfDifferentVertices) {
   TetMesh mesh = kuhn_box(2);
-  mesh.mutable_cell(CellHandle(5)).v[0] = VertexHandle(26);
+  TetMesh::Writer(mesh).cell(CellHandle(5)).v[0] = VertexHandle(26);
   EXPECT_EQ(check(mesh), Rule::kSharedVertices);
 }
 
 TEST(Check, RenumberedCellContradictsItsNeighbours) {
   TetMesh mesh = kuhn_box(1);
   const CellHandle c(2);
-  Cell& cell = mesh.mutable_cell(c);
+  Cell& cell = TetMesh::Writer(mesh).cell(c);
   std::swap(cell.v[2], cell.v[3]);
   std::swap(cell.mate[2], cell.mate[3]);
   for (int k = 2; k < 4; ++k) {
     const HalfFaceHandle m = mesh.opposite_halfface(halfface_of(c, k));
-    if (m.is_valid()) mesh.set_mate(m, halfface_of(c, k));
+    if (m.is_valid()) TetMesh::Writer(mesh).set_mate(m, halfface_of(c, k));
   }
   EXPECT_EQ(check(mesh), Rule::kOrientation);
 }
 
 TEST(Check, HookThatIsNoCellOfItsVertex) {
   TetMesh mesh = kuhn_box(2);
-  mesh.set_hook(VertexHandle(0), mesh.hook(VertexHandle(26)));
+  TetMesh::Writer(mesh).set_hook(VertexHandle(0), mesh.hook(VertexHandle(26)));
   const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kHook);
   EXPECT_EQ(result.vertices, std::vector{VertexHandle(0)});
-  mesh.set_hook(VertexHandle(0), CellHandle());
+  TetMesh::Writer(mesh).set_hook(VertexHandle(0), CellHandle());
   EXPECT_EQ(check(mesh), Rule::kHook);
 }
 
 TEST(Check, CellTwice) {
   TetMesh mesh = test::single_cell();
-  mesh.resize_cells(2);
-  mesh.mutable_cell(CellHandle(1)) = mesh.cell(CellHandle(0));
+  TetMesh::Writer(mesh).resize_cells(2);
+  TetMesh::Writer(mesh).cell(CellHandle(1)) = mesh.cell(CellHandle(0));
   const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kDuplicateFace);
   EXPECT_EQ(result.cells, (std::vector{CellHandle(0), CellHandle(1)}));
@@ -121,11 +122,11 @@ TEST(Check, EdgeMadeTwice) {
   TetMesh mesh = build(points, cells);
   EXPECT_EQ(check(mesh), Ok);
   for (std::size_t i = 3; i < 6; ++i) {  // build() would refuse it
-    mesh.mutable_cell(CellHandle(i)).v[0] = VertexHandle(0);
-    mesh.mutable_cell(CellHandle(i)).v[1] = VertexHandle(1);
+    TetMesh::Writer(mesh).cell(CellHandle(i)).v[0] = VertexHandle(0);
+    TetMesh::Writer(mesh).cell(CellHandle(i)).v[1] = VertexHandle(1);
   }
-  mesh.set_hook(VertexHandle(2), CellHandle());
-  mesh.set_hook(VertexHandle(3), CellHandle());
+  TetMesh::Writer(mesh).set_hook(VertexHandle(2), CellHandle());
+  TetMesh::Writer(mesh).set_hook(VertexHandle(3), CellHandle());
   const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kDuplicateEdge);
   EXPECT_EQ(result.vertices, (std::vector{VertexHandle(0), VertexHandle(1)}));
@@ -165,7 +166,7 @@ TEST(Check, UnusedVertexIsNoOffence) {
 
 TEST(Check, MessageIsPrinted) {
   TetMesh mesh = test::single_cell();
-  mesh.mutable_cell(CellHandle(0)).v[1] = VertexHandle(0);
+  TetMesh::Writer(mesh).cell(CellHandle(0)).v[1] = VertexHandle(0);
   EXPECT_EQ(testing::PrintToString(check(mesh)), "kRepeatedVertex: cell 0 has a vertex twice");
 }
 

@@ -7,6 +7,7 @@
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Geometry.hh"
+#include "HalfFace/Writer.hh"
 #include "Meshes.hh"
 #include "Oracle.hh"
 
@@ -29,7 +30,7 @@ std::set<std::array<VertexHandle, 4>> tets(const TetMesh& mesh) {
 }
 
 /// All vertices have hooks where the oracle finds cells, and counting starts anew: low-level writing.
-void outdate(TetMesh& mesh) { mesh.mutable_cell(*mesh.cells().begin()); }
+void outdate(TetMesh& mesh) { TetMesh::Writer(mesh).cell(*mesh.cells().begin()); }
 
 TEST(SplitEdge, EveryEdgeOfEveryMeshIsCutWithItsCells) {
   for (const auto& [name, original] : test::suite()) {

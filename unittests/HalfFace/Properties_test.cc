@@ -6,6 +6,7 @@
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Reorder.hh"
+#include "HalfFace/Writer.hh"
 #include "Meshes.hh"
 #include "Oracle.hh"
 
@@ -302,7 +303,7 @@ TEST(CopyCellData, GivesRegionStatusAndProperties) {
   mesh.set_region(from, 5);
   mesh.set_tagged(from);
   p[from] = 8;
-  mesh.resize_cells(mesh.n_cells() + 1);
+  TetMesh::Writer(mesh).resize_cells(mesh.n_cells() + 1);
   mesh.copy_cell_data(from, to);
   EXPECT_EQ(mesh.region(to), 5);
   EXPECT_TRUE(mesh.is_tagged(to));

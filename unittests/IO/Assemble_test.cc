@@ -5,6 +5,7 @@
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Generate.hh"
+#include "HalfFace/Writer.hh"
 
 namespace hfr::io {
 namespace {
@@ -85,9 +86,9 @@ TEST(Assemble, DeletedCellsAndVerticesAreLeftOutAndTheRestKeepsItsOrder) {
   const MeshData data = labelled_box();
   TetMesh mesh = assemble(data);
   const CellHandle gone(5);
-  mesh.mark_deleted(gone);
-  mesh.free_cells().push_back(gone);
-  mesh.mark_deleted(VertexHandle(0));  // as if no cell had used it
+  TetMesh::Writer(mesh).mark_deleted(gone);
+  TetMesh::Writer(mesh).free_cells().push_back(gone);
+  TetMesh::Writer(mesh).mark_deleted(VertexHandle(0));  // as if no cell had used it
   const MeshData left = disassemble(mesh, {2, 1});
   EXPECT_EQ(left.points.size(), data.points.size() - 1);
   EXPECT_EQ(left.cells.size(), data.cells.size() - 1);

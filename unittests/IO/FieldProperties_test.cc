@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "HalfFace/Generate.hh"
+#include "HalfFace/Writer.hh"
 #include "IO/Assemble.hh"
 
 namespace hfr::io {
@@ -74,9 +75,9 @@ TEST(FieldProperties, PropertiesOfAProgramBecomeFields) {
 
 TEST(FieldProperties, ValuesOfDeletedVerticesAndCellsAreLeftOut) {
   TetMesh mesh = assemble(box_with_fields());
-  mesh.mark_deleted(CellHandle(4));
-  mesh.free_cells().push_back(CellHandle(4));
-  mesh.mark_deleted(VertexHandle(0));
+  TetMesh::Writer(mesh).mark_deleted(CellHandle(4));
+  TetMesh::Writer(mesh).free_cells().push_back(CellHandle(4));
+  TetMesh::Writer(mesh).mark_deleted(VertexHandle(0));
   const MeshData back = disassemble(mesh);
   EXPECT_EQ(back.cell_fields[1].values, (std::vector<double>{0, 1, 2, 3, 5, 6, 7, 8, 9, 10, 11}));
   EXPECT_EQ(back.point_fields[1].values[0], 1);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "HalfFace/Check.hh"
+#include "HalfFace/Writer.hh"
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
@@ -123,7 +124,7 @@ TEST(WriteCells, NeighboursAreLeftToTheCaller) {
   std::vector<Cell> before;
   for (std::size_t i = 0; i < mesh.n_cells(); ++i) before.push_back(mesh.cell(C(i)));
   const std::size_t n = mesh.n_cells();
-  mesh.resize_cells(n + 1);
+  TetMesh::Writer(mesh).resize_cells(n + 1);
   const std::array<CellHandle, 3> slots = {cavity.dead[0], cavity.dead[1], C(n)};
   std::vector<OuterFace> notes;
   write_cells(mesh, cavity, slots, VertexHandle(), notes);

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "HalfFace/Generate.hh"
+#include "HalfFace/TetMesh.hh"
+#include "HalfFace/Writer.hh"
 #include "Quality/FixedSum.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/Tets.hh"
@@ -217,8 +219,8 @@ TEST(Statistics, DeletedCellsDoNotCount) {
   TetMesh mesh = mesh_of(generate::box({1, 1, 1}));
   const Statistics whole = statistics(mesh);
   const std::size_t n = mesh.n_cells();
-  mesh.resize_cells(n + 2);  // two deleted cells
-  mesh.free_cells() = {CellHandle(n), CellHandle(n + 1)};
+  TetMesh::Writer(mesh).resize_cells(n + 2);  // two deleted cells
+  TetMesh::Writer(mesh).free_cells() = {CellHandle(n), CellHandle(n + 1)};
   expect_equal(statistics(mesh), whole);
 }
 

@@ -17,6 +17,7 @@
 #include "Operators/StarFromVertex.hh"
 #include "Operators/VertexRemoval.hh"
 #include "Quality/Damage.hh"
+#include "Scheduler/Rank.hh"
 #include "Scheduler/Seeds.hh"
 
 namespace hfr::test {

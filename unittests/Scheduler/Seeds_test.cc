@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "HalfFace/Writer.hh"
 #include "Operators/Clusters.hh"
 #include "Operators/FaceSwap.hh"
 
@@ -23,9 +24,9 @@ TetMesh sample() {
   }
   // Free two slots: a live cell is never listed twice, a deleted one never at all.
   TetMesh grown = mesh;
-  grown.resize_cells(mesh.n_cells() + 2);
-  grown.free_cells().push_back(C(mesh.n_cells()));
-  grown.free_cells().push_back(C(mesh.n_cells() + 1));
+  TetMesh::Writer(grown).resize_cells(mesh.n_cells() + 2);
+  TetMesh::Writer(grown).free_cells().push_back(C(mesh.n_cells()));
+  TetMesh::Writer(grown).free_cells().push_back(C(mesh.n_cells() + 1));
   return grown;
 }
 

@@ -2,11 +2,11 @@
 // Every pipeline of improve() under a shuffling scheduler, against the bits of one thread.
 #include <gtest/gtest.h>
 
-#include "HalfFace/Config.hh"
 #include "IO/Hash.hh"
 #include "Remesh/Meshes.hh"
 #include "Shuffle/Seeds.hh"
 #include "Shuffle/Shuffle.hh"
+#include "hfremesh/HalfFace/Config.hh"
 
 namespace hfr::test {
 namespace {

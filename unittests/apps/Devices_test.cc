@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "HalfFace/Config.hh"
 #include "Tool.hh"
+#include "hfremesh/HalfFace/Config.hh"
 
 namespace hfr::app::test {
 namespace {

@@ -10,13 +10,17 @@ mkdir -p "$tree"/{kernels,src/{Parallel,HalfFace,Quality,IO},apps/hfremesh}
 clean() {
   printf 'set(HEADERS base.h)\n' > "$tree/kernels/CMakeLists.txt"
   : > "$tree/kernels/base.h"
-  rm -f "$tree/kernels/new.h" "$tree"/src/*/New.cc "$tree/src/IO/Inner.hh"
+  rm -f "$tree/kernels/new.h" "$tree"/src/*/New.{cc,hh} "$tree/src/IO/Inner.hh"
+  printf 'hfr_layer(Parallel HEADERS For.hh)\n' > "$tree/src/Parallel/CMakeLists.txt"
   printf 'hfr_layer(HalfFace SOURCES Mesh.cc HEADERS Mesh.hh)\n' > "$tree/src/HalfFace/CMakeLists.txt"
-  printf 'hfr_layer(IO SOURCES Read.cc HEADERS Read.hh)\n' > "$tree/src/IO/CMakeLists.txt"
+  printf 'hfr_layer(IO SOURCES Read.cc HEADERS Read.hh PRIVATE_HEADERS\n Inner.hh)\n' > "$tree/src/IO/CMakeLists.txt"
+  printf '#include "hfremesh/HalfFace/Mesh.hh"\n' > "$tree/src/IO/Read.hh"
+  : > "$tree/src/IO/Inner.hh"
+  : > "$tree/src/HalfFace/Mesh.hh"
   printf '#include "Parallel/For.hh"\n// prints nothing: std::cout << 1; exit(1)\n' > "$tree/src/HalfFace/Mesh.cc"
   printf '#include "HalfFace/Mesh.hh"\nint exit_code(int); auto s = "std::cerr, abort()";\n' > "$tree/src/IO/Read.cc"
   printf '#pragma omp parallel for\n' > "$tree/src/Parallel/For.hh"
-  printf '#include <IO/Read.hh>\n#include <iostream>\nint main() { std::cout << 1; }\n' > "$tree/apps/hfremesh/main.cc"
+  printf '#include <hfremesh/IO/Read.hh>\n#include <iostream>\nint main() { std::cout << 1; }\n' > "$tree/apps/hfremesh/main.cc"
 }
 
 # expect_fault TEXT: the check fails, and says TEXT.
@@ -50,8 +54,17 @@ expect_fault 'src/IO/Read.cc:3: src/ neither prints'
 expect_fault 'kernels/new.h: not listed'
 : > "$tree/src/IO/New.cc"
 expect_fault 'src/IO/New.cc: not listed'
-: > "$tree/src/IO/Inner.hh"
-echo '#include "IO/Inner.hh"' >> "$tree/apps/hfremesh/main.cc"
+: > "$tree/src/IO/New.hh"
+expect_fault 'src/IO/New.hh: not listed'
+echo '#include "hfremesh/IO/Read.hh"' >> "$tree/src/HalfFace/Mesh.hh"
+expect_fault 'src/HalfFace/Mesh.hh:1: HalfFace stands below'
+echo '#include <hfremesh/IO/Inner.hh>' >> "$tree/apps/hfremesh/main.cc"
 expect_fault 'apps/hfremesh/main.cc:4: IO/Inner.hh is not a public header'
+echo '#include <IO/Read.hh>' >> "$tree/apps/hfremesh/main.cc"
+expect_fault 'apps/hfremesh/main.cc:4: users know IO/Read.hh as hfremesh/IO/Read.hh'
+echo '#include "IO/Inner.hh"' >> "$tree/src/IO/Read.hh"
+expect_fault 'src/IO/Read.hh:2: IO/Inner.hh is not a public header'
+echo '#include "HalfFace/Mesh.hh"' >> "$tree/src/IO/Read.hh"
+expect_fault 'src/IO/Read.hh:2: users know HalfFace/Mesh.hh as hfremesh/HalfFace/Mesh.hh'
 "$check" "$tree" > /dev/null
 exit "$failed"

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <HalfFace/TetMesh.hh>
-#include <IO/MeshFile.hh>
 #include <array>
 #include <cstdio>
+#include <hfremesh/HalfFace/TetMesh.hh>
+#include <hfremesh/IO/MeshFile.hh>
 #include <vector>
+
+#if __has_include(<IO/MeshFile.hh>) || __has_include(<HalfFace/TetMesh.hh>) || __has_include(<kernels/base.h>)
+#error "folders of hfremesh lie in the include path of its users"
+#endif
 
 /// Two cells that share a face: a first look at the half-faces, and one call into what links the most
 /// libraries.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Remesh/MeshMaps.hh"
+#include "Remesh/MapRecorder.hh"
 
 #include <gtest/gtest.h>
 
