@@ -5,35 +5,10 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "HalfFace/Layers.hh"
 #include "HalfFace/TupleMap.hh"
 
 namespace hfr {
-namespace {
-
-/// The cells that share a vertex with the centre, and so on, in the order of discovery.
-std::vector<CellHandle> cells_within(const TetMesh& whole, CellHandle centre, int layers) {
-  std::vector<CellHandle> cells = {centre};
-  std::unordered_set<Index> has = {centre.idx()};
-  std::unordered_set<Index> asked;
-  Star star;
-  std::size_t first = 0;
-  for (int layer = 0; layer < layers; ++layer) {
-    const std::size_t end = cells.size();
-    for (std::size_t i = first; i < end; ++i) {
-      for (VertexHandle v : whole.cell(cells[i]).v) {
-        if (!asked.insert(v.idx()).second || !whole.gather_star(v, star)) continue;
-        for (int k = 0; k < star.size; ++k) {
-          const CellHandle c = star.cells[static_cast<std::size_t>(k)];
-          if (whole.region(c) == whole.region(centre) && has.insert(c.idx()).second) cells.push_back(c);
-        }
-      }
-    }
-    first = end;
-  }
-  return cells;
-}
-
-}  // namespace
 
 Patch::Patch(const TetMesh& whole, CellHandle centre, int layers)
     : cells_(cells_within(whole, centre, layers)) {

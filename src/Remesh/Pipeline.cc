@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "HalfFace/Layers.hh"
 #include "Remesh/Stage.hh"
 
 namespace hfr {
@@ -147,31 +148,6 @@ std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Po
   return cells;
 }
 
-/// Marks the vertices of cells and of so many layers round them.
-std::vector<std::uint8_t> surroundings(const TetMesh& mesh, std::span<const CellHandle> cells, int layers) {
-  std::vector<std::uint8_t> marked(mesh.n_vertices(), 0);
-  std::vector<VertexHandle> rim, next;
-  const auto mark = [&](CellHandle c) {
-    for (VertexHandle v : mesh.cell(c).v) {
-      if (marked[v.idx()]) continue;
-      marked[v.idx()] = 1;
-      next.push_back(v);
-    }
-  };
-  for (CellHandle c : cells) mark(c);
-  Star star;
-  for (int i = 0; i < layers; ++i) {
-    rim.swap(next);
-    next.clear();
-    for (VertexHandle v : rim) {
-      if (!mesh.gather_star(v, star))
-        for (CellHandle c : mesh.vertex_cells(v)) mark(c);
-      for (int k = 0; k < star.size; ++k) mark(star.cells[static_cast<std::size_t>(k)]);
-    }
-  }
-  return marked;
-}
-
 }  // namespace
 
 double dihedral_decision(double degrees) {
@@ -303,7 +279,7 @@ bool relieve(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
     const std::vector<CellHandle> stuck = cells_below(mesh, goal, options.policy);
     if (stuck.empty()) return true;
     if (stuck.size() > kFewToRelieve || control.stopped()) return false;
-    const auto around = surroundings(mesh, stuck, relief.layers);
+    const auto around = vertices_within(mesh, stuck, relief.layers);
     Stage<MinSine2> stage(mesh, work, options, control, MinSine2{}, "relief");
     const Focus focus{dihedral_decision(std::min(goal + relief.degrees, kLargestRelief)), around};
     for (int i = 1; i <= kReliefIterations && !control.stopped(); ++i) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <numeric>
 
+#include "HalfFace/Layers.hh"
 #include "Operators/Unfold.hh"
 #include "Quality/Damage.hh"
 #include "Remesh/Pipeline.hh"
@@ -80,24 +81,14 @@ class Unfolding {
 
   /// Vertices of the invalid cells and of so many layers round them, ascending; without those that must stay.
   void gather(int layers, std::span<const CellHandle> invalid) {
-    std::vector<std::uint8_t> seen(mesh_.n_vertices(), 0);
-    std::vector<VertexHandle> rim, next;
-    const auto see = [&](CellHandle c) {
-      for (VertexHandle v : mesh_.cell(c).v) {
-        if (seen[v.idx()]) continue;
-        seen[v.idx()] = 1;
-        next.push_back(v);
-      }
-    };
-    for (CellHandle c : invalid) see(c);
-    for (int i = 0; i < layers; ++i) {
-      rim.swap(next);
-      next.clear();
-      std::sort(rim.begin(), rim.end());
-      const StarTable stars(mesh_, rim, work_.star_size, policy_);
+    const auto cells_round = [&](std::span<const VertexHandle> rim, auto&& visit) {
+      std::vector<VertexHandle> ascending(rim.begin(), rim.end());
+      std::sort(ascending.begin(), ascending.end());
+      const StarTable stars(mesh_, ascending, work_.star_size, policy_);
       for (std::size_t k = 0; k < stars.size(); ++k)
-        for (HalfFaceHandle h : stars.link(k)) see(cell_of(h));
-    }
+        for (HalfFaceHandle h : stars.link(k)) visit(cell_of(h));
+    };
+    const std::vector<std::uint8_t> seen = vertices_within(mesh_, invalid, layers, cells_round);
     vertices_.clear();
     for (std::size_t i = 0; i < seen.size(); ++i)
       if (seen[i] && !work_.frozen[i]) vertices_.push_back(VertexHandle(i));

@@ -8,7 +8,9 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
 
+#include "HalfFace/Layers.hh"
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
 #include "Surface/SurfaceLayers.hh"
@@ -164,20 +166,20 @@ class Unfolder {
 
   /// Vertices of the flagged faces and of so many rings round them, ascending.
   std::vector<VertexHandle> vertices_round(const std::vector<std::uint8_t>& folds, int rings) const {
-    std::vector<std::uint8_t> in(points_.size(), 0), near(arrays_.faces.size(), 0);
+    std::vector<std::uint8_t> in(points_.size(), 0);
+    std::vector<VertexHandle> vertices;
+    const auto enter = [&](VertexHandle v) { return std::exchange(in[v.idx()], std::uint8_t{1}) == 0; };
     for (std::size_t i = 0; i < folds.size(); ++i)
       if (folds[i])
-        for (VertexHandle v : arrays_.faces[i]) in[v.idx()] = 1;
-    for (int ring = 0; ring < rings; ++ring) {
-      for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
-        for (VertexHandle v : arrays_.faces[i]) near[i] = near[i] || in[v.idx()];
-      for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
-        if (near[i])
-          for (VertexHandle v : arrays_.faces[i]) in[v.idx()] = 1;
-    }
-    std::vector<VertexHandle> vertices;
-    for (std::size_t v = 0; v < in.size(); ++v)
-      if (in[v]) vertices.push_back(VertexHandle(v));
+        for (VertexHandle v : arrays_.faces[i])
+          if (enter(v)) vertices.push_back(v);
+    const auto around = [&](std::span<const VertexHandle> rim, auto&& reach) {
+      for (VertexHandle v : rim)
+        for (std::uint32_t f : stars_.at(v))
+          for (VertexHandle w : arrays_.faces[f]) reach(w);
+    };
+    grow_layers(vertices, rings, around, enter);
+    std::sort(vertices.begin(), vertices.end());
     return vertices;
   }
   /// Flags faces that can be come to from flagged ones over faces of that kind, some rings far.
@@ -187,24 +189,22 @@ class Unfolder {
     const SurfaceLayers layers(arrays_, points_, reach_, near);
     std::vector<std::uint8_t> asked(arrays_.faces.size(), 1);
     for (std::uint32_t f : near) asked[f] = folds[f];
-    Faces rim, next;
+    Faces faces;
     for (std::uint32_t f : near)
-      if (folds[f]) rim.push_back(f);
-    std::size_t n = 0;
-    for (; !rim.empty(); rim.swap(next)) {
-      next.clear();
+      if (folds[f]) faces.push_back(f);
+    const std::size_t n_before = faces.size();
+    const auto around = [&](std::span<const std::uint32_t> rim, auto&& reach) {
       for (std::uint32_t i : rim)
         for (VertexHandle v : arrays_.faces[i])
-          for (std::uint32_t f : stars_.at(v)) {
-            if (asked[f]) continue;
-            asked[f] = 1;
-            if (!kind(layers, corners(points_, arrays_.faces[f]))) continue;
-            folds[f] = 1;
-            next.push_back(f);
-            ++n;
-          }
-    }
-    return n;
+          for (std::uint32_t f : stars_.at(v)) reach(f);
+    };
+    grow_layers(faces, kAllLayers, around, [&](std::uint32_t f) {
+      if (asked[f]) return false;
+      asked[f] = 1;
+      if (kind(layers, corners(points_, arrays_.faces[f]))) folds[f] = 1;
+      return folds[f] != 0;
+    });
+    return faces.size() - n_before;
   }
   std::vector<Vec3> normals() const {  // as long as twice the areas
     std::vector<Vec3> all;
