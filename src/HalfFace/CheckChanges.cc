@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "HalfFace/RawArray.hh"
+#include "Parallel/DisjointSets.hh"
 
 namespace hfr {
 namespace {
@@ -229,17 +230,9 @@ class ChangeChecker {
 
   static Defects defects(const std::vector<std::array<VertexHandle, 3>>& link) {
     // Triangles joined across edges, and corners joined across the edges at their vertex.
-    std::vector<std::size_t> triangle(link.size()), corner(3 * link.size());
-    for (std::size_t i = 0; i < triangle.size(); ++i) triangle[i] = i;
-    for (std::size_t i = 0; i < corner.size(); ++i) corner[i] = i;
-    const auto join = [](std::vector<std::size_t>& parent, std::size_t a, std::size_t b) {
-      while (parent[a] != a) a = parent[a];
-      while (parent[b] != b) b = parent[b];
-      parent[std::max(a, b)] = std::min(a, b);
-      return a != b;
-    };
+    par::DisjointSets<std::size_t> triangles(link.size()), corners(3 * link.size());
     Defects found;
-    std::size_t n_triangles = link.size(), n_corners = corner.size();
+    std::size_t n_triangles = link.size(), n_corners = corners.size();
     std::map<std::array<VertexHandle, 2>, std::vector<std::size_t>> at_edge;  // 3 · triangle + side
     std::set<VertexHandle> vertices;
     for (std::size_t i = 0; i < link.size(); ++i) {
@@ -252,7 +245,7 @@ class ChangeChecker {
     for (const auto& [ends, sides] : at_edge) {
       if (sides.size() > 2) ++found.crowds;
       for (std::size_t s = 1; s < sides.size(); ++s) {
-        n_triangles -= join(triangle, sides[0] / 3, sides[s] / 3) ? 1 : 0;
+        n_triangles -= triangles.join(sides[0] / 3, sides[s] / 3) ? 1 : 0;
         for (std::size_t a = 0; a < 2; ++a) {
           const auto corner_at = [&](std::size_t side) { return side / 3 * 3 + (side % 3 + a) % 3; };
           const VertexHandle w = link[sides[0] / 3][(sides[0] % 3 + a) % 3];
@@ -261,7 +254,7 @@ class ChangeChecker {
             if (link[first / 3][first % 3] == w) return first;
             return side / 3 * 3 + (side % 3 + 1 - a) % 3;
           };
-          n_corners -= join(corner, there(sides[0]), there(sides[s])) ? 1 : 0;
+          n_corners -= corners.join(there(sides[0]), there(sides[s])) ? 1 : 0;
         }
       }
     }

@@ -3,33 +3,15 @@
 
 #include <algorithm>
 #include <compare>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "HalfFace/CellOrder.hh"
 #include "Parallel/Atomic.hh"
+#include "Parallel/DisjointSets.hh"
 
 namespace hfr {
 namespace {
-
-/// Joins corners of cells into classes, each named by the smallest of its corners.
-class Classes {
- public:
-  explicit Classes(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index root(Index i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(Index i, Index j) {
-    i = root(i);
-    j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 /// Some bits a vertex, for its edges to vertices of larger number: what lies near in memory stays near.
 class EdgeBits {
@@ -126,14 +108,14 @@ std::vector<Item> gathered(int n_parts, Fill&& fill) {
 }  // namespace
 
 std::vector<VertexHandle> split_pinched(TetMesh& mesh) {
-  Classes classes(4 * mesh.n_cells());
+  par::DisjointSets<Index> corners(4 * mesh.n_cells());  // of cells, joined where they are one vertex
   for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
     const CellHandle c(i);
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle m = mesh.opposite_halfface(halfface_of(c, k));
       if (!m.is_valid() || c < cell_of(m)) continue;
       for (VertexHandle v : mesh.halfface_vertices(m))
-        classes.join(halfface_of(c, mesh.cell(c).corner(v)).idx(),
+        corners.join(halfface_of(c, mesh.cell(c).corner(v)).idx(),
                      halfface_of(cell_of(m), mesh.cell(cell_of(m)).corner(v)).idx());
     }
   }
@@ -141,7 +123,7 @@ std::vector<VertexHandle> split_pinched(TetMesh& mesh) {
   std::vector<std::uint8_t> taken(mesh.n_vertices(), 0);  // a part has the vertex
   std::vector<VertexHandle> of_root(4 * mesh.n_cells());  // where that is not the vertex itself
   for (Index corner = 0; corner < 4 * mesh.n_cells(); ++corner) {
-    const Index root = classes.root(corner);
+    const Index root = corners.find(corner);
     const CellHandle c(corner / 4);
     VertexHandle& v = mesh.mutable_cell(c).v[corner % 4];
     if (root == corner && taken[v.idx()] != 0) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 
+#include "Parallel/DisjointSets.hh"
 #include "Quality/CellTotals.hh"
 #include "Quality/EdgeLengths.hh"
 #include "Quality/FixedSum.hh"
@@ -102,22 +103,13 @@ std::size_t edge_count(const TetMesh& mesh, const Statistics& s) {
 }
 
 std::size_t count_components(const TetMesh& mesh) {
-  std::vector<Index> parent(mesh.n_cells());
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto root = [&](Index i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  par::DisjointSets<Index> cells(mesh.n_cells());
   std::size_t components = mesh.n_logical_cells();
   for (std::size_t i = 0; i < 4 * mesh.n_cells(); ++i) {
     const HalfFaceHandle h(i);
     const HalfFaceHandle m = mesh.opposite_halfface(h);
     if (!m.is_valid() || m < h || mesh.is_deleted(cell_of(h))) continue;
-    const Index a = root(cell_of(h).idx());
-    const Index b = root(cell_of(m).idx());
-    if (a == b) continue;
-    parent[std::max(a, b)] = std::min(a, b);
-    --components;
+    if (cells.join(cell_of(h).idx(), cell_of(m).idx())) --components;
   }
   return components;
 }

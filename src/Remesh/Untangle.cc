@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "HalfFace/Layers.hh"
 #include "Operators/Unfold.hh"
+#include "Parallel/DisjointSets.hh"
 #include "Quality/Damage.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Stage.hh"
@@ -133,19 +133,14 @@ class Unfolding {
     std::vector<std::uint32_t> number(mesh_.n_vertices(), kNone);
     for (std::size_t i = 0; i < vertices_.size(); ++i)
       number[vertices_[i].idx()] = static_cast<std::uint32_t>(i);
-    std::vector<std::uint32_t> parent(vertices_.size());
-    std::iota(parent.begin(), parent.end(), 0U);
-    const auto root = [&](std::uint32_t i) {
-      while (parent[i] != i) i = parent[i] = parent[parent[i]];
-      return i;
-    };
+    par::DisjointSets<std::uint32_t> patches(vertices_.size());
     for (CellHandle c : cells_) {
       std::uint32_t first = kNone;
       for (VertexHandle v : mesh_.cell(c).v) {
-        if (number[v.idx()] == kNone) continue;
-        const std::uint32_t r = root(number[v.idx()]);
-        if (first != kNone && r != first) parent[std::max(r, first)] = std::min(r, first);
-        first = first == kNone ? r : std::min(r, first);
+        const std::uint32_t n = number[v.idx()];
+        if (n == kNone) continue;
+        if (first != kNone) patches.join(first, n);
+        first = n;
       }
     }
     std::vector<Damage> old_damage(vertices_.size()), new_damage(vertices_.size());
@@ -157,7 +152,7 @@ class Unfolding {
         const std::uint32_t n = number[v[k].idx()];
         now[k] = mesh_.point(v[k]);
         old[k] = n == kNone ? now[k] : before[n];
-        if (n != kNone && patch == kNone) patch = root(n);
+        if (n != kNone && patch == kNone) patch = patches.find(n);
       }
       old_damage[patch].add(old[0], old[1], old[2], old[3]);
       new_damage[patch].add(now[0], now[1], now[2], now[3]);
@@ -170,7 +165,7 @@ class Unfolding {
     std::size_t n_kept = 0;
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
       if (stars.link(i).empty()) continue;
-      if (!helps(root(i)))
+      if (!helps(patches.find(i)))
         mesh_.set_point(vertices_[i],
                         before[i]);  // also where it has moved from 0 to -0, which compare equal
       else if (mesh_.point(vertices_[i]) != before[i])

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "Parallel/DisjointSets.hh"
 #include "Surface/InputSurface.hh"
 
 namespace hfr::surface {
@@ -86,23 +87,14 @@ void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
     Vec3 low, high;
     bool keeps = false;  // has an edge that is one for another reason
   };
-  std::vector<Index> parent(points.size());
-  std::iota(parent.begin(), parent.end(), Index{0});
-  const auto root = [&](Index i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  for (const Edge& e : edges) {
-    if (!e.feature) continue;
-    const Index a = root(e.a.idx());
-    const Index b = root(e.b.idx());
-    parent[std::max(a, b)] = std::min(a, b);
-  }
+  par::DisjointSets<Index> connected(points.size());
+  for (const Edge& e : edges)
+    if (e.feature) connected.join(e.a.idx(), e.b.idx());
   std::map<Index, Set> sets;
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Edge& e = edges[i];
     if (!e.feature) continue;
-    const auto [at, is_new] = sets.try_emplace(root(e.a.idx()));
+    const auto [at, is_new] = sets.try_emplace(connected.find(e.a.idx()));
     Set& set = at->second;
     if (is_new) set.low = set.high = points[e.a.idx()];
     for (VertexHandle v : {e.a, e.b}) {
@@ -116,7 +108,7 @@ void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
   }
   for (Edge& e : edges) {
     if (!e.feature) continue;
-    const Set& set = sets.at(root(e.a.idx()));
+    const Set& set = sets.at(connected.find(e.a.idx()));
     if (!set.keeps && norm(set.high - set.low) < kSmall * distance) e.feature = false;
   }
 }

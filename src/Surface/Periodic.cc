@@ -6,6 +6,7 @@
 #include <set>
 
 #include "HalfFace/Errors.hh"
+#include "Parallel/DisjointSets.hh"
 #include "Surface/InputSurface.hh"
 
 namespace hfr::surface {
@@ -92,25 +93,20 @@ std::vector<std::vector<VertexHandle>> periodic_orbits(const Arrays& arrays, con
   if (options.periodic.empty()) return {};
   HFR_REQUIRE(!arrays.faces.empty(), "a mesh without faces has no periodic patches");
   const double tolerance = kMatch * diagonal(arrays);
-  std::map<VertexHandle, VertexHandle> parent;
-  const auto root = [&](VertexHandle v) {
-    parent.try_emplace(v, v);
-    while (parent.at(v) != v) v = parent.at(v);
-    return v;
-  };
+  par::DisjointSets<Index> orbit_of(arrays.points.size());
+  std::set<VertexHandle> matched;
   for (const auto& [first, second] : options.periodic) {
     HFR_REQUIRE(first != second, "patch " + std::to_string(first) + " cannot be periodic with itself");
     const Patch a = patch_of(arrays, first);
     const Patch b = patch_of(arrays, second);
     const std::vector<VertexHandle> partner = match(arrays, a, b, tolerance);
     for (std::size_t i = 0; i < partner.size(); ++i) {
-      const VertexHandle x = root(a.vertices[i]);
-      const VertexHandle y = root(partner[i]);
-      parent[std::max(x, y)] = std::min(x, y);
+      orbit_of.join(a.vertices[i].idx(), partner[i].idx());
+      matched.insert({a.vertices[i], partner[i]});
     }
   }
-  std::map<VertexHandle, std::vector<VertexHandle>> sets;
-  for (const auto& [v, above] : parent) sets[root(v)].push_back(v);
+  std::map<Index, std::vector<VertexHandle>> sets;
+  for (VertexHandle v : matched) sets[orbit_of.find(v.idx())].push_back(v);
   std::vector<std::vector<VertexHandle>> orbits;
   for (auto& [first, orbit] : sets) orbits.push_back(std::move(orbit));
   return orbits;

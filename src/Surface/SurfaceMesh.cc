@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Surface/SurfaceMesh.hh"
 
-#include <numeric>
 #include <unordered_set>
 
+#include "Parallel/DisjointSets.hh"
 #include "Surface/Periodic.hh"
 #include "Surface/SurfaceMeshImpl.hh"
 
@@ -17,24 +17,6 @@ constexpr double kDetail = 0.1;
 /// How far apart the points of a triangle are by which its distance is judged, of the mean edge.
 constexpr double kSpacing = 0.3;
 constexpr std::uint32_t kNoOrbit = ~0U;
-
-/// Disjoint sets of corners.
-class Union {
- public:
-  explicit Union(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) {
-    i = find(i);
-    j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
   std::sort(f.begin(), f.end());
@@ -57,7 +39,7 @@ OmVertex SurfaceMesh::Impl::add_vertex(VertexHandle v, Vec3 p) {
 
 void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& features) {
   const std::size_t n = arrays.faces.size();
-  Union corners_of(3 * n);
+  par::DisjointSets<std::uint32_t> corners_of(3 * n);
   for (const surface::Edge& e : features.edges) {
     if (!e.manifold) continue;
     const auto corner = [&](std::size_t i, unsigned step) { return 3 * e.f[i] + (e.k[i] + step) % 3; };
