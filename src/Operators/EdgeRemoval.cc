@@ -6,61 +6,35 @@
 #include <algorithm>
 #include <limits>
 
+#include "Operators/EdgeRing.hh"
 #include "Operators/Klincsek.hh"
 #include "Operators/Metrics.hh"
 
 namespace hfr {
-namespace {
 
 static_assert(EdgeRemoval<VolumeLength>::kMaxRing == HFR_MAX_RING);
-
-/// The ring of an inner edge: vertices counter-clockwise about a→b, and the cells (i, i+1).
-struct EdgeRing {
-  VertexHandle a, b;
-  int size = 0;
-  RawArray<VertexHandle, HFR_MAX_RING> vertices;
-  RawArray<CellHandle, HFR_MAX_RING> cells;
-};
-
-/// False when the edge lies on the boundary or its ring has more than HFR_MAX_RING cells.
-bool gather_ring(const TetMesh& mesh, EdgeHandle seed, EdgeRing& ring) {
-  const CellHandle c(seed.idx() / 6);
-  const int edge = static_cast<int>(seed.idx() % 6);
-  const auto [a, b] = mesh.edge_vertices(seed);
-  ring.a = a;
-  ring.b = b;
-  ring.size = 0;
-  return mesh.walk_ring(c, edge, [&](CellHandle cell, VertexHandle p, VertexHandle) {
-    if (ring.size == HFR_MAX_RING) return false;
-    ring.cells[static_cast<std::size_t>(ring.size)] = cell;
-    ring.vertices[static_cast<std::size_t>(ring.size++)] = p;
-    return true;
-  });
-}
-
-}  // namespace
 
 template <class Metric>
 void EdgeRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
   EdgeRing ring;
   out.clear();
-  gather_ring(mesh, seed, ring);
-  for (int i = 0; i < ring.size; ++i) out.push_back(ring.cells[static_cast<std::size_t>(i)]);
+  gather_closed_ring(mesh, seed, ring);
+  for (CellHandle c : ring) out.push_back(c);
 }
 
 template <class Metric>
 std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(const TetMesh& mesh,
                                                                                 Seed seed) const {
   EdgeRing ring;
-  if (!gather_ring(mesh, seed, ring)) return std::nullopt;
-  const auto n = static_cast<std::size_t>(ring.size);
+  if (!gather_closed_ring(mesh, seed, ring)) return std::nullopt;
+  const auto n = static_cast<std::size_t>(ring.n_cells);
   double old_worst = std::numeric_limits<double>::infinity();
   RawArray<Vec3, HFR_MAX_RING> p;
   for (std::size_t i = 0; i < n; ++i) {
     old_worst = std::min(old_worst, quality[ring.cells[i].idx()]);
     p[i] = mesh.point(ring.vertices[i]);
   }
-  RingTriangulation table(ring.size);
+  RingTriangulation table(ring.n_cells);
   const double new_worst =
       table.solve(old_worst, ring_value(metric, p, mesh.point(ring.a), mesh.point(ring.b)));
   if (!(new_worst > old_worst)) return std::nullopt;
@@ -78,10 +52,10 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
 template <class Metric>
 void EdgeRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   EdgeRing ring;
-  gather_ring(mesh, plan.seed, ring);
+  gather_closed_ring(mesh, plan.seed, ring);
   out.clear();
-  for (int i = 0; i < ring.size; ++i) out.dead.push_back(ring.cells[static_cast<std::size_t>(i)]);
-  append_ring_cells(ring.vertices, ring.a, ring.b, ring.size - 1, plan.apex.data(), out);
+  for (CellHandle c : ring) out.dead.push_back(c);
+  append_ring_cells(ring.vertices, ring.a, ring.b, ring.n_cells - 1, plan.apex.data(), out);
 }
 
 template <class Metric>

@@ -77,16 +77,12 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   }
   for (int e = 0; e < 6; ++e) {
     GrownCells ring = alone;
-    RingPlace start{seed.cell, kEdgeOpposite[static_cast<std::size_t>(e)][0],
-                    kEdgeOpposite[static_cast<std::size_t>(e)][1]};
-    bool inside = true;
-    for (RingPlace r = start; inside;) {
-      const HalfFaceHandle h = halfface_of(r.cell, r.p);
-      r = mesh.next_in_ring(r);
-      if (!r.cell.is_valid()) inside = false;
-      if (!inside || r.cell == seed.cell) break;
-      inside = ring.grow(h);
-    }
+    HalfFaceHandle behind;  // which the next cell lies
+    const bool inside = mesh.walk_ring(seed.cell, e, [&](CellHandle c, VertexHandle p, VertexHandle) {
+      if (behind.is_valid() && !ring.grow(behind)) return false;
+      behind = mesh.ring_exit(c, p);
+      return true;
+    });
     const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
     if (inside) try_from(ring, 0.5 * (at(ends[0]) + at(ends[1])));
   }

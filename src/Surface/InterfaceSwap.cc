@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "Operators/EdgeRing.hh"
 #include "Operators/Klincsek.hh"
 #include "Operators/Metrics.hh"
 
@@ -13,76 +14,35 @@ namespace {
 
 static_assert(InterfaceSwap<VolumeLength>::kMaxSide + 1 == HFR_MAX_RING);  // vertices of the polygon
 
-/// The cells of one region round a→b, counter-clockwise: cell i lies between vertices i and i+1.
-struct Side {
-  int n_cells = 0;
-  RawArray<CellHandle, HFR_MAX_RING> cells;
-  RawArray<VertexHandle, HFR_MAX_RING> vertices;
-};
-
-struct TwoSides {
-  VertexHandle a, b;
-  std::array<Side, 2> sides;  // the smaller region first
-};
-
-/// False unless the cells go all the way round, lie in two regions that meet in two faces, and either region
-/// has two to kMaxSide of them.
-bool gather_sides(const TetMesh& mesh, EdgeHandle seed, TwoSides& out) {
-  const std::size_t local = seed.idx() % 6;
-  const CellHandle c(seed.idx() / 6);
-  const auto [a, b] = mesh.edge_vertices(seed);
-  out.a = a;
-  out.b = b;
-  Ring ring;
-  if (!mesh.gather_ring({c, kEdgeOpposite[local][0], kEdgeOpposite[local][1]}, ring) || !ring.closed)
-    return false;
-  const auto n = static_cast<std::size_t>(ring.size);
-  const auto region = [&](std::size_t i) { return mesh.region(ring.places[i % n].cell); };
-  std::size_t first = 0;
-  while (first < n && !(region(first + n - 1) > region(first))) ++first;
-  if (first == n) return false;
-  std::size_t at = first;
-  for (Side& side : out.sides) {
-    const int mine = region(at);
-    side.n_cells = 0;
-    for (; at < first + n && region(at) == mine; ++at) {
-      if (side.n_cells + 1 == HFR_MAX_RING) return false;
-      const RingPlace place = ring.places[at % n];
-      const auto i = static_cast<std::size_t>(side.n_cells++);
-      side.cells[i] = place.cell;
-      side.vertices[i] = mesh.cell(place.cell).v[place.p];
-      side.vertices[i + 1] = mesh.cell(place.cell).v[place.q];
-    }
-    if (side.n_cells < 2) return false;
-  }
-  return at == first + n;  // no third region, nor one that comes twice
+/// False where gather_two_sided_ring() is, and for a side of a single cell.
+bool gather(const TetMesh& mesh, EdgeHandle seed, TwoSidedRing& two) {
+  return gather_two_sided_ring(mesh, seed, two) && two.sides[0].n_cells > 1 && two.sides[1].n_cells > 1;
 }
 
 }  // namespace
 
 template <class Metric>
 void InterfaceSwap<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
-  TwoSides two;
+  TwoSidedRing two;
   out.clear();
-  if (!gather_sides(mesh, seed, two)) return;
-  for (const Side& side : two.sides)
-    for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i) out.push_back(side.cells[i]);
+  if (!gather(mesh, seed, two)) return;
+  for (const EdgeFan& side : two.sides)
+    for (CellHandle c : side) out.push_back(c);
 }
 
 template <class Metric>
 auto InterfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std::optional<Plan> {
-  TwoSides two;
-  if (!gather_sides(mesh, seed, two)) return std::nullopt;
+  TwoSidedRing two;
+  if (!gather(mesh, seed, two)) return std::nullopt;
   Plan plan;
   plan.old_worst = std::numeric_limits<double>::infinity();
-  for (const Side& side : two.sides)
-    for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i)
-      plan.old_worst = std::min(plan.old_worst, quality[side.cells[i].idx()]);
+  for (const EdgeFan& side : two.sides)
+    for (CellHandle c : side) plan.old_worst = std::min(plan.old_worst, quality[c.idx()]);
   plan.new_worst = std::numeric_limits<double>::infinity();
   const Vec3 a = mesh.point(two.a);
   const Vec3 b = mesh.point(two.b);
   for (std::size_t s = 0; s < 2; ++s) {
-    const Side& side = two.sides[s];
+    const EdgeFan& side = two.sides[s];
     RawArray<Vec3, HFR_MAX_RING> p;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(side.n_cells); ++i)
       p[i] = mesh.point(side.vertices[i]);
@@ -92,7 +52,7 @@ auto InterfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> st
     table.preorder(plan.apex[s].data());
     plan.new_worst = std::min(plan.new_worst, worst);
   }
-  const Side& inner = two.sides[0];  // interface faces are seen from the larger region
+  const EdgeFan& inner = two.sides[0];  // interface faces are seen from the larger region
   const auto n = static_cast<std::size_t>(inner.n_cells);
   const VertexHandle p = inner.vertices[0];
   const VertexHandle q = inner.vertices[n];
@@ -114,16 +74,15 @@ auto InterfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> st
 
 template <class Metric>
 void InterfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-  TwoSides two;
-  gather_sides(mesh, plan.seed, two);
+  TwoSidedRing two;
+  gather(mesh, plan.seed, two);
   out.clear();
   out.surface_is_held = true;
   out.n_dead_first = plan.n_dead_first;
   out.n_born_first = plan.n_born_first;
   for (std::size_t s = 0; s < 2; ++s) {
-    const Side& side = two.sides[s];
-    for (std::size_t i = 0; i < static_cast<std::size_t>(side.n_cells); ++i)
-      out.dead.push_back(side.cells[i]);
+    const EdgeFan& side = two.sides[s];
+    for (CellHandle c : side) out.dead.push_back(c);
     append_ring_cells(side.vertices, two.a, two.b, side.n_cells, plan.apex[s].data(), out);
   }
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "Operators/Dig.hh"
+#include "Operators/EdgeRing.hh"
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
 
@@ -36,10 +37,8 @@ template <class Metric>
 auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
   const auto [a, b] = mesh.edge_vertices(seed.edge);
   const CutFaces is_cut{mesh, a, b};
-  const auto& opposite = kEdgeOpposite[seed.edge.idx() % 6];
   Ring ring;
-  if (!mesh.gather_ring({CellHandle(seed.edge.idx() / 6), opposite[0], opposite[1]}, ring) || ring.closed)
-    return std::nullopt;
+  if (!mesh.gather_ring(ring_start(seed.edge), ring) || ring.closed) return std::nullopt;
   GrownCells cells(mesh, ring.places[0].cell);
   for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(ring.size); ++i)
     if (!cells.grow(halfface_of(ring.places[i].cell, ring.places[i].p))) return std::nullopt;

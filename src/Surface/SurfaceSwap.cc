@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "Operators/EdgeRing.hh"
 #include "Operators/Klincsek.hh"
 #include "Operators/Metrics.hh"
 
@@ -14,65 +15,42 @@ namespace {
 
 static_assert(SurfaceSwap<VolumeLength>::kMaxRing + 1 == HFR_MAX_RING);  // vertices of the polygon
 
-/// The open ring of a boundary edge: cell i lies between vertices i and i+1, counter-clockwise about a→b.
-struct OpenRing {
-  VertexHandle a, b;
-  int n_cells = 0;
-  RawArray<CellHandle, HFR_MAX_RING> cells;
-  RawArray<VertexHandle, HFR_MAX_RING> vertices;
+struct SwapRing : EdgeRing {
   FixedVector<CellHandle, HFR_MAX_RING> behind;  // for a single cell: the others round its opposite edge
 };
 
 /// False when the ring is closed, too large, or a single cell whose opposite edge is on the boundary.
-bool gather_open_ring(const TetMesh& mesh, EdgeHandle seed, OpenRing& ring) {
-  const CellHandle c(seed.idx() / 6);
-  const std::size_t local = seed.idx() % 6;
-  const auto& opposite = kEdgeOpposite[local];
-  const auto [a, b] = mesh.edge_vertices(seed);
-  ring.a = a;
-  ring.b = b;
-  Ring all;
-  if (!mesh.gather_ring({c, opposite[0], opposite[1]}, all) || all.closed || all.size >= HFR_MAX_RING)
-    return false;
-  ring.n_cells = all.size;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(all.size); ++i) {
-    const RingPlace at = all.places[i];
-    ring.cells[i] = at.cell;
-    ring.vertices[i] = mesh.cell(at.cell).v[at.p];
-    ring.vertices[i + 1] = mesh.cell(at.cell).v[at.q];
-  }
+bool gather(const TetMesh& mesh, EdgeHandle seed, SwapRing& ring) {
+  if (!gather_open_ring(mesh, seed, ring)) return false;
   ring.behind.clear();
-  if (all.size > 1) return true;
-  const RingPlace only = all.places[0];
-  Ring round;
-  const auto& ends = kEdgeCorners[local];
-  const RingPlace start{only.cell, ends[0], ends[1]};
-  // Either order of the ends will do: only the set of cells matters, and gather_ring() begins with `start`.
-  if (!mesh.gather_ring(start, round) || !round.closed || round.size > HFR_MAX_RING) return false;
-  for (std::size_t i = 1; i < static_cast<std::size_t>(round.size); ++i)
-    ring.behind.push_back(round.places[i].cell);
+  if (ring.n_cells > 1) return true;
+  const auto& ends = kEdgeCorners[seed.idx() % 6];
+  EdgeFan round;
+  // Either order of the ends will do: only the set of cells matters, and the fan begins with the single one.
+  if (!gather_closed_fan(mesh, {ring.cells[0], ends[0], ends[1]}, round)) return false;
+  for (CellHandle c : std::span(round.begin() + 1, round.end())) ring.behind.push_back(c);
   return true;
 }
 
 template <class Visit>
-void for_dead(const OpenRing& ring, Visit&& visit) {
+void for_dead(const SwapRing& ring, Visit&& visit) {
   for (CellHandle c : ring.behind) visit(c);
-  for (int i = 0; i < ring.n_cells; ++i) visit(ring.cells[static_cast<std::size_t>(i)]);
+  for (CellHandle c : ring) visit(c);
 }
 
 }  // namespace
 
 template <class Metric>
 void SurfaceSwap<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
-  OpenRing ring;
+  SwapRing ring;
   out.clear();
-  if (gather_open_ring(mesh, seed, ring)) for_dead(ring, [&](CellHandle c) { out.push_back(c); });
+  if (gather(mesh, seed, ring)) for_dead(ring, [&](CellHandle c) { out.push_back(c); });
 }
 
 template <class Metric>
 auto SurfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std::optional<Plan> {
-  OpenRing ring;
-  if (!gather_open_ring(mesh, seed, ring)) return std::nullopt;
+  SwapRing ring;
+  if (!gather(mesh, seed, ring)) return std::nullopt;
   const auto n = static_cast<std::size_t>(ring.n_cells);
   Plan plan;
   plan.old_worst = std::numeric_limits<double>::infinity();
@@ -105,8 +83,8 @@ auto SurfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std:
 
 template <class Metric>
 void SurfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-  OpenRing ring;
-  gather_open_ring(mesh, plan.seed, ring);
+  SwapRing ring;
+  gather(mesh, plan.seed, ring);
   out.clear();
   out.surface_is_held = true;
   for_dead(ring, [&](CellHandle c) { out.dead.push_back(c); });
