@@ -9,6 +9,7 @@
 #include "Operators/Metrics.hh"
 #include "Operators/Smooth.hh"
 #include "Quality/Damage.hh"
+#include "Surface/TangentSearch.hh"
 
 namespace hfr {
 namespace {
@@ -137,16 +138,14 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
     // Directions along the coordinates, so that those that have to stay do so to the last bit.
     std::array<Vec3, 3> ways = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     for (Vec3& way : ways) way = on_curve ? dot(way, axis) * axis : way - dot(way, axis) * axis;
-    double radius = 0.5 * length / (3.0 * static_cast<double>(n_links));
-    for (int level = 0; level < halvings;) {
-      const Vec3 centre = step;
-      bool better = false;
+    const auto steps_at = [&](double r) {
+      FixedVector<Vec3, 6> steps;
       for (const Vec3 way : ways)
-        for (const double s : {1.0, -1.0}) better = consider(centre + (s * radius) * way) || better;
-      if (better) continue;
-      radius *= 0.5;
-      ++level;
-    }
+        for (const double s : {1.0, -1.0}) steps.push_back(step + (s * r) * way);
+      return steps;
+    };
+    const double radius = 0.5 * length / (3.0 * static_cast<double>(n_links));
+    surface::search_places_by_halving(radius, halvings, steps_at, consider);
   }
   for (int i = 0; i < 3 && step != Vec3{}; ++i, step = 0.5 * step) {
     plan.targets = targets_of(step);

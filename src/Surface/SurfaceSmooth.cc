@@ -7,26 +7,20 @@
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
 #include "Operators/StarForm.hh"
+#include "Surface/TangentSearch.hh"
 
 namespace hfr {
+
+using surface::normal_to;
+using surface::search_by_halving;
+using surface::TangentSteps;
+
 namespace {
 
-constexpr std::size_t kMaxFaces = 64;   // of the surface round a vertex
-constexpr std::size_t kDirections = 8;  // of the search at one radius
+constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
 /// Steps of one search where a cell is inverted: it gets less so for ever, ever further away.
 constexpr int kMostSteps = 100;
-static_assert(2 * kDirections <= StarForm::kTrials);
-
-/// Two directions of length 1 that are normal to n and to each other. Exact zeros stay zeros, so that a
-/// vertex of a facet along two axes keeps the third coordinate to the last bit.
-std::array<Vec3, 2> tangents(Vec3 n) {
-  const Vec3 a = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
-  Vec3 u = a.x <= a.y && a.x <= a.z ? Vec3{0, n.z, -n.y}
-           : a.y <= a.z             ? Vec3{-n.z, 0, n.x}
-                                    : Vec3{n.y, -n.x, 0};
-  u = (1.0 / norm(u)) * u;
-  return {u, cross(n, u)};
-}
+static_assert(2 * TangentSteps::kMost <= StarForm::kTrials);
 
 /// The surface round a vertex, before and after a move.
 struct Patch {
@@ -144,40 +138,25 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
     double length = 0;
     for (HalfFaceHandle h : link)
       for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - origin);
-    double radius = 0.5 * length / (3.0 * static_cast<double>(link.size()));
-    const auto uv = tangents(axis);
-    const auto places_at = [&](double r, Vec3 centre) {
-      FixedVector<Vec3, kDirections> places;
-      if (on_curve) {
-        for (double s : {1.0, -1.0}) places.push_back(centre + (s * r) * axis);
-        return places;
-      }
-      for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-          if (i != 0 || j != 0) places.push_back(centre + r * ((i * 1.0) * uv[0] + (j * 1.0) * uv[1]));
-      return places;
-    };
+    const double radius = 0.5 * length / (3.0 * static_cast<double>(link.size()));
+    Vec3 u = normal_to(axis);
+    u = (1.0 / norm(u)) * u;  // unit() divides, which may give another last bit
+    const TangentSteps steps = on_curve ? TangentSteps::on_line(axis) : TangentSteps::in_plane(axis, u);
     std::optional<StarForm> star;
     if (std::is_same_v<Metric, VolumeLength> && move.old_worst > 0) star.emplace(mesh, v, link);
     int n_steps = 0;
-    for (int level = 0; level < halvings;) {
+    search_by_halving(radius, halvings, [&](double r) {
       const Vec3 centre = place;
-      bool better = false;
       const bool hopeless = star && all_fall_short(*star, worst_now, [&](auto&& ask) {
-                              for (double r : {radius, 0.5 * radius})
-                                for (Vec3 x : places_at(r, centre))
+                              for (double near : {r, 0.5 * r})
+                                for (Vec3 x : steps.at(near, centre))
                                   ask(surface->project(v, x + lift) - origin);
                             });
-      if (hopeless) {
-        radius *= 0.25;
-        level += 2;
-        continue;
-      }
-      for (Vec3 x : places_at(radius, centre)) better = consider(x) || better;
-      if (better && (move.old_worst > 0 || ++n_steps < kMostSteps)) continue;
-      radius *= 0.5;
-      ++level;
-    }
+      if (hopeless) return 2;
+      bool better = false;
+      for (Vec3 x : steps.at(r, centre)) better = consider(x) || better;
+      return better && (move.old_worst > 0 || ++n_steps < kMostSteps) ? 0 : 1;
+    });
   }
   // Where the shape forbids the place, one nearer by may do.
   for (int i = 0; i < 3 && place != origin; ++i) {

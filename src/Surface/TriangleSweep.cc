@@ -4,17 +4,20 @@
 #include "Surface/TriangleSweep.hh"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "Quality/Metrics.hh"
 #include "Surface/Features.hh"
+#include "Surface/TangentSearch.hh"
 #include "kernels/triangle.h"
 
 namespace hfr {
 
+using surface::normal_to;
 using surface::scaled_normal;
+using surface::search_places_by_halving;
+using surface::TangentSteps;
 using surface::unit;
 
 namespace {
@@ -24,44 +27,23 @@ constexpr std::size_t kMaxPolygon = 12;
 /// By what a new vertex must raise the worst decision value of its cavity: it costs two triangles.
 constexpr double kSplitGain = 1.1;
 
-std::array<Vec3, 2> tangents(Vec3 n) {
-  const Vec3 a = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
-  Vec3 u = a.x <= a.y && a.x <= a.z ? Vec3{0, n.z, -n.y}
-           : a.y <= a.z             ? Vec3{-n.z, 0, n.x}
-                                    : Vec3{n.y, -n.x, 0};
-  u = unit(u);
-  return {u, cross(n, u)};
-}
-
 /// Steps from `place` by `radius` in the free directions to where value(x) is larger, the radius halved when
 /// none is. `value` may give up once it is no larger than its second argument.
 template <class Value, class Project>
 Vec3 climb(Vec3 place, double radius, Vec3 axis, bool on_line, Project&& project, Value&& value) {
   double best = value(place, -1.0);
-  const auto uv = tangents(axis);
-  for (int level = 0; level < kHalvings;) {
-    const Vec3 centre = place;
-    const auto consider = [&](Vec3 x) {
-      const Vec3 candidate = project(x);
-      const double now = value(candidate, best);
-      if (!(now > best)) return false;
-      best = now;
-      place = candidate;
-      return true;
-    };
-    bool better = false;
-    if (on_line) {
-      for (double s : {1.0, -1.0}) better = consider(centre + (s * radius) * axis) || better;
-    } else {
-      for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j)
-          if (i != 0 || j != 0)
-            better = consider(centre + radius * ((i * 1.0) * uv[0] + (j * 1.0) * uv[1])) || better;
-    }
-    if (better) continue;
-    radius *= 0.5;
-    ++level;
-  }
+  const TangentSteps steps =
+      on_line ? TangentSteps::on_line(axis) : TangentSteps::in_plane(axis, unit(normal_to(axis)));
+  const auto consider = [&](Vec3 x) {
+    const Vec3 candidate = project(x);
+    const double now = value(candidate, best);
+    if (!(now > best)) return false;
+    best = now;
+    place = candidate;
+    return true;
+  };
+  search_places_by_halving(
+      radius, kHalvings, [&](double r) { return steps.at(r, place); }, consider);
   return place;
 }
 
