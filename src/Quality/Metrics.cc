@@ -102,6 +102,11 @@ double decision_value(Metric metric, double report) {
   throw InvalidInput("no such metric");
 }
 
+double dihedral_decision(double degrees) {
+  const double sine = std::sin(degrees * (std::numbers::pi / 180.0));
+  return sine * sine;
+}
+
 double quality(Metric metric, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return with_metric(metric, [&](const auto& decision) { return decision(a, b, c, d); });
 }

@@ -47,6 +47,9 @@ Metric metric_from_name(std::string_view name);
 double report_value(Metric metric, double decision);
 /// Report value (a goal such as 20 degrees) → decision value; the inverse of report_value.
 double decision_value(Metric metric, double report);
+/// sin² of an angle in degrees: what cells and triangles whose smallest angle that is have as decision value.
+/// Every goal in degrees is compared by this one.
+double dihedral_decision(double degrees);
 
 constexpr hfr_real3 to_real3(Vec3 p) { return {p.x, p.y, p.z}; }
 
@@ -71,6 +74,15 @@ struct RadiusRatio : KernelMetric<hfr_radius_ratio_decision> {};
 struct ScaledJacobian : KernelMetric<hfr_scaled_jacobian_decision> {};
 struct EdgeRatio : KernelMetric<hfr_edge_ratio_decision> {};
 struct Volume : KernelMetric<hfr_volume_decision> {};
+
+/// Whether the decision value of a metric is a sin² of the cell's dihedral angles, so that raising angles
+/// raises it.
+template <class Metric>
+inline constexpr bool kMeasuresAngles = false;
+template <>
+inline constexpr bool kMeasuresAngles<MinSine2> = true;
+template <>
+inline constexpr bool kMeasuresAngles<MinDihedral> = true;
 
 /// Calls f with the functor of the metric: one switch outside a loop, inlined formulas inside it.
 template <class F>

@@ -122,11 +122,6 @@ constexpr double kEnoughOfAll = 0.01;  // a bulk iteration that changes less is 
 constexpr double kVolumeEnough = 5e-5;
 constexpr int kVolumePasses = 8;
 
-double decision(double degrees) {
-  const double sine = std::sin(degrees * kDegree);
-  return sine * sine;
-}
-
 class TriangleRun {
  public:
   TriangleRun(TriangleMesh& mesh, const TriangleOptions& options, TriangleResult& result)
@@ -143,7 +138,7 @@ class TriangleRun {
       bulk();
       for (double rung : kLadder) {
         if (stopped()) break;
-        sweep_.focus(decision(rung));
+        sweep_.focus(dihedral_decision(rung));
         const auto n = static_cast<double>(sweep_.n_below());
         if (n > kLargestShare * static_cast<double>(result_.before.triangles)) break;
         if (n > 0) polish(rung);
@@ -186,7 +181,7 @@ class TriangleRun {
     }
   }
   void polish(double degrees) {
-    sweep_.focus(decision(degrees));
+    sweep_.focus(dihedral_decision(degrees));
     std::size_t n_poor = sweep_.n_below();
     int idle = 0;
     for (int i = 1; i <= kMaxIterations && n_poor > 0 && !stopped(); ++i) {

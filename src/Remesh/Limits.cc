@@ -2,8 +2,6 @@
 #include "Remesh/Limits.hh"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "Operators/Operator.hh"
 #include "Operators/VertexInsertion.hh"
@@ -95,11 +93,11 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
   std::vector<std::uint8_t> on_fold(unfillable.empty() ? 0 : mesh.n_vertices(), 0);
   for (HalfFaceHandle h : unfillable)
     for (VertexHandle v : mesh.halfface_vertices(h)) on_fold[v.idx()] = 1;
-  const double goal = std::sin(degrees * std::numbers::pi / 180.0);
+  const double goal = dihedral_decision(degrees);
   const auto low = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
     if (mesh.is_deleted(CellHandle(i))) return false;
     const auto p = corners(mesh, CellHandle(i));
-    return MinDihedral{}(p[0], p[1], p[2], p[3]) < goal * goal;
+    return MinDihedral{}(p[0], p[1], p[2], p[3]) < goal;
   });
   std::vector<StuckCell> cells(low.size());
   par::for_each(policy, low.size(), [&](std::size_t i) {
@@ -129,8 +127,7 @@ void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double 
     quality[i] = MinDihedral{}(p[0], p[1], p[2], p[3]);
   });
   Op op{MinDihedral{}, quality};
-  const double sine = std::sin(degrees * std::numbers::pi / 180.0);
-  op.poor_below = sine * sine;
+  op.poor_below = dihedral_decision(degrees);
   const std::size_t n_cells = mesh.n_logical_cells();
   par::for_each_dynamic(policy.for_items_of(Op::kSeedNanoseconds), stuck.size(), 1, [&](std::size_t i) {
     if (stuck[i].limit != Limit::kNotFound) return;

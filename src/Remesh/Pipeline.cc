@@ -2,16 +2,12 @@
 #include "Remesh/Pipeline.hh"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "HalfFace/Layers.hh"
 #include "Remesh/Stage.hh"
 
 namespace hfr {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr int kDefaultBulkIterations = 3;
 /// Volume-length above which the bulk stage leaves a cell alone, as decision value (q = 0.67). Measured on
@@ -149,11 +145,6 @@ std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Po
 }
 
 }  // namespace
-
-double dihedral_decision(double degrees) {
-  const double sine = std::sin(degrees * kDegree);
-  return sine * sine;
-}
 
 Survey survey(const TetMesh& mesh, par::Policy policy) {
   const std::size_t n = mesh.n_cells();

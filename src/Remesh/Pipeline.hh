@@ -14,8 +14,6 @@ namespace hfr {
 
 /// Whether the surface may change its shape.
 inline bool is_free(const ImproveOptions& options) { return options.surface.mode == SurfaceMode::kFree; }
-/// sin² of an angle in degrees: what the dihedral metrics call their decision value.
-double dihedral_decision(double degrees);
 /// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
 /// Number of cells whose smallest dihedral is below so many degrees.

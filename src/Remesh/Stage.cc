@@ -8,10 +8,6 @@
 namespace hfr {
 namespace {
 
-/// Metrics that measure dihedral angles.
-template <class Metric>
-constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
-
 constexpr std::size_t kSearchPoints = 14;  // of a cavity whose fillings are searched
 constexpr std::size_t kSearchNodes = 300;  // of each search: more found little more on the test meshes
 constexpr int kMaxRounds = 12;             // of one operator in one pass

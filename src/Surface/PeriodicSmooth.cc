@@ -121,8 +121,7 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
     step = targets[0] - origin;
     return true;
   };
-  constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
-  if (kMeasuresAngles && plan.old_worst > 0) {
+  if (kMeasuresAngles<Metric> && plan.old_worst > 0) {
     MaxMinForm form(origin, MaxMinForm::kAnglesOf<Metric>);
     form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
     for (const Member& member : *members) {

@@ -124,8 +124,7 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
     place = candidate;
     return true;
   };
-  constexpr bool kMeasuresAngles = std::is_same_v<Metric, MinSine2> || std::is_same_v<Metric, MinDihedral>;
-  if (kMeasuresAngles && move.old_worst > 0) {
+  if (kMeasuresAngles<Metric> && move.old_worst > 0) {
     MaxMinForm form(origin, MaxMinForm::kAnglesOf<Metric>);
     form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
     for (HalfFaceHandle h : link) {

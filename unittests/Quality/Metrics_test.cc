@@ -270,6 +270,28 @@ TEST(Metrics, AngleGoalIsMetExactlyAtItsDecisionValue) {
   EXPECT_NEAR(report_value(Metric::kMaxDihedral, decision_value(Metric::kMaxDihedral, 80.0)), 80.0, 1e-12);
 }
 
+TEST(Metrics, DihedralDecisionIsTheSquareOfTheSine) {
+  EXPECT_NEAR(dihedral_decision(30), 0.25, 1e-15);
+  EXPECT_NEAR(dihedral_decision(60), 0.75, 1e-15);
+  EXPECT_NEAR(dihedral_decision(20), decision_value(Metric::kMinDihedral, 20), 1e-15);
+}
+
+TEST(Metrics, MeasureAnglesWhereTheDecisionIsASquaredSineOfOne) {
+  const auto regular = regular_tet();
+  std::size_t n_of_angles = 0;
+  for (Metric metric : kMetrics) {
+    with_metric(metric, [&](const auto& decision) {
+      if (!kMeasuresAngles<std::remove_cvref_t<decltype(decision)>>) return;
+      ++n_of_angles;
+      const double angle = dihedrals(regular[0], regular[1], regular[2], regular[3])[0];
+      EXPECT_NEAR(std::abs(decision(regular[0], regular[1], regular[2], regular[3])),
+                  dihedral_decision(angle), 1e-15);
+    });
+  }
+  EXPECT_EQ(n_of_angles, 2U);
+  static_assert(!kMeasuresAngles<VolumeLength> && !kMeasuresAngles<CustomMetric>);
+}
+
 TEST(Metrics, UnknownNameListsTheNames) {
   try {
     metric_from_name("aspect");

@@ -8,12 +8,6 @@
 namespace hfr::test {
 namespace {
 
-TEST(Pipeline, DihedralDecisionIsTheSquareOfTheSine) {
-  EXPECT_NEAR(dihedral_decision(30), 0.25, 1e-15);
-  EXPECT_NEAR(dihedral_decision(60), 0.75, 1e-15);
-  EXPECT_NEAR(dihedral_decision(20), decision_value(Metric::kMinDihedral, 20), 1e-15);
-}
-
 TEST(Pipeline, SmallestDihedralIsThatOfTheWorstCell) {
   const TetMesh mesh = jittered(5, 0.2, 1);
   double smallest = 180;
