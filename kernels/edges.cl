@@ -118,8 +118,9 @@ static void search_ring(uint seed, uint n, const uint* ring, const uint* scope, 
 // at once, the others are noted for search_large_rings, whose arrays would not fit the registers of a device.
 KERNEL void search_edges(__global const cell_t* cells, __global const double* points,
                          __global const double* quality, __global const uchar* listed,
-                         __global const uint* list, __global const uint* origin, __global const int* regions,
-                         uint has_regions, ulong salt, __global uint* large, SEARCH_ARGUMENTS) {
+                         __global const uint* cell_list, __global const uint* origin,
+                         __global const int* regions, uint has_regions, ulong salt, __global uint* large,
+                         SEARCH_ARGUMENTS) {
   uint ring[HFR_SMALL_RING], scope[HFR_SMALL_RING];
   double best[HFR_SMALL_RING * HFR_SMALL_RING];
   uchar apex[HFR_SMALL_RING * HFR_SMALL_RING], triangles[HFR_SMALL_RING];
@@ -127,7 +128,7 @@ KERNEL void search_edges(__global const cell_t* cells, __global const double* po
   uint n_seeds = 0;
   const uint n_items = 6 * counters[HFR_LISTED];
   FOR_EACH(item, n_items) {
-    const uint seed = 6 * list[item / 6] + item % 6;
+    const uint seed = 6 * cell_list[item / 6] + item % 6;
     double old_worst;
     const uint n = walk_ring(seed, HFR_SMALL_RING, cells, quality, listed, ring, scope, &old_worst);
     n_seeds += n > 0;

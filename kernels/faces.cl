@@ -5,12 +5,12 @@
 
 KERNEL void search_faces(__global const cell_t* cells, __global const double* points,
                          __global const double* quality, __global const uchar* listed,
-                         __global const uint* list, __global const uint* origin, __global const int* regions,
-                         uint has_regions, ulong salt, SEARCH_ARGUMENTS) {
+                         __global const uint* cell_list, __global const uint* origin,
+                         __global const int* regions, uint has_regions, ulong salt, SEARCH_ARGUMENTS) {
   uint n_seeds = 0;
   const uint n_items = 4 * counters[HFR_LISTED];
   FOR_EACH(item, n_items) {
-    const uint c = list[item / 4];
+    const uint c = cell_list[item / 4];
     const uint corner = item % 4;
     const uint h = 4 * c + corner;
     const uint m = cells[c].mate[corner];

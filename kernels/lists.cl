@@ -36,9 +36,9 @@ KERNEL void list_cells(__global const cell_t* cells, __global const double* qual
 }
 
 // The listed cells count as looked at from now on.
-KERNEL void clear_pending(__global const uint* list, __global const uint* counters, uint bit,
+KERNEL void clear_pending(__global const uint* cell_list, __global const uint* counters, uint bit,
                           __global uchar* pending) {
-  FOR_EACH(i, counters[HFR_LISTED]) { pending[list[i]] &= (uchar)~bit; }
+  FOR_EACH(i, counters[HFR_LISTED]) { pending[cell_list[i]] &= (uchar)~bit; }
 }
 
 KERNEL void count_flags(__global const uchar* flags, uint n, __global uint* sums) {

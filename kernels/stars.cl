@@ -7,12 +7,12 @@
 #define NO_COLOUR HFR_MAX_COLOURS
 
 // Vertices of the listed cells that may move.
-KERNEL void mark_vertices(__global const cell_t* cells, __global const uint* list,
+KERNEL void mark_vertices(__global const cell_t* cells, __global const uint* cell_list,
                           __global const uint* counters, __global const uchar* frozen,
                           __global uchar* marked) {
   FOR_EACH(i, counters[HFR_LISTED]) {
     for (int k = 0; k < 4; ++k) {
-      const uint v = cells[list[i]].v[k];
+      const uint v = cells[cell_list[i]].v[k];
       if (!frozen[v]) marked[v] = 1;
     }
   }
@@ -112,7 +112,7 @@ KERNEL void colour_level(__global const cell_t* cells, __global const uint* vert
                          __global const uint* number, __global const uint* begin,
                          __global const uint* star_size, __global const uint* links, uint step,
                          __global const uint* level, __global uint* next_level, __global uint* counters,
-                         __global uint* waits, __global uchar* colour) {
+                         __global uint* waits, __global uchar* colours) {
   // Colours that the neighbours of a team's vertex have: a bit each, in two words because OpenCL 1.2 has no
   // atomic_or of 64 bits.
   __local uint low[TEAMS];
@@ -134,7 +134,7 @@ KERNEL void colour_level(__global const cell_t* cells, __global const uint* vert
     for (uint k = lane; k < n; k += TEAM) {
       for (uint j = 0; j < 4; ++j) {
         const uint u = cells[link[k] / 4].v[j];
-        if (u != v) seen |= 1UL << colour[u];
+        if (u != v) seen |= 1UL << colours[u];
       }
     }
     atomic_or(&low[team], (uint)seen);
@@ -144,7 +144,7 @@ KERNEL void colour_level(__global const cell_t* cells, __global const uint* vert
       const ulong used = ((ulong)high[team] << 32 | low[team]) & ~(1UL << NO_COLOUR);
       uint first = 0;
       while (used >> first & 1) ++first;
-      colour[v] = (uchar)first;
+      colours[v] = (uchar)first;
       atomic_inc(&counters[HFR_COLOUR_SIZE + first]);
       ++n_done;
     }
@@ -172,8 +172,8 @@ KERNEL void begin_colours(__global const uint* counters, __global uint* colour_b
   }
 }
 
-KERNEL void group_colours(__global const uint* vertices, __global const uchar* colour,
+KERNEL void group_colours(__global const uint* vertices, __global const uchar* colours,
                           __global const uint* counters, __global uint* colour_cursor,
                           __global uint* grouped) {
-  FOR_EACH(i, counters[HFR_VERTICES]) { grouped[atomic_inc(&colour_cursor[colour[vertices[i]]])] = i; }
+  FOR_EACH(i, counters[HFR_VERTICES]) { grouped[atomic_inc(&colour_cursor[colours[vertices[i]]])] = i; }
 }

@@ -16,6 +16,7 @@ for file in "$@"; do files+=("$(realpath "$file")"); done
 cd "$root"
 cmake -S . -B "$build" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_COMPILER=clang++ -DHFR_TESTS=OFF \
   -DCMAKE_EXPORT_COMPILE_COMMANDS=ON > /dev/null
+cmake --build "$build" --target hfr_kernel_arguments > /dev/null
 if [ ${#files[@]} -eq 0 ]; then
   mapfile -t files < <(find "$root/src" "$root/apps" -name '*.cc' | LC_ALL=C sort)
 fi

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "Device/KernelArguments.hh"
 #include "Device/Queue.hh"
 #include "HalfFace/Generate.hh"
 #include "HalfFace/Writer.hh"
@@ -18,6 +19,7 @@ namespace hfr {
 namespace {
 
 using detail::DeviceArray;
+namespace kernel = detail::kernel;
 using Clock = std::chrono::steady_clock;
 
 constexpr cl_uint kNone = 0xffffffffU;
@@ -61,6 +63,11 @@ struct DeviceMesh::Impl {
 
   Impl(const DeviceChoice& choice, DeviceTuning tuning) : spare(tuning.spare), queue(choice, tuning) {}
 
+  /// Runs a kernel on the arrays of its arguments' names.
+  template <class Kernel>
+  void launch(const Kernel& values) {
+    queue.launch(values, Kernel::Arrays::from(*this));
+  }
   void require_rounding();
   void reserve_mesh(std::size_t n_cells, std::size_t n_vertices);
   void reserve_candidates(std::size_t n_candidates, std::size_t n_words);
@@ -72,14 +79,20 @@ struct DeviceMesh::Impl {
   }
   void list(const DeviceLook& look);
   void search(Kind kind, cl_ulong salt);
+  template <class Kernel>
+  void search_with(cl_ulong salt);
   void rank(Kind kind);
   void repeat_selection(unsigned first, unsigned end);
   void number_slots();
   Counters give_up_winners(cl_uint may_lose);
   void commit(Kind kind, std::uint32_t clock);
+  template <class Kernel>
+  void write_cells();
   void list_vertices();
   void gather_stars();
   Counters colour();
+  template <class Kernel>
+  void move_vertices(cl_uint colour, bool newton, cl_uint clock);
 
   unsigned spare;
   detail::Queue queue;
@@ -101,11 +114,13 @@ struct DeviceMesh::Impl {
   DeviceArray<cl_uint> seeds, offsets, sizes, arena, order, extra_at, freed_at, bins;
   DeviceArray<cl_uchar> won, lost;
   unsigned repetitions = kFewRepetitions;
-  // Of a smoothing pass; the links are kept in `moved`, which has four words a cell.
+  // Of a smoothing pass.
   DeviceArray<cl_uchar> marked, colours;
   DeviceArray<cl_uint> vertices, number, begin, cursor, level, next_level, grouped, colour_begin,
       colour_cursor;
   unsigned levels = kManyLevels;
+  // By the names that kernels have for what is free when they run; `moved` has four words a cell.
+  DeviceArray<cl_uint>&links = moved, &large = moved, &waits = cursor;
 
   cl_uint cell_count() const { return static_cast<cl_uint>(n_cells); }
   cl_uint free_count() const { return static_cast<cl_uint>(n_free); }
@@ -140,7 +155,8 @@ void DeviceMesh::Impl::require_rounding() {
   queue.reserve(probe_quality, kProbes);
   queue.write(probe_cells, tets.data(), tets.size());
   queue.write(probe_points, coordinates.data(), coordinates.size());
-  queue.launch("cell_qualities", probe_cells, probe_points, cl_uint{kProbes}, probe_quality);
+  queue.launch(kernel::cell_qualities{.n_cells = cl_uint{kProbes}},
+               {.cells = probe_cells, .points = probe_points, .quality = probe_quality});
   queue.read(probe_quality, found.data(), kProbes);
   for (std::size_t i = 0; i < kProbes; ++i) {
     std::array<hfr_real3, 4> p;
@@ -310,37 +326,34 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
 
 void DeviceMesh::Impl::list(const DeviceLook& look) {
   queue.fill(counters, cl_uint{0}, 0, counters.room);
-  queue.launch("list_cells", cells, quality, pending, changed, cell_count(), look.below, cl_uint{look.since},
-               cl_uint{look.pending_bit}, listed, sums);
-  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_LISTED});
-  queue.launch("write_flagged", listed, cell_count(), sums, cell_list);
+  launch(kernel::list_cells{.n_cells = cell_count(),
+                            .below = look.below,
+                            .since = cl_uint{look.since},
+                            .everything_bit = cl_uint{look.pending_bit}});
+  launch(kernel::scan_sums{.n = cl_uint{queue.groups()}, .n_rows = cl_uint{1}, .first = cl_uint{HFR_LISTED}});
+  queue.launch(kernel::write_flagged{.n = cell_count()}, {.flags = listed, .sums = sums, .list = cell_list});
+}
+
+template <class Kernel>
+void DeviceMesh::Impl::search_with(cl_ulong salt) {
+  launch(Kernel{.has_regions = cl_uint{has_regions ? 1U : 0U},
+                .salt = salt,
+                .capacity = capacity(),
+                .arena_capacity = static_cast<cl_uint>(arena.room)});
 }
 
 void DeviceMesh::Impl::search(Kind kind, cl_ulong salt) {
-  const auto arena_room = static_cast<cl_uint>(arena.room);
-  const cl_uint regional = has_regions ? 1 : 0;
   if (kind == Kind::kFace) {
-    queue.launch("search_faces", cells, points, quality, listed, cell_list, origin, regions, regional, salt,
-                 counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
-    return;
+    search_with<kernel::search_faces>(salt);
+  } else if (kind == Kind::kEdge) {
+    search_with<kernel::search_edges>(salt);
+    search_with<kernel::search_large_rings>(salt);
+  } else if (queue.is_cpu_style()) {
+    search_with<kernel::search_all_stars>(salt);
+  } else {
+    search_with<kernel::search_small_stars>(salt);
+    search_with<kernel::search_large_stars>(salt);
   }
-  if (kind == Kind::kVertex) {
-    const auto search_stars = [&](const char* kernel) {
-      queue.launch(kernel, cells, points, quality, hooks, star_size, vertices, origin, regions, regional,
-                   salt, counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
-    };
-    if (queue.is_cpu_style()) {
-      search_stars("search_all_stars");
-    } else {
-      search_stars("search_small_stars");
-      search_stars("search_large_stars");
-    }
-    return;
-  }
-  queue.launch("search_edges", cells, points, quality, listed, cell_list, origin, regions, regional, salt,
-               moved, counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
-  queue.launch("search_large_rings", cells, points, quality, listed, origin, regions, regional, salt, moved,
-               counters, capacity(), arena_room, keys, seeds, offsets, sizes, arena);
 }
 
 void DeviceMesh::Impl::rank(Kind kind) {
@@ -349,52 +362,59 @@ void DeviceMesh::Impl::rank(Kind kind) {
   const auto n_bins = cl_uint{1} << n_bits;
   const auto shift = static_cast<cl_uint>(64 - n_bits);
   queue.fill(bins, cl_uint{0}, 0, n_bins);
-  queue.launch("rank_count", keys, counters, capacity(), shift, bins);
-  queue.launch("sum_parts", bins, n_bins, sums);
-  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_WINNERS});
-  queue.launch("scan_parts", bins, n_bins, sums);
-  queue.launch("rank_scatter", keys, counters, capacity(), shift, bins, order);
+  launch(kernel::rank_count{.capacity = capacity(), .shift = shift});
+  queue.launch(kernel::sum_parts{.n = n_bins}, {.values = bins, .sums = sums});
+  launch(
+      kernel::scan_sums{.n = cl_uint{queue.groups()}, .n_rows = cl_uint{1}, .first = cl_uint{HFR_WINNERS}});
+  queue.launch(kernel::scan_parts{.n = n_bins}, {.values = bins, .sums = sums});
+  launch(kernel::rank_scatter{.capacity = capacity(), .shift = shift});
   const cl_uint seed_kind = kind == Kind::kEdge   ? HFR_OF_EDGE
                             : kind == Kind::kFace ? HFR_OF_FACE
                                                   : HFR_OF_VERTEX;
-  queue.launch("rank_sort", cells, keys, seeds, seed_kind, n_bins, bins, order);
+  launch(kernel::rank_sort{.kind = seed_kind, .n_bins = n_bins});
 }
 
 void DeviceMesh::Impl::repeat_selection(unsigned first, unsigned end) {
   for (cl_uint s = first; s < end; ++s) {
-    queue.launch("select_claim", counters, s, capacity(), order, offsets, sizes, arena, won, lost, claim);
-    queue.launch("select_decide", counters, s, capacity(), order, offsets, sizes, arena, won, lost, claim);
-    queue.launch("select_lose", counters, s, capacity(), order, offsets, sizes, arena, won, lost, claim);
-    queue.launch("select_release", counters, s, capacity(), order, offsets, sizes, arena, lost, claim);
+    launch(kernel::select_claim{.repetition = s, .n = capacity()});
+    launch(kernel::select_decide{.repetition = s, .n = capacity()});
+    launch(kernel::select_lose{.repetition = s, .n = capacity()});
+    launch(kernel::select_release{.repetition = s, .n = capacity()});
   }
 }
 
 void DeviceMesh::Impl::number_slots() {
-  queue.launch("slot_sums", counters, capacity(), order, sizes, won, sums);
-  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{3}, counters, cl_uint{HFR_WINNERS});
-  queue.launch("slot_numbers", counters, capacity(), order, sizes, won, sums, extra_at, freed_at);
+  launch(kernel::slot_sums{.capacity = capacity()});
+  launch(
+      kernel::scan_sums{.n = cl_uint{queue.groups()}, .n_rows = cl_uint{3}, .first = cl_uint{HFR_WINNERS}});
+  launch(kernel::slot_numbers{.capacity = capacity()});
 }
 
 /// Keeps a round's loss of cells within bounds, as Round::keep_number_of_cells() does.
 DeviceMesh::Impl::Counters DeviceMesh::Impl::give_up_winners(cl_uint may_lose) {
-  queue.launch("give_up_winners", counters, capacity(), order, offsets, sizes, arena, may_lose, won, claim);
+  launch(kernel::give_up_winners{.capacity = capacity(), .may_lose = may_lose});
   number_slots();
   return read_counters();
 }
 
+template <class Kernel>
+void DeviceMesh::Impl::write_cells() {
+  launch(Kernel{.capacity = capacity(),
+                .n_free = free_count(),
+                .n_cells = cell_count(),
+                .has_data = cl_uint{has_data ? 1U : 0U}});
+}
+
 void DeviceMesh::Impl::commit(Kind kind, std::uint32_t clock) {
   if (kind == Kind::kVertex)
-    queue.launch("commit_stars", counters, capacity(), order, offsets, sizes, arena, won, cells, moved, hooks,
-                 star_size);
+    launch(kernel::commit_stars{.capacity = capacity()});
+  else if (kind == Kind::kEdge)
+    write_cells<kernel::commit_edges>();
   else
-    queue.launch(kind == Kind::kEdge ? "commit_edges" : "commit_faces", counters, capacity(), order, offsets,
-                 sizes, arena, won, extra_at, free_cells, free_count(), cell_count(), cells, moved, hooks,
-                 star_size, origin, cl_uint{has_data ? 1U : 0U});
-  queue.launch("commit_mates", counters, capacity(), order, offsets, sizes, arena, won, extra_at, free_cells,
-               free_count(), cell_count(), claim, moved, points, cl_uint{clock}, cells, quality, pending,
-               changed, hooks);
-  queue.launch("commit_free", counters, capacity(), order, offsets, sizes, arena, won, freed_at, free_count(),
-               claim, quality, free_cells);
+    write_cells<kernel::commit_faces>();
+  launch(kernel::commit_mates{
+      .n = capacity(), .n_free = free_count(), .n_cells = cell_count(), .clock = cl_uint{clock}});
+  launch(kernel::commit_free{.n = capacity(), .n_free = free_count()});
 }
 
 std::size_t DeviceMesh::n_logical_cells() const { return impl_->n_cells - impl_->n_free; }
@@ -411,7 +431,7 @@ RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t s
   for (;;) {
     m.search(kind, seed + clock);
     m.rank(kind);
-    m.queue.launch("select_begin", m.counters, m.capacity(), m.won, m.lost);
+    m.launch(kernel::select_begin{.capacity = m.capacity()});
     m.repeat_selection(0, launched);
     m.number_slots();
     block = m.read_counters();
@@ -448,8 +468,7 @@ RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t s
   while (block[HFR_UNDECIDED + counts.sub_rounds] > 0) ++counts.sub_rounds;
   m.repetitions = std::max(kFewRepetitions, static_cast<unsigned>(counts.sub_rounds));
   counts.seconds_evaluate = since(start);
-  if (look.pending_bit)
-    m.queue.launch("clear_pending", m.cell_list, m.counters, cl_uint{look.pending_bit}, m.pending);
+  if (look.pending_bit) m.launch(kernel::clear_pending{.bit = cl_uint{look.pending_bit}});
   if (counts.winners == 0) return counts;
   const std::size_t extra = block[HFR_EXTRA];
   const std::size_t reused = std::min(extra, m.n_free);
@@ -463,39 +482,45 @@ RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t s
 void DeviceMesh::Impl::list_vertices() {
   const auto n = static_cast<cl_uint>(n_vertices);
   queue.fill(marked, cl_uchar{0}, 0, n_vertices);
-  queue.launch("mark_vertices", cells, cell_list, counters, frozen, marked);
-  queue.launch("count_flags", marked, n, sums);
-  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_VERTICES});
-  queue.launch("write_flagged", marked, n, sums, vertices);
+  launch(kernel::mark_vertices{});
+  queue.launch(kernel::count_flags{.n = n}, {.flags = marked, .sums = sums});
+  launch(
+      kernel::scan_sums{.n = cl_uint{queue.groups()}, .n_rows = cl_uint{1}, .first = cl_uint{HFR_VERTICES}});
+  queue.launch(kernel::write_flagged{.n = n}, {.flags = marked, .sums = sums, .list = vertices});
 }
 
 void DeviceMesh::Impl::gather_stars() {
   queue.fill(number, kNone, 0, n_vertices);
   queue.fill(colours, cl_uchar{HFR_MAX_COLOURS}, 0, n_vertices);
-  queue.launch("number_vertices", vertices, star_size, counters, number, begin, cursor);
-  queue.launch("sum_begins", begin, counters, sums);
-  queue.launch("scan_sums", sums, cl_uint{queue.groups()}, cl_uint{1}, counters, cl_uint{HFR_LINKS});
-  queue.launch("scan_begins", begin, counters, sums);
-  queue.launch("gather_links", cells, cell_count(), number, begin, cursor, moved);
-  queue.launch("prepare_colours", cells, vertices, number, begin, star_size, counters, moved, cursor, level);
+  launch(kernel::number_vertices{});
+  launch(kernel::sum_begins{});
+  launch(kernel::scan_sums{.n = cl_uint{queue.groups()}, .n_rows = cl_uint{1}, .first = cl_uint{HFR_LINKS}});
+  launch(kernel::scan_begins{});
+  launch(kernel::gather_links{.n_cells = cell_count()});
+  launch(kernel::prepare_colours{});
 }
 
 /// Counters once every vertex has its colour, or once it is known that a star is too large.
 DeviceMesh::Impl::Counters DeviceMesh::Impl::colour() {
   cl_uint step = 0;
   for (;;) {
-    for (const cl_uint end = step + levels; step < end; ++step)
-      queue.launch("colour_level", cells, vertices, number, begin, star_size, moved, step,
-                   step % 2 == 0 ? level : next_level, step % 2 == 0 ? next_level : level, counters, cursor,
-                   colours);
+    for (const cl_uint end = step + levels; step < end; ++step) {
+      launch(kernel::colour_level{.step = step});
+      std::swap(level, next_level);
+    }
     const Counters block = read_counters();
     if (block[HFR_BIG_STARS] > 0) return block;
     if (block[HFR_COLOURED] == block[HFR_VERTICES]) {
-      queue.launch("begin_colours", counters, colour_begin, colour_cursor);
-      queue.launch("group_colours", vertices, colours, counters, colour_cursor, grouped);
+      launch(kernel::begin_colours{});
+      launch(kernel::group_colours{});
       return block;
     }
   }
+}
+
+template <class Kernel>
+void DeviceMesh::Impl::move_vertices(cl_uint colour, bool newton, cl_uint clock) {
+  launch(Kernel{.colour = colour, .use_newton = cl_uint{newton ? 1U : 0U}, .clock = clock});
 }
 
 std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook& look, bool newton, std::uint32_t clock) {
@@ -507,22 +532,16 @@ std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook& look, bool newto
   m.gather_stars();
   const Impl::Counters block = m.colour();
   if (block[HFR_BIG_STARS] > 0 || block[HFR_COLOUR_SIZE + HFR_MAX_COLOURS] > 0) return std::nullopt;
-  if (look.pending_bit)
-    m.queue.launch("clear_pending", m.cell_list, m.counters, cl_uint{look.pending_bit}, m.pending);
+  if (look.pending_bit) m.launch(kernel::clear_pending{.bit = cl_uint{look.pending_bit}});
   if (block[HFR_VERTICES] == 0) return counts;
   counts.seconds_select = since(start);
   start = Clock::now();
   for (cl_uint c = 0; c < HFR_MAX_COLOURS && block[HFR_COLOUR_SIZE + c] > 0; ++c) {
-    const auto move = [&](const char* kernel) {
-      m.queue.launch(kernel, m.cells, m.vertices, m.begin, m.star_size, m.moved, m.grouped, m.colour_begin, c,
-                     cl_uint{newton ? 1U : 0U}, cl_uint{clock + 1}, m.points, m.quality, m.pending, m.changed,
-                     m.counters);
-    };
     if (m.queue.is_cpu_style()) {
-      move("smooth_all_stars");
+      m.move_vertices<kernel::smooth_all_stars>(c, newton, clock + 1);
     } else {
-      move("smooth_small_stars");
-      move("smooth_large_stars");
+      m.move_vertices<kernel::smooth_small_stars>(c, newton, clock + 1);
+      m.move_vertices<kernel::smooth_large_stars>(c, newton, clock + 1);
     }
   }
   counts.rounds = 1;
@@ -536,7 +555,7 @@ std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook& look, bool newto
 DeviceMesh::Tally DeviceMesh::tally() {
   Impl& m = *impl_;
   m.queue.fill(m.counters, cl_uint{0}, 0, m.counters.room);
-  m.queue.launch("tally_qualities", m.quality, m.cell_count(), m.worst, m.counters);
+  m.launch(kernel::tally_qualities{.n_cells = m.cell_count()});
   std::vector<double> worst(m.queue.work_items());
   m.queue.read(m.worst, worst.data(), worst.size());
   return {m.read_counters()[HFR_INVALID_CELLS], *std::min_element(worst.begin(), worst.end())};
@@ -544,7 +563,7 @@ DeviceMesh::Tally DeviceMesh::tally() {
 
 double DeviceMesh::smallest_dihedral() {
   Impl& m = *impl_;
-  m.queue.launch("tally_dihedrals", m.cells, m.points, m.cell_count(), m.worst);
+  m.launch(kernel::tally_dihedrals{.n_cells = m.cell_count()});
   std::vector<double> worst(m.queue.work_items());
   m.queue.read(m.worst, worst.data(), worst.size());
   return *std::min_element(worst.begin(), worst.end());
@@ -553,7 +572,7 @@ double DeviceMesh::smallest_dihedral() {
 std::vector<double> DeviceMesh::qualities() {
   Impl& m = *impl_;
   std::vector<double> values(m.n_cells);
-  m.queue.launch("cell_qualities", m.cells, m.points, m.cell_count(), m.quality);
+  m.launch(kernel::cell_qualities{.n_cells = m.cell_count()});
   m.queue.read(m.quality, values.data(), values.size());
   return values;
 }

@@ -7,16 +7,10 @@
 #include <vector>
 
 #include "Device/DeviceMesh.hh"
+#include "Device/KernelArguments.hh"
 #include "Device/OpenCl.hh"
 
 namespace hfr::detail {
-
-/// An array on the device. `size` counts items of type T, `room` those that the buffer holds.
-template <class T>
-struct DeviceArray {
-  cl::Buffer buffer;
-  std::size_t room = 0;
-};
 
 /// One in-order queue with its program; internal to this folder. Every call is checked.
 class Queue {
@@ -65,20 +59,26 @@ class Queue {
   }
   /// Items [first, first + n) become `value`. By a kernel: tools that watch what is initialised see it.
   void fill(DeviceArray<cl_uint>& array, cl_uint value, std::size_t first, std::size_t n) {
-    launch("fill_words", array, static_cast<cl_uint>(first), static_cast<cl_uint>(n), value);
+    launch(
+        kernel::fill_words{
+            .first = static_cast<cl_uint>(first), .n = static_cast<cl_uint>(n), .value = value},
+        {.array = array});
   }
   void fill(DeviceArray<cl_uchar>& array, cl_uchar value, std::size_t first, std::size_t n) {
-    launch("fill_bytes", array, static_cast<cl_uint>(first), static_cast<cl_uint>(n), cl_uint{value});
+    launch(
+        kernel::fill_bytes{
+            .first = static_cast<cl_uint>(first), .n = static_cast<cl_uint>(n), .value = cl_uint{value}},
+        {.array = array});
   }
 
-  /// Runs a kernel over all work-items with the arguments: DeviceArray, cl_uint, cl_ulong or double.
-  template <class... Args>
-  void launch(const char* name, const Args&... args) {
-    checked(name, [&] {
-      cl::Kernel& kernel = kernel_of(name);
+  /// Runs a kernel over all work-items. `values` is a struct of KernelArguments.hh.
+  template <class Kernel>
+  void launch(const Kernel& values, const typename Kernel::Arrays& arrays) {
+    checked(Kernel::kName, [&] {
+      cl::Kernel& kernel = kernel_of(Kernel::kName);
       cl_uint index = 0;
-      (set(kernel, index++, args), ...);
-      run(kernel, name);
+      values.for_each(arrays, [&](const auto& argument) { set(kernel, index++, argument); });
+      run(kernel, Kernel::kName);
     });
   }
 
@@ -93,9 +93,8 @@ class Queue {
     kernel.setArg(index, array.buffer);
   }
   template <class T>
-  static void set(cl::Kernel& kernel, cl_uint index, const T& value) {
-    static_assert(std::is_same_v<T, cl_uint> || std::is_same_v<T, cl_ulong> || std::is_same_v<T, double>);
-    kernel.setArg(index, value);
+  static void set(cl::Kernel& kernel, cl_uint index, const KernelValue<T>& value) {
+    kernel.setArg(index, value.value);
   }
 
   DeviceInfo info_;
