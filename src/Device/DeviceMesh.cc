@@ -84,6 +84,8 @@ struct DeviceMesh::Impl {
   detail::Queue queue;
   std::size_t n_cells = 0, n_vertices = 0, n_free = 0;
   bool has_data = false, has_regions = false;
+  double floor = kNoFloor;  // these two of the workspace
+  bool holds_damage = true;
 
   DeviceArray<cl_uint> counters, sums;
   // Mesh and workspace.
@@ -224,6 +226,8 @@ void DeviceMesh::upload(const TetMesh& mesh, const Workspace& work) {
   m.n_free = mesh.free_cells().size();
   m.has_regions = mesh.has_regions();
   m.has_data = has_cell_data(mesh);
+  m.floor = work.floor;
+  m.holds_damage = work.holds_damage;
   m.reserve_mesh(m.n_cells, m.n_vertices);
   if (m.n_cells > 0)
     m.queue.write(m.cells, reinterpret_cast<const cl_uint*>(&mesh.cell(CellHandle(0))), 8 * m.n_cells);
@@ -513,8 +517,8 @@ std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook& look, bool newto
   for (cl_uint c = 0; c < HFR_MAX_COLOURS && block[HFR_COLOUR_SIZE + c] > 0; ++c) {
     const auto move = [&](const char* kernel) {
       m.queue.launch(kernel, m.cells, m.vertices, m.begin, m.star_size, m.moved, m.grouped, m.colour_begin, c,
-                     cl_uint{newton ? 1U : 0U}, cl_uint{clock + 1}, m.points, m.quality, m.pending, m.changed,
-                     m.counters);
+                     cl_uint{newton ? 1U : 0U}, cl_uint{clock + 1}, cl_uint{m.holds_damage ? 1U : 0U},
+                     m.floor, m.points, m.quality, m.pending, m.changed, m.counters);
     };
     if (m.queue.is_cpu_style()) {
       move("smooth_all_stars");

@@ -9,6 +9,7 @@
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
 #include "Operators/Operator.hh"
+#include "Quality/Damage.hh"
 
 namespace hfr {
 
@@ -48,7 +49,7 @@ bool apply(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
   if (!(plan->old_worst > 0)) {
     Scope cells;
     op.scope(mesh, plan->seed, cells);
-    if (worsens_damage(mesh, cavity, cells)) return false;
+    if (worsens_damage(mesh, cavity, cells, kNoFloor)) return false;
   }
   replace(mesh, cavity);
   return true;

@@ -394,6 +394,27 @@ bool run_stages(TetMesh& mesh, Workspace& work, const ImproveOptions& as_asked, 
   return false;
 }
 
+/// All stages. Over inverted or flat cells first without holding each cluster to being no more damaged: from
+/// a state between that is worse, more of them come right. Where the mesh ends worse for it than it began,
+/// again from the beginning, and held.
+bool run_twice_if_worse(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control,
+                        const Survey& at_first) {
+  const auto run_all = [&] {
+    const bool met = run_stages(mesh, work, options, control, at_first);
+    restore_volume(mesh, work, options, control);
+    return met;
+  };
+  if (at_first.n_invalid == 0) return run_all();
+  work.floor = at_first.worst;
+  Snapshot before(mesh, control);
+  work.holds_damage = false;
+  const bool met = run_all();
+  work.holds_damage = true;
+  if (met || control.stopped() || control.checkpoint()->allows(mesh)) return met;
+  before.put_back(mesh, work, control, options.policy);
+  return run_all();
+}
+
 /// The first angle that the worst cells were raised to in vain.
 double missed_rung(double smallest, bool to_the_end) {
   const auto first_above = [&](const auto& ladder) {
@@ -484,8 +505,7 @@ bool run(TetMesh& mesh, const ImproveOptions& options, RunControl& control, cons
   // Elsewhere no new edge or face can come twice while all cells are positive, and there is no copy to make.
   if (control.is_folded() || !work.pinched.empty()) control.keep(mesh, at_first.n_invalid == 0);
   control.set_surface(surface.get());
-  bool met = run_stages(mesh, work, options, control, at_first);
-  restore_volume(mesh, work, options, control);
+  bool met = run_twice_if_worse(mesh, work, options, control, at_first);
   met = settle(mesh, work, options, control, met) && met;
   control.set_surface(nullptr);
   surface_report = surface.report(mesh);

@@ -237,7 +237,8 @@ RoundCounts Stage<Metric>::periodic_moves(std::span<const VertexHandle> first_of
       return !work_.pinched.empty() && work_.pinched[v.idx()];
     };
     if (std::any_of(orbit.begin(), orbit.end(), is_partly_known)) continue;
-    const auto plan = PeriodicSmooth<Metric>{metric_, work_.quality, &surface}.evaluate(mesh_, orbit);
+    const auto plan =
+        PeriodicSmooth<Metric>{metric_, work_.quality, &surface, work_.floor}.evaluate(mesh_, orbit);
     if (!plan) continue;
     ++counts.candidates;
     ++counts.winners;

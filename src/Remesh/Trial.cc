@@ -41,15 +41,26 @@ double risen_from(double decision) {
 
 }  // namespace
 
+void Snapshot::put_back(TetMesh& mesh, Workspace& work, RunControl& control, par::Policy policy) {
+  mesh.restore(std::move(mesh_));
+  surface_.put_back(control.surface());
+  work.attach(mesh, policy);
+  control.take_back_changes(n_changes_);
+  const Survey found = survey(mesh, policy);
+  PassReport pass;
+  pass.stage = pass.op = "undo";
+  pass.n_inverted = found.n_invalid;
+  pass.worst = found.worst;
+  control.add(std::move(pass));
+}
+
 Trial::Trial(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control, double goal)
     : mesh_(mesh),
       work_(work),
       control_(control),
       policy_(options.policy),
       goal_(dihedral_decision(goal)),
-      n_changes_(control.n_changes()),
-      copy_(mesh),
-      surface_(control.surface()) {
+      before_(mesh, control) {
   std::vector<double> values = angles_of(mesh, policy_);
   if (values.empty()) return;
   n_below_ = count(values, policy_, [&](double value) { return value < goal_; });
@@ -61,7 +72,7 @@ Trial::Trial(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunC
 }
 
 bool Trial::pays() const {
-  if (mesh_.n_logical_cells() <= copy_.n_logical_cells()) return true;
+  if (mesh_.n_logical_cells() <= before_.mesh().n_logical_cells()) return true;
   const std::vector<double> values = angles_of(mesh_, policy_);
   const auto n_below = [&](double decision) {
     return count(values, policy_, [&](double value) { return value < decision; });
@@ -76,16 +87,7 @@ bool Trial::pays() const {
 
 bool Trial::settle() {
   if (pays()) return true;
-  mesh_.restore(std::move(copy_));
-  surface_.put_back(control_.surface());
-  work_.attach(mesh_, policy_);
-  control_.take_back_changes(n_changes_);
-  const Survey found = survey(mesh_, policy_);
-  PassReport pass;
-  pass.stage = pass.op = "undo";
-  pass.n_inverted = found.n_invalid;
-  pass.worst = found.worst;
-  control_.add(std::move(pass));
+  before_.put_back(mesh_, work_, control_, policy_);
   return false;
 }
 

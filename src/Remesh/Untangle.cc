@@ -174,7 +174,9 @@ class Unfolding {
     const auto helps = [&](std::uint32_t patch) {
       const Damage& was = old_damage[patch];
       const Damage& is = new_damage[patch];
-      return was.may_become(is) && (is.n_invalid() < was.n_invalid() || is.n_inverted() < was.n_inverted());
+      if (!work_.holds_damage) return is.n_invalid() < was.n_invalid();
+      return was.may_become(is, work_.floor) &&
+             (is.n_invalid() < was.n_invalid() || is.n_inverted() < was.n_inverted());
     };
     std::size_t n_kept = 0;
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
@@ -230,7 +232,7 @@ std::size_t unfold_by_moving(TetMesh& mesh, Workspace& work, const ImproveOption
 
 void untangle(TetMesh& mesh, Workspace& work, const ImproveOptions& options, RunControl& control) {
   const bool moves = has(options.ops, Ops::kSmooth);
-  const Untangling metric{1.0 / typical_six_volume(mesh)};
+  const Untangling metric{1.0 / typical_six_volume(mesh), work.holds_damage ? work.floor : kNoFloor};
   // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
   if (moves && unfold_by_moving(mesh, work, options, control, 1) == 0) return;
   for (int restart = 1; restart <= kMaxRestarts && !control.stopped(); ++restart) {
