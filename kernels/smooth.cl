@@ -83,7 +83,8 @@ static hfr_damage damage_with(hfr_damage sum, __global const cell_t* cells, __gl
 // cells are all positive, the candidate search on the others; else the candidate search on all.
 static uint smooth_vertex(__global const cell_t* cells, __global double* points, __global double* quality,
                           __global uchar* pending, __global uint* changed, __global const uint* link, uint n,
-                          uint v, uint use_newton, uint clock, hfr_star_cell* star) {
+                          uint v, uint use_newton, uint clock, uint holds_damage, double floor_value,
+                          hfr_star_cell* star) {
   const hfr_real3 origin = point_of(points, v);
   double old_worst = HFR_INFINITY;
   hfr_section section = hfr_section_zero();
@@ -110,14 +111,14 @@ static uint smooth_vertex(__global const cell_t* cells, __global double* points,
     more_invalid += (int)!(q > 0.0) - (int)!(quality[link[k] / 4] > 0.0);
   }
   if (!(new_worst > old_worst) || more_invalid > 0) return 0;
-  if (!(old_worst > 0.0)) {
+  if (!(old_worst > 0.0) && holds_damage) {
     hfr_damage before = hfr_no_damage();
     hfr_damage after = hfr_no_damage();
     for (uint k = 0; k < n; ++k) {
       before = damage_with(before, cells, points, link[k] / 4, v, origin);
       after = damage_with(after, cells, points, link[k] / 4, v, target);
     }
-    if (!hfr_damage_may_become(before, after)) return 0;
+    if (!hfr_damage_may_become(before, after, floor_value)) return 0;
   }
   points[3 * (size_t)v] = target.x;
   points[3 * (size_t)v + 1] = target.y;
@@ -135,8 +136,9 @@ static uint smooth_vertex(__global const cell_t* cells, __global double* points,
   KERNEL void name(__global const cell_t* cells, __global const uint* vertices, __global const uint* begin,  \
                    __global const uint* star_size, __global const uint* links, __global const uint* grouped, \
                    __global const uint* colour_begin, uint colour, uint use_newton, uint clock,              \
-                   __global double* points, __global double* quality, __global uchar* pending,               \
-                   __global uint* changed, __global uint* counters) {                                        \
+                   uint holds_damage, double floor_value, __global double* points,                           \
+                   __global double* quality, __global uchar* pending, __global uint* changed,                \
+                   __global uint* counters) {                                                                \
     hfr_star_cell star[max_star];                                                                            \
     uint n_moved = 0;                                                                                        \
     const uint first = colour_begin[colour];                                                                 \
@@ -147,7 +149,7 @@ static uint smooth_vertex(__global const cell_t* cells, __global double* points,
       const uint n = star_size[v];                                                                           \
       if (n < (min_star) || n > (max_star)) continue;                                                        \
       n_moved += smooth_vertex(cells, points, quality, pending, changed, links + begin[i], n, v, use_newton, \
-                               clock, star);                                                                 \
+                               clock, holds_damage, floor_value, star);                                      \
     }                                                                                                        \
     if (n_moved) atomic_add(&counters[HFR_MOVED], n_moved);                                                  \
   }

@@ -98,6 +98,8 @@ struct DeviceMesh::Impl {
   detail::Queue queue;
   std::size_t n_cells = 0, n_vertices = 0, n_free = 0;
   bool has_data = false, has_regions = false;
+  double floor = kNoFloor;  // these two of the workspace
+  bool holds_damage = true;
 
   DeviceArray<cl_uint> counters, sums;
   // Mesh and workspace.
@@ -241,6 +243,8 @@ void DeviceMesh::upload(const TetMesh& mesh, const Workspace& work) {
   m.n_free = mesh.free_cells().size();
   m.has_regions = mesh.has_regions();
   m.has_data = has_cell_data(mesh);
+  m.floor = work.floor;
+  m.holds_damage = work.holds_damage;
   m.reserve_mesh(m.n_cells, m.n_vertices);
   if (m.n_cells > 0)
     m.queue.write(m.cells, reinterpret_cast<const cl_uint*>(&mesh.cell(CellHandle(0))), 8 * m.n_cells);
@@ -520,7 +524,11 @@ DeviceMesh::Impl::Counters DeviceMesh::Impl::colour() {
 
 template <class Kernel>
 void DeviceMesh::Impl::move_vertices(cl_uint colour, bool newton, cl_uint clock) {
-  launch(Kernel{.colour = colour, .use_newton = cl_uint{newton ? 1U : 0U}, .clock = clock});
+  launch(Kernel{.colour = colour,
+                .use_newton = cl_uint{newton ? 1U : 0U},
+                .clock = clock,
+                .holds_damage = cl_uint{holds_damage ? 1U : 0U},
+                .floor_value = floor});
 }
 
 std::optional<RoundCounts> DeviceMesh::smooth(const DeviceLook& look, bool newton, std::uint32_t clock) {

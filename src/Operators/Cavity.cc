@@ -257,7 +257,8 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
   return !check_links || (is_ball(mesh, cavity) && !makes_twice(mesh, cavity, scratch, known));
 }
 
-bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells) {
+bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells,
+                    double floor) {
   Damage before, after;
   for (CellHandle c : cells) {
     before.add(mesh, c);
@@ -267,7 +268,7 @@ bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const C
     return v == Cavity::kNewVertex ? *cavity.new_vertex : mesh.point(v);
   };
   for (const Tet& t : cavity.born) after.add(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
-  return !before.may_become(after);
+  return !before.may_become(after, floor);
 }
 
 VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity) {

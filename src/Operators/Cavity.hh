@@ -129,9 +129,11 @@ bool find_heirs(const TetMesh& mesh, const Cavity& cavity, Heirs& out);
 void inherit_labels(TetMesh& mesh, std::span<const Heir> heirs, VertexHandle new_vertex);
 
 /// True when the change would leave `cells`, the dead ones or those of the vertex that moves, more damaged
-/// than they are: more of them inverted, more inverted or flat, or more overlap while no fewer are inverted.
-/// A worst cell that rises must not pay for itself so; see kernels/damage.h.
-bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells);
+/// than they are: more of them inverted, more inverted or flat, more overlap while no fewer are inverted, or
+/// an angle below `floor` (Workspace::floor) that they have not had. A worst cell that rises must not pay for
+/// itself so; see kernels/damage.h.
+bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells,
+                    double floor);
 
 /// Of the dead cells' vertices the one nearest to the new vertex, which inherits its data. Needs a new
 /// vertex.

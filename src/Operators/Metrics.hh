@@ -2,18 +2,21 @@
 #ifndef HFR_OPERATORS_METRICS_HH
 #define HFR_OPERATORS_METRICS_HH
 
+#include "Quality/Damage.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 #include "kernels/untangle.h"
 
 namespace hfr {
 
-/// What the untangling stage maximises: volume-length of positive cells, volume of the others.
+/// What the untangling stage maximises: volume-length of positive cells, volume of the others, those with an
+/// angle below the floor last.
 struct Untangling {
-  double per_volume = 1;  ///< 1 / six times a typical cell volume of the mesh
+  double per_volume = 1;    ///< 1 / six times a typical cell volume of the mesh
+  double floor = kNoFloor;  ///< see Workspace::floor
 
   double operator()(Vec3 a, Vec3 b, Vec3 c, Vec3 d) const {
-    return hfr_untangle_decision(to_real3(a), to_real3(b), to_real3(c), to_real3(d), per_volume);
+    return hfr_untangle_decision(to_real3(a), to_real3(b), to_real3(c), to_real3(d), per_volume, floor);
   }
 };
 

@@ -9,6 +9,7 @@
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Operators/Cavity.hh"
 #include "hfremesh/Operators/Operator.hh"
+#include "hfremesh/Quality/Decisions.hh"
 
 namespace hfr {
 
@@ -48,7 +49,7 @@ bool apply(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
   if (!(plan->old_worst > 0)) {
     Scope cells;
     op.scope(mesh, plan->seed, cells);
-    if (worsens_damage(mesh, cavity, cells)) return false;
+    if (worsens_damage(mesh, cavity, cells, kNoFloor)) return false;
   }
   replace(mesh, cavity);
   return true;

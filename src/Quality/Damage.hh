@@ -3,19 +3,22 @@
 #define HFR_QUALITY_DAMAGE_HH
 
 #include "HalfFace/TetMesh.hh"
+#include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 #include "kernels/damage.h"
 
 namespace hfr {
 
-/// Counts of the inverted and the flat cells of a cluster and six times the volume of the inverted ones; the
-/// formulas are in kernels/damage.h. By it every change of cells that are not all positive is judged, besides
-/// their worst decision value.
+/// Counts of the inverted and the flat cells of a cluster, six times the volume of the inverted ones, and the
+/// worst angle; the formulas are in kernels/damage.h. By it every change of cells that are not all positive
+/// is judged, besides their worst decision value.
 class Damage {
  public:
   int n_inverted() const { return sum_.n_inverted; }
   int n_invalid() const { return sum_.n_inverted + sum_.n_flat; }
   double overlap() const { return sum_.overlap; }
+  /// Decision value of MinDihedral.
+  double worst() const { return sum_.worst; }
 
   /// One more cell, its vertices in the order in which they are stored.
   void add(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
@@ -31,9 +34,11 @@ class Damage {
     const auto at = [&](std::size_t i) { return w[i] == v ? x : mesh.point(w[i]); };
     add(at(0), at(1), at(2), at(3));
   }
-  /// Never more inverted cells, never more inverted and flat ones together, and no more overlap unless fewer
-  /// cells are inverted.
-  bool may_become(const Damage& after) const { return hfr_damage_may_become(sum_, after.sum_) != 0; }
+  /// Never more inverted cells, never more inverted and flat ones together, no more overlap unless fewer
+  /// cells are inverted, and no worst angle below `floor` (Workspace::floor) unless it has not become worse.
+  bool may_become(const Damage& after, double floor) const {
+    return hfr_damage_may_become(sum_, after.sum_, floor) != 0;
+  }
 
  private:
   hfr_damage sum_ = hfr_no_damage();

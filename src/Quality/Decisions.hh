@@ -11,6 +11,10 @@
 
 namespace hfr {
 
+/// Decision value of MinDihedral below which nothing lies: for whoever has no run whose input's worst angle
+/// it could be.
+inline constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
+
 /// Coordinates of a few cells, gathered so that the compiler makes vector instructions of a kernel's formula.
 struct CornerBlock {
   static constexpr std::size_t kSize = 32;

@@ -43,6 +43,8 @@ class Checkpoint {
 
   const Standing& input() const { return input_; }
   bool has_copy() const { return kept_.has_value(); }
+  /// Whether the run may end with this mesh.
+  bool allows(const TetMesh& mesh) const { return is_no_worse(standing(mesh), input_); }
 
   /// Before a stage that may leave a mesh like this one worse: `valid` without inverted or flat cells, and
   /// `n_changes` operators committed so far. Does nothing for a valid mesh that comes from an invalid one,

@@ -19,6 +19,7 @@
 #include "Remesh/Polish.hh"
 #include "Remesh/RestoreVolume.hh"
 #include "Remesh/Run.hh"
+#include "Remesh/Snapshot.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
 
@@ -40,6 +41,26 @@ bool settle(const Run& run, bool known_to_meet) {
   const Survey found = survey(run.mesh, run.policy());
   run.control.add_undo(checkpoint.changes_kept(), found.n_invalid, found.worst);
   return false;
+}
+
+/// All stages. Over inverted or flat cells first without holding each cluster to being no more damaged: from
+/// a state between that is worse, more of them come right. Where the mesh ends worse for it than it began,
+/// again from the beginning, and held.
+bool run_twice_if_worse(const Run& run) {
+  const auto run_all = [&] {
+    const bool met = run_stages(run);
+    if (run.strategy.volume) restore_volume(run, *run.strategy.volume);
+    return met;
+  };
+  if (run.checkpoint->input().is_valid()) return run_all();
+  run.work.floor = run.checkpoint->input().worst;
+  Snapshot before(run);
+  run.work.holds_damage = false;
+  const bool met = run_all();
+  run.work.holds_damage = true;
+  if (met || run.control.stopped() || run.checkpoint->allows(run.mesh)) return met;
+  before.put_back(run);
+  return run_all();
 }
 
 /// What a run is made of, and leaves for the report.
@@ -72,8 +93,7 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& su
   // Elsewhere no new edge or face can come twice while all cells are positive, and there is no copy to make.
   if (findings.is_folded || !work.pinched.empty()) run.keep(valid);
   run.surface = surface.get();
-  bool met = run_stages(run);
-  if (strategy.volume) restore_volume(run, *strategy.volume);
+  bool met = run_twice_if_worse(run);
   met = settle(run, met) && met;
   surface_report = surface.report(mesh);
   return met;

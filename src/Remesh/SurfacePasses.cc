@@ -227,7 +227,8 @@ RoundCounts SurfacePasses<Metric>::periodic_moves(std::span<const VertexHandle> 
       return !run.work.pinched.empty() && run.work.pinched[v.idx()];
     };
     if (std::any_of(orbit.begin(), orbit.end(), is_partly_known)) continue;
-    const auto plan = PeriodicSmooth<Metric>{metric_, run.work.quality, &surface}.evaluate(run.mesh, orbit);
+    const auto plan =
+        PeriodicSmooth<Metric>{metric_, run.work.quality, &surface, run.work.floor}.evaluate(run.mesh, orbit);
     if (!plan) continue;
     ++counts.candidates;
     ++counts.winners;

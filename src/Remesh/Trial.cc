@@ -41,12 +41,7 @@ double risen_from(double decision) {
 
 }  // namespace
 
-Trial::Trial(const Run& run, double goal)
-    : run_(run),
-      goal_(dihedral_decision(goal)),
-      n_changes_(run.control.n_changes()),
-      copy_(run.mesh),
-      surface_(run.surface) {
+Trial::Trial(const Run& run, double goal) : run_(run), goal_(dihedral_decision(goal)), before_(run) {
   std::vector<double> values = angles_of(run.mesh, run.policy());
   if (values.empty()) return;
   n_below_ = count(values, run_.policy(), [&](double value) { return value < goal_; });
@@ -58,7 +53,7 @@ Trial::Trial(const Run& run, double goal)
 }
 
 bool Trial::pays() const {
-  if (run_.mesh.n_logical_cells() <= copy_.n_logical_cells()) return true;
+  if (run_.mesh.n_logical_cells() <= before_.mesh().n_logical_cells()) return true;
   const std::vector<double> values = angles_of(run_.mesh, run_.policy());
   const auto n_below = [&](double decision) {
     return count(values, run_.policy(), [&](double value) { return value < decision; });
@@ -73,11 +68,7 @@ bool Trial::pays() const {
 
 bool Trial::settle() {
   if (pays()) return true;
-  run_.mesh.restore(std::move(copy_));
-  surface_.put_back(run_.surface);
-  run_.work.attach(run_.mesh, run_.policy());
-  const Survey found = survey(run_.mesh, run_.policy());
-  run_.control.add_undo(n_changes_, found.n_invalid, found.worst);
+  before_.put_back(run_);
   return false;
 }
 

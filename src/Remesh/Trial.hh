@@ -2,9 +2,10 @@
 #ifndef HFR_REMESH_TRIAL_HH
 #define HFR_REMESH_TRIAL_HH
 
-#include "HalfFace/TetMesh.hh"
+#include <cstddef>
+
 #include "Remesh/Run.hh"
-#include "Remesh/SurfaceRun.hh"
+#include "Remesh/Snapshot.hh"
 
 namespace hfr {
 
@@ -19,7 +20,7 @@ inline constexpr double kLeastRise = 0.01;
 /// angle.
 class Trial {
  public:
-  /// Copies the mesh, and the surface of the run: 40 bytes a cell. `goal`: degrees that are worked for.
+  /// Makes a Snapshot. `goal`: degrees that are worked for.
   Trial(const Run& run, double goal);
   Trial(const Trial&) = delete;
   Trial& operator=(const Trial&) = delete;
@@ -36,9 +37,7 @@ class Trial {
   double worst_to_reach_ = 0;                // for a gain
   double low_to_reach_ = 0;                  // for the last cell of the poorest hundredth to have risen
   std::size_t n_poorest_ = 0, n_below_ = 0;  // cells of that hundredth, and below the goal
-  std::size_t n_changes_;
-  TetMesh copy_;
-  SurfaceCopy surface_;
+  Snapshot before_;
 };
 
 }  // namespace hfr

@@ -150,7 +150,9 @@ class Unfolding {
     const auto helps = [&](std::uint32_t patch) {
       const Damage& was = old_damage[patch];
       const Damage& is = new_damage[patch];
-      return was.may_become(is) && (is.n_invalid() < was.n_invalid() || is.n_inverted() < was.n_inverted());
+      if (!work_.holds_damage) return is.n_invalid() < was.n_invalid();
+      return was.may_become(is, work_.floor) &&
+             (is.n_invalid() < was.n_invalid() || is.n_inverted() < was.n_inverted());
     };
     std::size_t n_kept = 0;
     for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
@@ -229,7 +231,8 @@ void reconnect(PassRunner<Untangling>& runner, const Run& run, const UntangleEff
 
 void untangle(const Run& run, const UntangleEffort& effort) {
   const bool moves = has(run.strategy.pass.ops, Ops::kSmooth);
-  const Untangling metric{1.0 / typical_six_volume(run.mesh)};
+  const Untangling metric{1.0 / typical_six_volume(run.mesh),
+                          run.work.holds_damage ? run.work.floor : kNoFloor};
   // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
   if (moves && unfold_by_moving(run, effort, 1) == 0) return;
   for (int restart = 1; restart <= effort.restarts && !run.control.stopped(); ++restart) {

@@ -136,7 +136,7 @@ class RoundCore::State {
     }
     for (const Tet& t : cavity.born)
       if (is_invalid(t)) ++more;
-    return more > 0 || hfr::worsens_damage(mesh_, cavity, cells);
+    return more > 0 || (work_.holds_damage && hfr::worsens_damage(mesh_, cavity, cells, work_.floor));
   }
 
   std::uint64_t key(const PlanBase& plan, const Tet& identity) const {

@@ -40,7 +40,7 @@ bool worsens_damage(const TetMesh& mesh, const Workspace& work, const Metric& me
     before.add(mesh, c);
     after.add(mesh, c, v, x);
   }
-  return more > 0 || !before.may_become(after);
+  return more > 0 || (work.holds_damage && !before.may_become(after, work.floor));
 }
 
 /// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and

@@ -28,6 +28,12 @@ struct Workspace {
   /// Per vertex: 1 where a walk round it misses some of its cells (see is_pinched()); empty when there is no
   /// such vertex. Rounds make none.
   std::vector<std::uint8_t> pinched;
+  /// Decision value of MinDihedral of the worst cell with which the run began, where that had inverted or
+  /// flat cells: no cluster of such cells may come to be worse. attach() leaves it alone.
+  double floor = kNoFloor;
+  /// Whether each cluster is held to what hfr_damage_may_become() allows, and not only to no more cells that
+  /// the metric calls invalid: then whoever runs the rounds looks at the mesh as a whole in the end.
+  bool holds_damage = true;
   std::uint32_t clock = 1;     ///< counts rounds
   std::vector<Index> touched;  ///< cell slots written since clear_touched(), some more than once
   bool all_touched = true;     ///< more than are worth a list

@@ -103,11 +103,11 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
       if (norm((targets[i] - (*members)[i].place) - (targets[0] - origin)) > tolerance) targets.clear();
     return targets;
   };
-  const auto worst_at = [&](const std::vector<Vec3>& targets, double floor) {
+  const auto worst_at = [&](const std::vector<Vec3>& targets, double at_least) {
     double worst = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < targets.size() && worst > floor; ++i)
-      worst =
-          std::min(worst, worst_with(mesh, (*members)[i].v, (*members)[i].link, targets[i], metric, floor));
+    for (std::size_t i = 0; i < targets.size() && worst > at_least; ++i)
+      worst = std::min(worst,
+                       worst_with(mesh, (*members)[i].v, (*members)[i].link, targets[i], metric, at_least));
     return worst;
   };
   double worst_now = plan.old_worst;
@@ -165,7 +165,7 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
         born.push_back(with(member.dead[f], member.faces[f], member.v, plan.targets[k]));
       keeps = surface->keeps_shape(member.faces, member.dead, born);
     }
-    if (keeps && n_left <= n_invalid && damage.may_become(left)) return plan;
+    if (keeps && n_left <= n_invalid && damage.may_become(left, floor)) return plan;
   }
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Quality/Damage.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr {
@@ -24,6 +25,7 @@ struct PeriodicSmooth {
   Metric metric;
   std::span<const double> quality;  ///< decision value per cell
   const SurfaceMesh* surface;
+  double floor = kNoFloor;  ///< see Workspace::floor
   int halvings = 4;
   int iterations = 20;
 

@@ -45,6 +45,25 @@ TEST(Damage, ElevenCellsThatMeetInVerticesGetNoFaceOfThreeCells) {
   expect_no_more_damage(eleven_cells(), options);
 }
 
+TEST(Damage, AnglesOfAClusterMayFallToTheFloorAndNotBelow) {
+  const auto inverted = [](double height, double size) {
+    Damage damage;
+    damage.add({0, 0, 0}, {0, size, 0}, {size, 0, 0}, {size / 3, size / 3, size * height});
+    return damage;
+  };
+  const Damage before = inverted(0.2, 1);
+  const Damage steeper = inverted(0.5, 0.2);  // less overlap, worse angles
+  ASSERT_LT(steeper.worst(), before.worst());
+  const double between = (steeper.worst() + before.worst()) / 2;
+  EXPECT_TRUE(before.may_become(steeper, kNoFloor));
+  EXPECT_TRUE(before.may_become(steeper, steeper.worst()));
+  EXPECT_FALSE(before.may_become(steeper, between));
+  EXPECT_FALSE(before.may_become(steeper, before.worst()));
+  const double above_both = before.worst() / 2;
+  EXPECT_FALSE(before.may_become(steeper, above_both));
+  EXPECT_TRUE(before.may_become(inverted(0.19, 1), above_both)) << "below the floor it may rise";
+}
+
 TEST(Damage, FlatCellsAreNotMendedByInvertingOthers) { expect_no_more_damage(inverted_and_flat(), serial()); }
 
 TEST(Damage, InvertedCellsDoNotBecomeMoreInAMetricOfRadii) {

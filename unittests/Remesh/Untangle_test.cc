@@ -80,6 +80,31 @@ TEST(Untangle, FoldedBoundaryLeavesOnlyWhatTouchesIt) {
   EXPECT_GT(with_folds, 3U);
 }
 
+TEST(Untangle, WrungCylindersComeApartAsFarAsMovingAloneTakesThem) {
+  struct Size {
+    Index n_radial, n_axial;
+    double wring;
+  };
+  std::size_t n_better = 0;
+  for (const Size size : {Size{2, 6, 70}, Size{2, 6, 85}, Size{2, 6, 100}, Size{4, 12, 70}}) {
+    const TetMesh start = built(generate::cylinder(size.n_radial, size.n_axial, 1, 2, 0, size.wring));
+    const Survey before = survey(start, {});
+    ASSERT_GT(before.n_invalid, 0U);
+    TetMesh moved = start;
+    ImproveOptions only_moves = serial();
+    only_moves.ops = Ops::kSmooth;
+    const std::size_t by_moving = improve(moved, only_moves).invalid_cells.size();
+    TetMesh mesh = start;
+    const std::size_t left = improve(mesh, serial()).invalid_cells.size();
+    EXPECT_LT(left, before.n_invalid) << size.wring;
+    EXPECT_LE(left, by_moving) << size.wring;
+    n_better += left < by_moving ? 1 : 0;
+    EXPECT_GE(survey(mesh, {}).worst, before.worst * (1 + 1e-12)) << size.wring;
+    EXPECT_EQ(check(mesh), Ok);
+  }
+  EXPECT_GT(n_better, 0U);
+}
+
 TEST(Untangle, ThreadsMakeNoDifference) {
   for (std::uint64_t s = 1; s <= 3; ++s) {
     const TetMesh start = tangled_inside(6, 0.6, s);

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_SNAPSHOT_HH
+#define HFR_REMESH_SNAPSHOT_HH
+
+#include <cstddef>
+
+#include "HalfFace/TetMesh.hh"
+#include "Remesh/Run.hh"
+#include "Remesh/SurfaceRun.hh"
+
+namespace hfr {
+
+/// A mesh in the middle of a run, with the run's surface, to come back to: 40 bytes a cell.
+class Snapshot {
+ public:
+  explicit Snapshot(const Run& run)
+      : mesh_(run.mesh), surface_(run.surface), n_changes_(run.control.n_changes()) {}
+  const TetMesh& mesh() const { return mesh_; }
+  /// With a line in the report. Once only, in the run that it is of.
+  void put_back(const Run& run);
+
+ private:
+  TetMesh mesh_;
+  SurfaceCopy surface_;
+  std::size_t n_changes_;
+};
+
+}  // namespace hfr
+
+#endif
