@@ -29,6 +29,17 @@ endif()
 target_compile_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 target_link_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 
+# Most of what the compiler reads of a source of ours is the standard library: parsed once for all layers.
+if(HFR_PCH)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cc CONTENT "" @ONLY)
+  add_library(hfr_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cc)
+  set_target_properties(hfr_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(hfr_precompiled PRIVATE hfr_flags)
+  target_precompile_headers(hfr_precompiled PRIVATE <algorithm> <array> <atomic> <bit> <cmath> <cstdint> <cstring>
+    <filesystem> <functional> <limits> <map> <memory> <numeric> <optional> <ranges> <set> <span> <string>
+    <string_view> <type_traits> <unordered_map> <unordered_set> <utility> <vector>)
+endif()
+
 # hfr_public_headers(FOLDER NAME FILES ...): headers of FOLDER that users include as <hfremesh/NAME/FILE>. Installed
 # below include/hfremesh/NAME; in the build tree a header of one line stands there for each, so that whoever has
 # the project as a subfolder finds what an installed copy has, and nothing else.
@@ -72,6 +83,9 @@ function(hfr_layer NAME)
     add_library(${target} OBJECT ${ARG_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_link_libraries(${target} PRIVATE hfr_flags ${ARG_PRIVATE_LIBRARIES} PUBLIC ${target}_headers)
+    if(HFR_PCH AND NOT NAME STREQUAL "Parallel")  # which alone is compiled with flags of its own
+      target_precompile_headers(${target} REUSE_FROM hfr_precompiled)
+    endif()
     set_property(GLOBAL APPEND PROPERTY HFR_OBJECT_LAYERS ${target})
     set_property(GLOBAL APPEND PROPERTY HFR_PRIVATE_LIBRARIES ${ARG_PRIVATE_LIBRARIES})
   endif()
@@ -105,5 +119,6 @@ endfunction()
 # Files of the calling folder whose loops should become vector instructions. Nobody reads errno or the
 # floating-point flags, which would keep the compiler from them. The values stay what they are.
 function(hfr_vector_sources)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math"
+    SKIP_PRECOMPILE_HEADERS ON)
 endfunction()

@@ -10,7 +10,7 @@ build=$root/build/quickstart
 out=$root/quickstart-out
 
 "$root/scripts/install-deps.sh" --tool
-cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DHFR_TESTS=OFF
+cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DHFR_TESTS=OFF -DHFR_PCH=ON
 cmake --build "$build" --target hfremesh_tool --parallel "$("$root/scripts/jobs.sh")"
 
 tool=$build/apps/hfremesh/hfremesh

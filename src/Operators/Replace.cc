@@ -3,6 +3,7 @@
 // rule, a few hundred at most, so an open-addressing table on the stack serves.
 #include "Operators/Replace.hh"
 #include "HalfFace/Writer.hh"
+#include "Operators/WriteCells.hh"
 
 #include <algorithm>
 #include <vector>

@@ -8,7 +8,7 @@
 
 #include "HalfFace/Writer.hh"
 #include "Operators/PinchedStars.hh"
-#include "Operators/Replace.hh"
+#include "Operators/WriteCells.hh"
 #include "Parallel/Atomic.hh"
 #include "Parallel/Interleave.hh"
 #include "Scheduler/Rank.hh"

@@ -7,7 +7,6 @@
 
 #include "Parallel/Atomic.hh"
 #include "Parallel/Interleave.hh"
-#include "Scheduler/Workspace.hh"
 
 namespace hfr {
 namespace {

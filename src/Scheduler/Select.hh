@@ -10,6 +10,7 @@
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
 #include "Parallel/Parallel.hh"
+#include "Scheduler/Workspace.hh"  // kUnclaimed
 
 namespace hfr {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "IO/MeshFile.hh"
+#include "hfremesh/IO/MeshFile.hh"
 
 namespace hfr::io::samples {
 

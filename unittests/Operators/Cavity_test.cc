@@ -9,6 +9,7 @@
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/PinchedStars.hh"
 #include "Operators/VertexRemoval.hh"
 
 namespace hfr::test {

@@ -9,6 +9,7 @@
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/VertexRemoval.hh"
+#include "Operators/WriteCells.hh"
 
 namespace hfr::test {
 namespace {

@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
-#include "HalfFace/Check.hh"
-#include "HalfFace/Errors.hh"
-#include "IO/Assemble.hh"
-#include "IO/Hash.hh"
-#include "IO/MeshFile.hh"
-#include "Quality/Statistics.hh"
-#include "Remesh/Improve.hh"
+#include "hfremesh/HalfFace/Check.hh"
+#include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/IO/Assemble.hh"
+#include "hfremesh/IO/Hash.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/Quality/Statistics.hh"
+#include "hfremesh/Remesh/Improve.hh"
 
 namespace hfr {
 namespace {

@@ -22,6 +22,7 @@
 #include "Scheduler/Rank.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/Seeds.hh"
+#include "Scheduler/Select.hh"
 #include "Scheduler/SmoothPass.hh"
 #include "Shuffle/Seeds.hh"
 #include "Shuffle/Shuffle.hh"

@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "ExitCode.hh"
-#include "HalfFace/Errors.hh"
 #include "Tool.hh"
+#include "hfremesh/HalfFace/Errors.hh"
 
 namespace hfr::app::test {
 namespace {
