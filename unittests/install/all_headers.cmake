@@ -16,7 +16,7 @@ endif()
 message(STATUS "${n_headers} headers")
 # All below the one folder that carries our name.
 set(outside ${headers})
-list(FILTER outside EXCLUDE REGEX "^hfremesh/[A-Za-z]+/[A-Za-z_]+\\.hh?$")
+list(FILTER outside EXCLUDE REGEX "^hfremesh/[A-Za-z]+/[A-Za-z0-9_]+\\.hh?$")
 if(outside)
   message(FATAL_ERROR "installed, and no header below ${root}/hfremesh: ${outside}")
 endif()
