@@ -304,7 +304,7 @@ std::array<VertexHandle, 2> SurfaceMesh::across(VertexHandle a, VertexHandle b) 
 
 bool SurfaceMesh::is_inner(VertexHandle a, VertexHandle b) const {
   const Om& om = impl_->om;
-  const OmHalfedge h = impl_->find(a, b);
+  const OmHalfedge h = impl_->find_only(a, b);
   if (!h.is_valid()) return false;
   const OmEdge e = om.edge_handle(h);
   if (om.is_boundary(e) || om.status(e).feature()) return false;
@@ -319,7 +319,7 @@ bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
 
 bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
   const Om& om = impl_->om;
-  const OmHalfedge h = impl_->find(a, b);
+  const OmHalfedge h = impl_->find_only(a, b);
   if (!h.is_valid() || om.status(om.edge_handle(h)).locked()) return false;
   if (om.is_boundary(om.edge_handle(h))) {
     // The rim of a surface without cells, and of no other.
@@ -344,7 +344,8 @@ void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& ou
   for (auto it = om.cvoh_iter(from); it.is_valid(); ++it) {
     if (kind == SurfaceKind::kCurve && !om.status(om.edge_handle(*it)).feature()) continue;
     if (on_rim && !om.is_boundary(om.edge_handle(*it))) continue;
-    if (om.is_collapse_ok(*it)) out.push_back(impl_->vertex_of(om.to_vertex_handle(*it)));
+    const VertexHandle onto = impl_->vertex_of(om.to_vertex_handle(*it));
+    if (om.is_collapse_ok(*it) && impl_->find_only(v, onto).is_valid()) out.push_back(onto);
   }
 }
 

@@ -127,6 +127,20 @@ struct SurfaceMesh::Impl {
     });
     return found;
   }
+  /// Invalid also where the surface has several such edges: what is done to a fan of cells at one of them
+  /// would be noted at another.
+  OmHalfedge find_only(VertexHandle a, VertexHandle b) const {
+    OmHalfedge found;
+    int n = 0;
+    for_sheets(a, [&](OmVertex from) {
+      for (auto it = om.cvoh_iter(from); it.is_valid(); ++it) {
+        if (vertex[static_cast<std::size_t>(om.to_vertex_handle(*it).idx())] != b) continue;
+        found = *it;
+        ++n;
+      }
+    });
+    return n == 1 ? found : OmHalfedge();
+  }
   OmFace find(const std::array<VertexHandle, 3>& f) const {
     OmFace found;
     for_sheets(f[0], [&](OmVertex from) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
@@ -85,6 +86,31 @@ TEST(SurfaceMesh, FacesAndHalfFacesAreLinkedBothWays) {
     EXPECT_EQ(surface.face(mesh, h), SurfaceMesh::kNoFace);
     break;
   }
+}
+
+TEST(SurfaceMesh, EdgesOfSeveralFansAreNeitherSplitNorSwapped) {
+  std::size_t n_pinched = 0, n_plain = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const TetMesh mesh = torn(seed);
+    const SurfaceMesh surface(mesh, flat());
+    std::map<std::pair<VertexHandle, VertexHandle>, int> n_faces;
+    for (HalfFaceHandle h : mesh.boundary_halffaces()) {
+      const auto f = mesh.halfface_vertices(h);
+      for (std::size_t k = 0; k < 3; ++k) ++n_faces[std::minmax(f[k], f[(k + 1) % 3])];
+    }
+    for (const auto& [edge, n] : n_faces) {
+      const auto [a, b] = edge;
+      if (n == 2) {
+        n_plain += surface.may_split(a, b) ? 1 : 0;
+        continue;
+      }
+      ++n_pinched;
+      EXPECT_FALSE(surface.may_split(a, b));
+      EXPECT_FALSE(surface.may_swap(a, b));
+    }
+  }
+  EXPECT_GT(n_pinched, 10U);
+  EXPECT_GT(n_plain, 100U);
 }
 
 TEST(SurfaceMesh, OnlyDiagonalsWithinAFacetMayBeSwapped) {
