@@ -13,6 +13,7 @@
 #include "Remesh/Polish.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Targets.hh"
+#include "Remesh/Trial.hh"
 #include "Remesh/Untangle.hh"
 
 namespace hfr {
@@ -42,9 +43,13 @@ bool run_default(const Run& run) {
 
 bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   mend_invalid(run);
-  const bool few_miss = share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss;
-  if (!few_miss) improve_all(run, run.strategy.floor, run.strategy.targets.targets);
-  return reach_goal(run, goal, few_miss);
+  if (share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss)
+    return reach_goal(run, goal, /*cells_are_untouched=*/true);
+  Trial trial(run, goal.degrees);
+  improve_all(run, run.strategy.floor, run.strategy.targets.targets);
+  if (reach_goal(run, goal, /*cells_are_untouched=*/false)) return true;
+  trial.settle();
+  return false;
 }
 
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {

@@ -31,6 +31,8 @@ std::size_t count(const std::vector<double>& values, par::Policy policy, Is&& is
       [&](std::size_t i) -> std::size_t { return is(values[i]) ? 1 : 0; }, std::plus<>{});
 }
 
+bool is_invalid(double decision) { return !(decision > 0); }
+
 /// Rank of the percentile, counted from 1.
 std::size_t hundredth(std::size_t n) { return std::max<std::size_t>((n + kHundredth - 1) / kHundredth, 1); }
 
@@ -45,6 +47,7 @@ Trial::Trial(const Run& run, double goal) : run_(run), goal_(dihedral_decision(g
   std::vector<double> values = angles_of(run.mesh, run.policy());
   if (values.empty()) return;
   n_below_ = count(values, run_.policy(), [&](double value) { return value < goal_; });
+  n_invalid_ = count(values, run_.policy(), is_invalid);
   n_poorest_ = hundredth(run.mesh.n_logical_cells());
   const auto last = values.begin() + static_cast<std::ptrdiff_t>(n_poorest_) - 1;
   std::nth_element(values.begin(), last, values.end());
@@ -60,6 +63,7 @@ bool Trial::pays() const {
   };
   const std::size_t n_low = n_below(low_to_reach_);
   if (n_below(worst_to_reach_) == 0 || n_low < n_poorest_) return true;
+  if (count(values, run_.policy(), is_invalid) < n_invalid_) return true;
   const std::size_t n_missing = n_below(goal_);
   // With many more cells, a hundredth of them holds more: a percentile that has risen counts where no cell
   // has come to be below the angle.

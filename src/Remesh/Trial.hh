@@ -13,11 +13,11 @@ namespace hfr {
 inline constexpr double kLeastRise = 0.01;
 
 /// A stage that may insert vertices, on trial. Cells are worth having where the worst angle rises by them, or
-/// the largest one of the poorest hundredth, or where fewer are below the angle that was worked for. Angles
-/// rise where they do so by kLeastRise. Where none of these holds, all that the stage has done goes again.
-/// The poorest hundredth is as many cells before as after, because good cells that are added to poor ones
-/// raise every percentile; a hundredth of what there is then counts only if no more cells are below the
-/// angle.
+/// the largest one of the poorest hundredth, or where fewer are below the angle that was worked for, or fewer
+/// inverted or flat. Angles rise where they do so by kLeastRise. Where none of these holds, all that the
+/// stage has done goes again. The poorest hundredth is as many cells before as after, because good cells that
+/// are added to poor ones raise every percentile; a hundredth of what there is then counts only if no more
+/// cells are below the angle.
 class Trial {
  public:
   /// Makes a Snapshot. `goal`: degrees that are worked for.
@@ -37,6 +37,7 @@ class Trial {
   double worst_to_reach_ = 0;                // for a gain
   double low_to_reach_ = 0;                  // for the last cell of the poorest hundredth to have risen
   std::size_t n_poorest_ = 0, n_below_ = 0;  // cells of that hundredth, and below the goal
+  std::size_t n_invalid_ = 0;
   Snapshot before_;
 };
 

@@ -102,5 +102,25 @@ TEST(Trial, AllButFlatWreathOfCellsIsNotFilledWithVerticesForNothing) {
   EXPECT_EQ(result.after.cells, mesh.n_cells());
 }
 
+#ifdef HFR_HAS_SURFACE
+TEST(Trial, ThreeCellsRoundAnEdgeThatMissTheGoalGetNoneForNothing) {
+  TetMesh mesh = build({{-0.6068159774436782, 0.9095694968831153, 0.05287653361079453},
+                        {0.0, 0.0, 0.6},
+                        {-0.5966640257230598, 0.7212429100586403, -0.07927126960883253},
+                        {-0.742617650014755, 0.7299999828839485, 0.06885216129554103},
+                        {0.6355767638896507, -0.8643702763215229, -0.006821828929519741},
+                        {0.0, 0.0, -0.6},
+                        {0.5080599606382475, -0.864709380871403, -0.012637358802220347}},
+                       std::vector<Corners>{{5, 1, 0, 2}, {5, 1, 6, 4}, {5, 1, 2, 3}});
+  const double before = smallest_dihedral(mesh, {});
+  ImproveOptions options = serial();
+  options.min_dihedral = 15;
+  options.surface.mode = SurfaceMode::kFree;
+  options.ops = Ops::kEdge | Ops::kInsert;
+  improve(mesh, options);
+  EXPECT_TRUE(mesh.n_cells() == 3 || smallest_dihedral(mesh, {}) > before) << mesh.n_cells();
+}
+#endif
+
 }  // namespace
 }  // namespace hfr::test
