@@ -53,7 +53,7 @@ System assemble(const TetMesh& mesh, Volumes volumes) {
   for (VertexHandle v : mesh.boundary_vertices()) unknown[v.idx()] = -1;
   int n = 0;
   for (VertexHandle v : mesh.vertices())
-    if (unknown[v.idx()] == 0) unknown[v.idx()] = mesh.hook(v).is_valid() ? n++ : -1;
+    if (unknown[v.idx()] == 0) unknown[v.idx()] = mesh.incident_cell(v).is_valid() ? n++ : -1;
   System system;
   system.load = Eigen::VectorXd::Zero(n);
   std::vector<Eigen::Triplet<double>> entries;

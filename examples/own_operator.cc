@@ -26,16 +26,16 @@ struct SplitLargeCell {
     const Tet& v = mesh.cell(c).v;
     const double size = metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
     if (size <= limit) return std::nullopt;  // refusal is no error
-    Plan plan{{.old_worst = 0, .new_worst = 1, .n_dead = 1, .n_born = 4, .adds_vertex = true}, c, {}};
+    Plan plan{{.old_worst = 0, .new_worst = 1, .n_removed = 1, .n_created = 4, .adds_vertex = true}, c, {}};
     for (VertexHandle u : v) plan.middle = plan.middle + 0.25 * mesh.point(u);
     return plan;
   }
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
     out.clear();
-    out.dead.push_back(plan.seed);
+    out.removed.push_back(plan.seed);
     for (HalfFaceHandle h : mesh.cell_halffaces(plan.seed)) {
       const auto f = mesh.halfface_vertices(h);
-      out.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+      out.created.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
     }
     out.new_vertex = plan.middle;
   }

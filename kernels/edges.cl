@@ -165,7 +165,7 @@ KERNEL void commit_edges(__global const uint* counters, uint capacity, __global 
                          __global const uint* offsets, __global const uint* sizes, __global const uint* arena,
                          __global const uchar* won, __global const uint* extra_at,
                          __global const uint* free_cells, uint n_free, uint n_cells, __global cell_t* cells,
-                         __global uint* moved, __global uint* hooks, __global uint* star_size,
+                         __global uint* moved, __global uint* incident_cells, __global uint* star_size,
                          __global uint* origin, uint has_data) {
   FOR_EACH(r, min(counters[HFR_CANDIDATES], capacity)) {
     if (!won[r]) continue;
@@ -186,11 +186,11 @@ KERNEL void commit_edges(__global const uint* counters, uint capacity, __global 
       below[k] = cells[c].mate[corner_b];
       old_above[k] = 4 * c + corner_a;
       old_below[k] = 4 * c + corner_b;
-      hooks[ring[k]] = INVALID;
+      incident_cells[ring[k]] = INVALID;
       atomic_sub(&star_size[ring[k]], 2u);
     }
-    hooks[a] = INVALID;
-    hooks[b] = INVALID;
+    incident_cells[a] = INVALID;
+    incident_cells[b] = INVALID;
     atomic_sub(&star_size[a], 2u);  // n cells go, n - 2 come
     atomic_sub(&star_size[b], 2u);
     for (uint k = 2 * (n - 2); k < n; ++k) {  // a ring of three leaves one slot

@@ -46,13 +46,13 @@ KERNEL void commit_faces(__global const uint* counters, uint capacity, __global 
                          __global const uint* offsets, __global const uint* sizes, __global const uint* arena,
                          __global const uchar* won, __global const uint* extra_at,
                          __global const uint* free_cells, uint n_free, uint n_cells, __global cell_t* cells,
-                         __global uint* moved, __global uint* hooks, __global uint* star_size,
+                         __global uint* moved, __global uint* incident_cells, __global uint* star_size,
                          __global uint* origin, uint has_data) {
   FOR_EACH(r, min(counters[HFR_CANDIDATES], capacity)) {
     if (!won[r]) continue;
     const uint candidate = order[r];
     __global const uint* scope = arena + offsets[candidate];
-    const uint n_dead = n_dead_of(sizes[candidate]);
+    const uint n_removed = n_removed_of(sizes[candidate]);
     const uint top_cell = scope[0];
     const uint bottom_cell = scope[1];
     const uint below = scope[2];
@@ -60,7 +60,7 @@ KERNEL void commit_faces(__global const uint* counters, uint capacity, __global 
     uint f[3], slot[3], behind_top[3], behind_bottom[3], old_top[3], old_bottom[3];
     for (uint k = 0; k < 3; ++k) f[k] = scope[4 + k];
     for (uint k = 0; k < 3; ++k) {  // face (f[k], f[k+1]) of either cell lies opposite f[k+2]
-      slot[k] = slot_of(k, n_dead, scope, extra_at[r], free_cells, n_free, n_cells);
+      slot[k] = slot_of(k, n_removed, scope, extra_at[r], free_cells, n_free, n_cells);
       const uint opposite = f[(k + 2) % 3];
       old_top[k] = 4 * top_cell + own_corner(&cells[top_cell], opposite);
       old_bottom[k] = 4 * bottom_cell + own_corner(&cells[bottom_cell], opposite);
@@ -69,22 +69,22 @@ KERNEL void commit_faces(__global const uint* counters, uint capacity, __global 
     }
     if (has_data) origin[slot[2]] = origin[top_cell];
     for (uint k = 0; k < 3; ++k) {
-      cell_t born;
-      born.v[0] = below;
-      born.v[1] = above;
-      born.v[2] = f[k];
-      born.v[3] = f[(k + 1) % 3];
-      born.mate[0] = behind_top[k];     // opposite the lower apex
-      born.mate[1] = behind_bottom[k];  // opposite the upper apex
-      born.mate[2] = 4 * slot[(k + 1) % 3] + 3;
-      born.mate[3] = 4 * slot[(k + 2) % 3] + 2;
-      store_cell(&cells[slot[k]], &born);
+      cell_t created;
+      created.v[0] = below;
+      created.v[1] = above;
+      created.v[2] = f[k];
+      created.v[3] = f[(k + 1) % 3];
+      created.mate[0] = behind_top[k];     // opposite the lower apex
+      created.mate[1] = behind_bottom[k];  // opposite the upper apex
+      created.mate[2] = 4 * slot[(k + 1) % 3] + 3;
+      created.mate[3] = 4 * slot[(k + 2) % 3] + 2;
+      store_cell(&cells[slot[k]], &created);
       moved[old_top[k]] = 4 * slot[k];
       moved[old_bottom[k]] = 4 * slot[k] + 1;
-      hooks[f[k]] = INVALID;  // its number of cells is the same: two go, two come
+      incident_cells[f[k]] = INVALID;  // its number of cells is the same: two go, two come
     }
-    hooks[below] = INVALID;
-    hooks[above] = INVALID;
+    incident_cells[below] = INVALID;
+    incident_cells[above] = INVALID;
     atomic_add(&star_size[below], 2u);  // one goes, three come
     atomic_add(&star_size[above], 2u);
   }

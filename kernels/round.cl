@@ -169,8 +169,8 @@ KERNEL void select_release(__global const uint* counters, uint repetition, uint 
 
 // Appends a candidate without its piece of the arena, which begins at the value that is returned; INVALID
 // when there is no room.
-static uint append_candidate(uint seed, identity_t id, double old_worst, ulong salt, uint n_dead, uint n_born,
-                             uint n_words, SEARCH_ARGUMENTS) {
+static uint append_candidate(uint seed, identity_t id, double old_worst, ulong salt, uint n_removed,
+                             uint n_created, uint n_words, SEARCH_ARGUMENTS) {
   const uint i = atomic_inc(&counters[HFR_CANDIDATES]);
   const uint at = atomic_add(&counters[HFR_ARENA], n_words);
   if (i >= capacity) return INVALID;
@@ -178,7 +178,7 @@ static uint append_candidate(uint seed, identity_t id, double old_worst, ulong s
   keys[i] = key_of(id, old_worst, salt);
   seeds[i] = seed;
   offsets[i] = fits ? at : 0;
-  sizes[i] = fits ? n_dead | n_born << 16 : 0;
+  sizes[i] = fits ? n_removed | n_created << 16 : 0;
   return fits ? at : INVALID;
 }
 
@@ -190,8 +190,8 @@ static uint in_one_region(const uint* scope, uint n, __global const uint* origin
   return one;
 }
 
-static uint n_dead_of(uint size) { return size & 0xffff; }
-static uint n_born_of(uint size) { return size >> 16; }
+static uint n_removed_of(uint size) { return size & 0xffff; }
+static uint n_created_of(uint size) { return size >> 16; }
 
 // By part of the ranks: winners, cells that they make beyond those they free, and the other way round.
 KERNEL void slot_sums(__global const uint* counters, uint capacity, __global const uint* order,
@@ -206,9 +206,11 @@ KERNEL void slot_sums(__global const uint* counters, uint capacity, __global con
     uint total;
     scan_tile(tile, wins, &total);
     winners += total;
-    scan_tile(tile, n_born_of(size) > n_dead_of(size) ? n_born_of(size) - n_dead_of(size) : 0, &total);
+    scan_tile(tile, n_created_of(size) > n_removed_of(size) ? n_created_of(size) - n_removed_of(size) : 0,
+              &total);
     extra += total;
-    scan_tile(tile, n_dead_of(size) > n_born_of(size) ? n_dead_of(size) - n_born_of(size) : 0, &total);
+    scan_tile(tile, n_removed_of(size) > n_created_of(size) ? n_removed_of(size) - n_created_of(size) : 0,
+              &total);
     freed += total;
   }
   if (get_local_id(0) == 0) {
@@ -229,8 +231,8 @@ KERNEL void slot_numbers(__global const uint* counters, uint capacity, __global 
   uint freed = sums[2 * groups + get_group_id(0)];
   FOR_PART(r, n, valid) {
     const uint size = valid && won[r] ? sizes[order[r]] : 0;
-    const uint more = n_born_of(size) > n_dead_of(size) ? n_born_of(size) - n_dead_of(size) : 0;
-    const uint less = n_dead_of(size) > n_born_of(size) ? n_dead_of(size) - n_born_of(size) : 0;
+    const uint more = n_created_of(size) > n_removed_of(size) ? n_created_of(size) - n_removed_of(size) : 0;
+    const uint less = n_removed_of(size) > n_created_of(size) ? n_removed_of(size) - n_created_of(size) : 0;
     uint total;
     const uint before_extra = scan_tile(tile, more, &total);
     if (valid) extra_at[r] = extra + before_extra;
@@ -253,15 +255,15 @@ KERNEL void give_up_winners(__global const uint* counters, uint capacity, __glob
   for (uint r = 0; r < n; ++r) {
     if (!won[r]) continue;
     const uint i = order[r];
-    const uint n_dead = n_dead_of(sizes[i]);
-    const uint n_born = n_born_of(sizes[i]);
-    const uint loss = n_dead > n_born ? n_dead - n_born : 0;
+    const uint n_removed = n_removed_of(sizes[i]);
+    const uint n_created = n_created_of(sizes[i]);
+    const uint loss = n_removed > n_created ? n_removed - n_created : 0;
     if (loss <= left) {
       left -= loss;
       continue;
     }
     won[r] = 0;
-    for (uint k = 0; k < n_dead; ++k) claim[arena[offsets[i] + k]] = UNCLAIMED;
+    for (uint k = 0; k < n_removed; ++k) claim[arena[offsets[i] + k]] = UNCLAIMED;
   }
 }
 
@@ -273,17 +275,17 @@ static void store_cell(__global cell_t* to, const cell_t* from) {
   }
 }
 
-// Slot of cell number k that a winner makes: its dead cells' first, then the free list from its back, then
+// Slot of cell number k that a winner makes: its removed cells' first, then the free list from its back, then
 // new ones.
-static uint slot_of(uint k, uint n_dead, __global const uint* scope, uint extra_at,
+static uint slot_of(uint k, uint n_removed, __global const uint* scope, uint extra_at,
                     __global const uint* free_cells, uint n_free, uint n_cells) {
-  if (k < n_dead) return scope[k];
-  const uint e = extra_at + (k - n_dead);
+  if (k < n_removed) return scope[k];
+  const uint e = extra_at + (k - n_removed);
   return e < n_free ? free_cells[n_free - 1 - e] : n_cells + (e - n_free);
 }
 
-// Commit B and the first half of refresh: mates behind outer faces; qualities, stamps and hooks of what was
-// made. A neighbour that was itself replaced has noted in `moved` where its face is now.
+// Commit B and the first half of refresh: mates behind outer faces; qualities, stamps and incident cells of
+// what was made. A neighbour that was itself replaced has noted in `moved` where its face is now.
 KERNEL void commit_mates(__global const uint* counters, uint n, __global const uint* order,
                          __global const uint* offsets, __global const uint* sizes, __global const uint* arena,
                          __global const uchar* won, __global const uint* extra_at,
@@ -291,22 +293,22 @@ KERNEL void commit_mates(__global const uint* counters, uint n, __global const u
                          __global const uint* claim, __global const uint* moved,
                          __global const double* points, uint clock, __global cell_t* cells,
                          __global double* quality, __global uchar* pending, __global uint* changed,
-                         __global uint* hooks) {
+                         __global uint* incident_cells) {
   FOR_EACH(r, min(counters[HFR_CANDIDATES], n)) {
     if (!won[r]) continue;
     const uint i = order[r];
     __global const uint* scope = arena + offsets[i];
-    const uint n_dead = n_dead_of(sizes[i]);
-    const uint n_born = n_born_of(sizes[i]);
-    for (uint k = 0; k < n_born; ++k) {
-      const uint slot = slot_of(k, n_dead, scope, extra_at[r], free_cells, n_free, n_cells);
+    const uint n_removed = n_removed_of(sizes[i]);
+    const uint n_created = n_created_of(sizes[i]);
+    for (uint k = 0; k < n_created; ++k) {
+      const uint slot = slot_of(k, n_removed, scope, extra_at[r], free_cells, n_free, n_cells);
       hfr_real3 p[4];
       for (uint j = 0; j < 4; ++j) {
         const uint behind = cells[slot].mate[j];
         const uint v = cells[slot].v[j];
         p[j] = point_of(points, v);
         changed[v] = clock;
-        atomic_min(&hooks[v], slot);
+        atomic_min(&incident_cells[v], slot);
         if (behind == INVALID) continue;
         const uint owner = claim[behind / 4];
         if (owner == r) continue;  // a face between two of its own cells
@@ -330,14 +332,14 @@ KERNEL void commit_free(__global const uint* counters, uint n, __global const ui
   FOR_EACH(r, min(counters[HFR_CANDIDATES], n)) {
     if (!won[r]) continue;
     const uint i = order[r];
-    const uint n_dead = n_dead_of(sizes[i]);
-    const uint n_born = n_born_of(sizes[i]);
-    for (uint k = 0; k < n_dead; ++k) {
+    const uint n_removed = n_removed_of(sizes[i]);
+    const uint n_created = n_created_of(sizes[i]);
+    for (uint k = 0; k < n_removed; ++k) {
       const uint c = arena[offsets[i] + k];
       claim[c] = UNCLAIMED;
-      if (k < n_born) continue;
+      if (k < n_created) continue;
       quality[c] = HFR_INFINITY;
-      free_cells[n_free - taken + (counters[HFR_FREED] - 1 - (freed_at[r] + (k - n_born)))] = c;
+      free_cells[n_free - taken + (counters[HFR_FREED] - 1 - (freed_at[r] + (k - n_created)))] = c;
     }
   }
 }

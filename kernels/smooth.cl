@@ -136,9 +136,8 @@ static uint smooth_vertex(__global const cell_t* cells, __global double* points,
   KERNEL void name(__global const cell_t* cells, __global const uint* vertices, __global const uint* begin,  \
                    __global const uint* star_size, __global const uint* links, __global const uint* grouped, \
                    __global const uint* colour_begin, uint colour, uint use_newton, uint clock,              \
-                   uint holds_damage, double floor_value, __global double* points,                           \
-                   __global double* quality, __global uchar* pending, __global uint* changed,                \
-                   __global uint* counters) {                                                                \
+                   uint holds_damage, double floor_value, __global double* points, __global double* quality, \
+                   __global uchar* pending, __global uint* changed, __global uint* counters) {               \
     hfr_star_cell star[max_star];                                                                            \
     uint n_moved = 0;                                                                                        \
     const uint first = colour_begin[colour];                                                                 \

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vertex removal: the search and commit A of Operators/VertexRemoval.cc for the vertices that list_vertices()
-// in DeviceMesh.cc finds. A candidate's piece of the arena: the n cells of the star in the order of
-// TetMesh::gather_star, the vertex that goes, and the apex, the vertex of its link that all faces of the link
-// are joined to.
+// Vertex collapse: the search and commit A of Operators/VertexCollapse.cc for the vertices that
+// list_vertices() in DeviceMesh.cc finds. A candidate's piece of the arena: the n cells of the star in the
+// order of TetMesh::gather_star, the vertex that goes, and the apex, the vertex of its link that all faces of
+// the link are joined to.
 #include "round.cl"
 
 // A connected closed surface of n triangles has n / 2 + 2 vertices at most: those of a sphere.
 #define LINK_VERTICES(max_star) ((max_star) / 2 + 2)
 
-// The cells of vertex v that are connected through faces with its hook, in the order in which a walk in
-// breadth finds them. Returns their number, `room` at most.
-static uint walk_star(__global const cell_t* cells, uint hook, uint v, uint room, uint* star) {
+// The cells of vertex v that are connected through faces with its incident cell, in the order in which a walk
+// in breadth finds them. Returns their number, `room` at most.
+static uint walk_star(__global const cell_t* cells, uint incident_cell, uint v, uint room, uint* star) {
   uint n = 1;
-  star[0] = hook;
+  star[0] = incident_cell;
   for (uint i = 0; i < n; ++i) {
     __global const cell_t* cell = &cells[star[i]];
     const uint corner = own_corner(cell, v);
@@ -59,19 +59,19 @@ static void search_star(uint v, uint n, const uint* star, uchar* faces, uint* li
   for (uint a = 0; a < n_link; ++a) {
     const uint apex = ascending[a];
     double worst = HFR_INFINITY;
-    uint n_born = 0;
+    uint n_created = 0;
     for (uint k = 0; k < n && worst > new_worst; ++k) {
       const uint i = k == 0 ? killer : k <= killer ? k - 1 : k;
       const uchar* f = faces + 3 * i;
       if (f[0] == apex || f[1] == apex || f[2] == apex) continue;
-      ++n_born;
+      ++n_created;
       worst = hfr_lesser(worst, decision_of(p[f[0]], p[f[1]], p[f[2]], p[apex]));
       if (!(worst > new_worst)) killer = i;
     }
-    if (!(worst > new_worst) || n_born == 0) continue;
+    if (!(worst > new_worst) || n_created == 0) continue;
     new_worst = worst;
     best = link[apex];
-    n_best = n_born;
+    n_best = n_created;
   }
   if (best == INVALID) return;
   if (has_regions && !in_one_region(star, n, origin, regions)) return;
@@ -85,7 +85,7 @@ static void search_star(uint v, uint n, const uint* star, uchar* faces, uint* li
 // A star of more cells than HFR_MAX_STAR, and one that is in several parts, is left alone, as on the host.
 #define SEARCH_STARS_KERNEL(name, min_star, max_star)                                                      \
   KERNEL void name(__global const cell_t* cells, __global const double* points,                            \
-                   __global const double* quality, __global const uint* hooks,                             \
+                   __global const double* quality, __global const uint* incident_cells,                    \
                    __global const uint* star_size, __global const uint* vertices,                          \
                    __global const uint* origin, __global const int* regions, uint has_regions, ulong salt, \
                    SEARCH_ARGUMENTS) {                                                                     \
@@ -97,7 +97,7 @@ static void search_star(uint v, uint n, const uint* star, uchar* faces, uint* li
       const uint v = vertices[item];                                                                       \
       const uint n = star_size[v];                                                                         \
       if (n < (min_star) || n > (max_star)) continue;                                                      \
-      if (walk_star(cells, hooks[v], v, n, star) != n) continue;                                           \
+      if (walk_star(cells, incident_cells[v], v, n, star) != n) continue;                                  \
       ++n_seeds;                                                                                           \
       search_star(v, n, star, faces, link, ascending, p, cells, points, quality, origin, regions,          \
                   has_regions, salt, SEARCH_VALUES);                                                       \
@@ -119,17 +119,17 @@ SEARCH_STARS_KERNEL(search_large_stars, HFR_SMALL_STAR + 1, HFR_MAX_STAR)
 KERNEL void commit_stars(__global const uint* counters, uint capacity, __global const uint* order,
                          __global const uint* offsets, __global const uint* sizes, __global const uint* arena,
                          __global const uchar* won, __global cell_t* cells, __global uint* moved,
-                         __global uint* hooks, __global uint* star_size) {
+                         __global uint* incident_cells, __global uint* star_size) {
   FOR_EACH(r, min(counters[HFR_CANDIDATES], capacity)) {
     if (!won[r]) continue;
     const uint candidate = order[r];
     __global const uint* scope = arena + offsets[candidate];
-    const uint n = n_dead_of(sizes[candidate]);
-    const uint n_born = n_born_of(sizes[candidate]);
+    const uint n = n_removed_of(sizes[candidate]);
+    const uint n_created = n_created_of(sizes[candidate]);
     const uint v = scope[n];
     const uint apex = scope[n + 1];
     // First, for every half-face that is looked up below, what takes its place.
-    uint born = 0;
+    uint created = 0;
     for (uint i = 0; i < n; ++i) {
       const uint c = scope[i];
       const uint corner = own_corner(&cells[c], v);
@@ -139,13 +139,13 @@ KERNEL void commit_stars(__global const uint* counters, uint capacity, __global 
         for (uint j = 0; j < 3; ++j) atomic_dec(&star_size[cells[c].v[kFaceCorners[corner][j]]]);
         continue;
       }
-      for (uint j = 0; j < 3; ++j) moved[4 * c + kFaceCorners[corner][j]] = 4 * scope[born] + j;
-      moved[4 * c + corner] = 4 * scope[born] + 3;
-      ++born;
+      for (uint j = 0; j < 3; ++j) moved[4 * c + kFaceCorners[corner][j]] = 4 * scope[created] + j;
+      moved[4 * c + corner] = 4 * scope[created] + 3;
+      ++created;
     }
-    atomic_add(&star_size[apex], n_born);
+    atomic_add(&star_size[apex], n_created);
     // Then the cells, in place: a slot that is written is that of a cell which has had its turn.
-    born = 0;
+    created = 0;
     for (uint i = 0; i < n; ++i) {
       const uint c = scope[i];
       const uint corner = own_corner(&cells[c], v);
@@ -158,17 +158,17 @@ KERNEL void commit_stars(__global const uint* counters, uint capacity, __global 
       for (uint j = 0; j < 3; ++j) {
         cell.v[j] = cells[c].v[kFaceCorners[corner][j]];
         cell.mate[j] = moved[cells[c].mate[kFaceCorners[corner][j]]];
-        hooks[cell.v[j]] = INVALID;
+        incident_cells[cell.v[j]] = INVALID;
       }
       cell.v[3] = apex;
       cell.mate[3] = cells[c].mate[corner];
-      store_cell(&cells[scope[born++]], &cell);
+      store_cell(&cells[scope[created++]], &cell);
     }
-    hooks[apex] = INVALID;
-    for (uint k = n_born; k < n; ++k) {
+    incident_cells[apex] = INVALID;
+    for (uint k = n_created; k < n; ++k) {
       for (uint j = 0; j < 4; ++j) cells[scope[k]].v[j] = cells[scope[k]].mate[j] = INVALID;
     }
-    hooks[v] = INVALID;
+    incident_cells[v] = INVALID;
     star_size[v] = 0;
   }
 }

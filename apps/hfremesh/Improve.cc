@@ -194,7 +194,7 @@ std::string shortfall(const Result& result, const ImproveOptions& options) {
         "found",
         grouped(result.folded_faces.size()));
   const auto n_at_folds = std::count_if(result.stuck.begin(), result.stuck.end(), [](const StuckCell& c) {
-    return c.limit == Limit::kInputFeature && c.ceiling <= 0;
+    return c.reason == StuckReason::kInputFeature && c.ceiling <= 0;
   });
   if (n_at_folds > 0)
     text +=
@@ -257,7 +257,7 @@ std::string ids_text(const TetMesh& mesh, const Result& result) {
       result.stuck_below);
   for (const StuckCell& stuck : result.stuck)
     text += fmt::format("cell {} {:.4f} {} {}\n", stuck.cell.idx(), stuck.degrees, stuck.n_frozen_vertices,
-                        kLimitNames[static_cast<std::size_t>(stuck.limit)]);
+                        kStuckReasonNames[static_cast<std::size_t>(stuck.reason)]);
   const auto add_faces = [&](const char* kind, const std::vector<HalfFaceHandle>& faces) {
     for (HalfFaceHandle h : faces) {
       const auto f = mesh.halfface_vertices(h);

@@ -145,15 +145,15 @@ Json limits_json(const Result& result) {
   constexpr std::size_t kMostCells = 100;
   Json counts;
   const auto n = count_limits(result.stuck);
-  for (std::size_t i = 0; i < n.size(); ++i) counts[kLimitNames[i]] = n[i];
+  for (std::size_t i = 0; i < n.size(); ++i) counts[kStuckReasonNames[i]] = n[i];
   Json cells = Json::array();
   for (std::size_t i = 0; i < std::min(result.stuck.size(), kMostCells); ++i) {
     const StuckCell& stuck = result.stuck[i];
     cells.push_back({{"cell", stuck.cell.idx()},
                      {"degrees", stuck.degrees},
-                     {"limit", kLimitNames[static_cast<std::size_t>(stuck.limit)]},
+                     {"limit", kStuckReasonNames[static_cast<std::size_t>(stuck.reason)]},
                      {"frozen_vertices", stuck.n_frozen_vertices}});
-    const bool has_edge = stuck.a.is_valid() && is_proof(stuck.limit) && stuck.ceiling < 180;
+    const bool has_edge = stuck.a.is_valid() && is_proof(stuck.reason) && stuck.ceiling < 180;
     cells.back()["ceiling"] = has_edge ? Json(stuck.ceiling) : Json();
     cells.back()["edge"] = has_edge ? Json({stuck.a.idx(), stuck.b.idx()}) : Json();
   }

@@ -98,9 +98,9 @@ void print_limits(const Result& result) {
   std::string text;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kLimitNames[i]);
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kStuckReasonNames[i]);
   print("below {:g} degrees: {} cells; why: {}\n", result.stuck_below, grouped(result.stuck.size()), text);
-  if (const std::size_t n = counts[static_cast<std::size_t>(Limit::kMaxCells)]; n > 0)
+  if (const std::size_t n = counts[static_cast<std::size_t>(StuckReason::kMaxCells)]; n > 0)
     print("a larger --max-cells would let new vertices raise {} of them\n", grouped(n));
   const HeldCells& held = result.held;
   if (held.cells == 0 || !held.known) return;

@@ -107,7 +107,7 @@ struct DeviceMesh::Impl {
   DeviceArray<double> points;
   DeviceArray<double> quality, worst;
   DeviceArray<cl_uchar> pending, frozen;
-  DeviceArray<cl_uint> changed, star_size, hooks, free_cells, origin;
+  DeviceArray<cl_uint> changed, star_size, incident_cells, free_cells, origin;
   DeviceArray<cl_int> regions;
   // Of a round.
   DeviceArray<cl_uint> claim, moved, cell_list;
@@ -188,8 +188,8 @@ void DeviceMesh::Impl::reserve_mesh(std::size_t n, std::size_t n_points) {
   queue.reserve(origin, has_data ? room : 1);
   queue.reserve(regions, has_regions ? n : 1);
   queue.reserve(points, 3 * n_points);
-  for (DeviceArray<cl_uint>* per_vertex :
-       {&changed, &star_size, &hooks, &vertices, &number, &begin, &cursor, &level, &next_level, &grouped})
+  for (DeviceArray<cl_uint>* per_vertex : {&changed, &star_size, &incident_cells, &vertices, &number, &begin,
+                                           &cursor, &level, &next_level, &grouped})
     queue.reserve(*per_vertex, n_points);
   for (DeviceArray<cl_uchar>* per_vertex : {&frozen, &marked, &colours}) queue.reserve(*per_vertex, n_points);
   queue.reserve(colour_begin, HFR_MAX_COLOURS + 1);
@@ -254,10 +254,10 @@ void DeviceMesh::upload(const TetMesh& mesh, const Workspace& work) {
   m.queue.write(m.frozen, work.frozen.data(), m.n_vertices);
   m.queue.write(m.star_size, work.star_size.data(), m.n_vertices);
   m.queue.write(m.changed, work.changed.data(), m.n_vertices);
-  std::vector<cl_uint> hooks(m.n_vertices);
+  std::vector<cl_uint> incident_cells(m.n_vertices);
   for (std::size_t v = 0; v < m.n_vertices; ++v)
-    hooks[v] = static_cast<cl_uint>(mesh.hook(VertexHandle(v)).idx());
-  m.queue.write(m.hooks, hooks.data(), m.n_vertices);
+    incident_cells[v] = static_cast<cl_uint>(mesh.incident_cell(VertexHandle(v)).idx());
+  m.queue.write(m.incident_cells, incident_cells.data(), m.n_vertices);
   std::vector<cl_uint> free_cells;
   for (CellHandle c : mesh.free_cells()) free_cells.push_back(static_cast<cl_uint>(c.idx()));
   m.queue.write(m.free_cells, free_cells.data(), m.n_free);
@@ -279,13 +279,13 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
   // All of it before the first write to the mesh: should the device fail now, the mesh is still whole.
   std::vector<cl_uint> cells(8 * m.n_cells);
   std::vector<double> points(3 * m.n_vertices);
-  std::vector<cl_uint> hooks(m.n_vertices), free_cells(m.n_free), origin(m.has_data ? m.n_cells : 0);
+  std::vector<cl_uint> incident_cells(m.n_vertices), free_cells(m.n_free), origin(m.has_data ? m.n_cells : 0);
   std::vector<double> quality(m.n_cells);
   std::vector<std::uint8_t> pending(m.n_cells);
   std::vector<std::uint32_t> star_size(m.n_vertices), changed(m.n_vertices);
   m.queue.read(m.cells, cells.data(), cells.size());
   m.queue.read(m.points, points.data(), points.size());
-  m.queue.read(m.hooks, hooks.data(), hooks.size());
+  m.queue.read(m.incident_cells, incident_cells.data(), incident_cells.size());
   m.queue.read(m.free_cells, free_cells.data(), free_cells.size());
   m.queue.read(m.origin, origin.data(), origin.size());
   m.queue.read(m.quality, quality.data(), quality.size());
@@ -313,10 +313,10 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
   }
   std::copy(points.begin(), points.end(), mesh.point_data());
   for (std::size_t v = 0; v < m.n_vertices; ++v) {
-    if (hooks[v] == kNone && mesh.hook(VertexHandle(v)).is_valid())
+    if (incident_cells[v] == kNone && mesh.incident_cell(VertexHandle(v)).is_valid())
       writer.mark_deleted(VertexHandle(v));  // only a vertex that was removed loses its cells
     else
-      writer.set_hook(VertexHandle(v), CellHandle(hooks[v]));
+      writer.set_incident_cell(VertexHandle(v), CellHandle(incident_cells[v]));
   }
   writer.free_cells().clear();
   for (cl_uint c : free_cells) writer.free_cells().push_back(CellHandle(c));

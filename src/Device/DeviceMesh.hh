@@ -53,10 +53,10 @@ class DeviceMesh {
   /// Cells that are not deleted.
   std::size_t n_logical_cells() const;
 
-  enum class Kind { kEdge, kFace, kVertex };  ///< edge removal, 2-3 swap, vertex removal
+  enum class Kind { kEdge, kFace, kVertex };  ///< edge removal, 2-3 swap, vertex collapse
   /// One round over the cells of `look`; `clock` as the workspace has it before the round. counts.rounds is
   /// 0, and nothing has happened, when there was no cell to look at. All cells are positive, and the mesh has
-  /// no labels of faces, edges or vertices. `may_lose`: cells that vertex removal may take away, as
+  /// no labels of faces, edges or vertices. `may_lose`: cells that vertex collapse may take away, as
   /// RoundOptions has it.
   RoundCounts round(Kind kind, const DeviceLook& look, std::uint64_t seed, std::uint32_t clock,
                     std::size_t may_lose = std::numeric_limits<std::size_t>::max());

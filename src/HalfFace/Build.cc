@@ -125,7 +125,7 @@ class MeshBuilder {
     }
     const bool lone = signs.negative > 0 && signs.positive > 0 && turn_negative_components();
     if (n_conflicts > 0 || lone) mended.reoriented = turned_by_themselves(mended.flipped);
-    set_hooks();
+    set_incident_cells();
     mesh_.vertex_status_.assign(mesh_.points_.size(), 0);
     if (non_manifold == NonManifold::kSplit) mended.copied = split_pinched(mesh_);
     refuse_double_edges(non_manifold);
@@ -417,10 +417,10 @@ class MeshBuilder {
     });
   }
 
-  void set_hooks() {
-    mesh_.hook_.assign(n_points(), CellHandle());
+  void set_incident_cells() {
+    mesh_.incident_cell_.assign(n_points(), CellHandle());
     for (std::size_t i = n_cells(); i-- > 0;)  // downwards, so that the smallest cell stays
-      for (VertexHandle v : mesh_.cells_[i].v) mesh_.hook_[v.idx()] = CellHandle(i);
+      for (VertexHandle v : mesh_.cells_[i].v) mesh_.incident_cell_[v.idx()] = CellHandle(i);
   }
 
   TetMesh mesh_;

@@ -62,17 +62,17 @@ bool TetMesh::any_cell_has(const std::array<VertexHandle, N>& vertices) {
 }
 
 CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, VertexHandle v3) {
-  const Cell born{{v0, v1, v2, v3}, {}};
-  for (VertexHandle v : born.v)
+  const Cell created{{v0, v1, v2, v3}, {}};
+  for (VertexHandle v : created.v)
     HFR_REQUIRE(exists(v), "add_cell: vertex" + numbers({&v, 1}) + " does not exist");
-  const auto sorted = AnyOrder::key(born.v);
+  const auto sorted = AnyOrder::key(created.v);
   HFR_REQUIRE(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(),
-              "add_cell: of the vertices" + numbers(born.v) + " two are the same");
+              "add_cell: of the vertices" + numbers(created.v) + " two are the same");
   make_hand_index();
   std::array<HalfFaceHandle, 4> mates;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& f = kFaceCorners[k];
-    const std::array<VertexHandle, 3> face = {born.v[f[0]], born.v[f[1]], born.v[f[2]]};
+    const std::array<VertexHandle, 3> face = {created.v[f[0]], created.v[f[1]], created.v[f[2]]};
     const auto found = hand_index_.face.find(AnyOrder::key(face));
     if (found == hand_index_.face.end()) continue;
     const HalfFaceHandle m = found->second;
@@ -80,7 +80,7 @@ CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, 
                                                       " has two cells already, one of them cell " +
                                                       std::to_string(cell_of(m).idx()));
     HFR_REQUIRE(CyclicOrder::key(halfface_vertices(m)) != CyclicOrder::key(face),
-                "add_cell: vertices" + numbers(born.v) +
+                "add_cell: vertices" + numbers(created.v) +
                     " lie the wrong way round for their neighbour, cell " + std::to_string(cell_of(m).idx()) +
                     "; exchange two of them");
     mates[k] = m;
@@ -89,7 +89,7 @@ CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, 
   if (c.idx() >= HalfFaceHandle::kInvalid / 12)
     throw ResourceLimit("add_cell: no index is left for another cell");
   grow_cells(cells_.size() + 1);
-  cells_[c.idx()] = born;
+  cells_[c.idx()] = created;
   for (std::size_t k = 0; k < 4; ++k) {
     const HalfFaceHandle h = halfface_of(c, static_cast<int>(k));
     if (!mates[k].is_valid()) {
@@ -99,9 +99,9 @@ CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, 
     cells_[c.idx()].mate[k] = mates[k];
     cells_[mates[k].idx() / 4].mate[mates[k].idx() % 4] = h;
   }
-  for (VertexHandle v : born.v) {
+  for (VertexHandle v : created.v) {
     ++hand_index_.n_cells[v.idx()];
-    if (!hook_[v.idx()].is_valid()) hook_[v.idx()] = c;
+    if (!incident_cell_[v.idx()].is_valid()) incident_cell_[v.idx()] = c;
   }
   return c;
 }
@@ -109,9 +109,9 @@ CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, 
 void TetMesh::delete_cell(CellHandle c) {
   HFR_REQUIRE(exists(c), "delete_cell: cell " + std::to_string(c.idx()) + " does not exist");
   if (hand_index_state_ != kVoid) count_cells();
-  const Cell dead = cell(c);
+  const Cell removed = cell(c);
   for (std::size_t k = 0; k < 4; ++k) {
-    const HalfFaceHandle m = dead.mate[k];
+    const HalfFaceHandle m = removed.mate[k];
     if (m.is_valid()) cells_[m.idx() / 4].mate[m.idx() % 4] = HalfFaceHandle();
     if (hand_index_state_ != kCountsAndFaces) continue;
     const auto key = AnyOrder::key(halfface_vertices(halfface_of(c, static_cast<int>(k))));
@@ -123,38 +123,40 @@ void TetMesh::delete_cell(CellHandle c) {
   cells_[c.idx()] = Cell{};
   free_cells_.push_back(c);
   if (hand_index_state_ != kVoid)
-    for (VertexHandle v : dead.v) --hand_index_.n_cells[v.idx()];
+    for (VertexHandle v : removed.v) --hand_index_.n_cells[v.idx()];
   for (std::size_t corner = 0; corner < 4; ++corner) {
-    const VertexHandle v = dead.v[corner];
-    if (hook_[v.idx()] != c) continue;
+    const VertexHandle v = removed.v[corner];
+    if (incident_cell_[v.idx()] != c) continue;
     CellHandle next;
     for (std::size_t k = 0; k < 4; ++k)
-      if (k != corner && dead.mate[k].is_valid()) next = std::min(next, cell_of(dead.mate[k]));
-    hook_[v.idx()] = next;
+      if (k != corner && removed.mate[k].is_valid()) next = std::min(next, cell_of(removed.mate[k]));
+    incident_cell_[v.idx()] = next;
     if (next.is_valid()) continue;
     // The cells that are left may touch in v alone: then a pass over all cells finds one.
     count_cells();
     if (hand_index_.n_cells[v.idx()] == 0) continue;
     const auto other = std::find_if(cells_.begin(), cells_.end(), [&](const Cell& k) { return k.has(v); });
-    hook_[v.idx()] = CellHandle(other - cells_.begin());
+    incident_cell_[v.idx()] = CellHandle(other - cells_.begin());
   }
-  drop_labels_of_nothing(dead);
+  drop_labels_of_nothing(removed);
 }
 
-/// A face goes with its last cell; so does an edge, but others may have it that no face of `dead` leads to.
-void TetMesh::drop_labels_of_nothing(const Cell& dead) {
+/// A face goes with its last cell; so does an edge, but others may have it that no face of `removed` leads
+/// to.
+void TetMesh::drop_labels_of_nothing(const Cell& removed) {
   for (std::size_t k = 0; k < 4; ++k) {
     if (labels_.faces.empty() && locks_.faces.empty()) break;
-    if (dead.mate[k].is_valid()) continue;
+    if (removed.mate[k].is_valid()) continue;
     const auto& f = kFaceCorners[k];
-    const std::array<VertexHandle, 3> face = {dead.v[f[0]], dead.v[f[1]], dead.v[f[2]]};
+    const std::array<VertexHandle, 3> face = {removed.v[f[0]], removed.v[f[1]], removed.v[f[2]]};
     labels_.faces.erase(face);
     locks_.faces.erase(face);
   }
   for (std::size_t k = 0; k < 6; ++k) {
     if (labels_.edges.empty() && locks_.edges.empty()) break;
-    if (dead.mate[kEdgeOpposite[k][0]].is_valid() || dead.mate[kEdgeOpposite[k][1]].is_valid()) continue;
-    const std::array<VertexHandle, 2> edge = {dead.v[kEdgeCorners[k][0]], dead.v[kEdgeCorners[k][1]]};
+    if (removed.mate[kEdgeOpposite[k][0]].is_valid() || removed.mate[kEdgeOpposite[k][1]].is_valid())
+      continue;
+    const std::array<VertexHandle, 2> edge = {removed.v[kEdgeCorners[k][0]], removed.v[kEdgeCorners[k][1]]};
     if (!labels_.edges.find(edge) && !locks_.edges.find(edge)) continue;
     if (any_cell_has(edge)) continue;
     labels_.edges.erase(edge);
@@ -164,13 +166,13 @@ void TetMesh::drop_labels_of_nothing(const Cell& dead) {
 
 void TetMesh::delete_vertex(VertexHandle v) {
   HFR_REQUIRE(exists(v), "delete_vertex: vertex " + std::to_string(v.idx()) + " does not exist");
-  while (hook(v).is_valid()) delete_cell(hook(v));
+  while (incident_cell(v).is_valid()) delete_cell(incident_cell(v));
   mark_deleted(v);
 }
 
 void TetMesh::reserve_vertices(std::size_t n) {
   points_.reserve(n);
-  hook_.reserve(n);
+  incident_cell_.reserve(n);
   vertex_status_.reserve(n);
 }
 
@@ -186,7 +188,7 @@ void TetMesh::swap_cells(CellHandle a, CellHandle b) {
   std::copy_n(cell(b).v.begin(), 4, corners.begin() + 4);
   std::sort(corners.begin(), corners.end());
   const auto end = std::unique(corners.begin(), corners.end());
-  for (auto v = corners.begin(); v != end; ++v) hook_[v->idx()] = now(hook_[v->idx()]);
+  for (auto v = corners.begin(); v != end; ++v) incident_cell_[v->idx()] = now(incident_cell_[v->idx()]);
   std::swap(cells_[a.idx()], cells_[b.idx()]);
   for (CellHandle c : {a, b})
     for (HalfFaceHandle& m : cells_[c.idx()].mate)
@@ -214,7 +216,7 @@ void TetMesh::swap_vertices(VertexHandle a, VertexHandle b) {
   for (CellHandle c : all)
     for (VertexHandle& v : cells_[c.idx()].v) v = now(v);
   std::swap(points_[a.idx()], points_[b.idx()]);
-  std::swap(hook_[a.idx()], hook_[b.idx()]);
+  std::swap(incident_cell_[a.idx()], incident_cell_[b.idx()]);
   std::swap(vertex_status_[a.idx()], vertex_status_[b.idx()]);
   std::swap(hand_index_.n_cells[a.idx()], hand_index_.n_cells[b.idx()]);
   if (!labels_.vertices.empty()) std::swap(labels_.vertices[a.idx()], labels_.vertices[b.idx()]);

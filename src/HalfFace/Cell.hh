@@ -36,7 +36,7 @@ struct Cell {
 struct Star {
   static constexpr int kCapacity = 256;
   int size = 0;
-  RawArray<CellHandle, kCapacity + 1> cells;  ///< in order of discovery from the hook
+  RawArray<CellHandle, kCapacity + 1> cells;  ///< in order of discovery from the incident cell
   RawArray<std::uint8_t, kCapacity> corners;  ///< corner of the vertex in each cell
   RawArray<CellHandle, 2 * kCapacity> slot;   ///< hash table of them while they are gathered
 };

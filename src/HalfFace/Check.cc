@@ -48,7 +48,7 @@ class Checker {
     constexpr Test kTests[] = {
         &Checker::index_range,    &Checker::repeated_vertex,   &Checker::free_list,
         &Checker::mate_symmetry,  &Checker::shared_vertices,   &Checker::orientation,
-        &Checker::hooks,          &Checker::duplicate_face,    &Checker::duplicate_edge,
+        &Checker::incident_cells, &Checker::duplicate_face,    &Checker::duplicate_edge,
         &Checker::manifold_edges, &Checker::manifold_vertices, &Checker::label_use};
     Rule rule = Rule::kNone;
     for (const Test test : kTests) {
@@ -199,28 +199,29 @@ class Checker {
     return of_mates(h, "see their vertices in the same order: one of the cells lies the wrong way round");
   }
 
-  Found hooks() {
+  Found incident_cells() {
     for (std::size_t i = 0; i < mesh_.n_vertices(); ++i) {
       const VertexHandle v(i);
-      const CellHandle c = mesh_.hook(v);
+      const CellHandle c = mesh_.incident_cell(v);
       if (!c.is_valid()) continue;
-      if (mesh_.is_deleted(v)) return of_vertices({v}, name("vertex", v) + " is deleted and has a hook");
+      if (mesh_.is_deleted(v))
+        return of_vertices({v}, name("vertex", v) + " is deleted and has an incident cell");
       if (c.idx() < n_cells() && mesh_.cell(c).has(v)) continue;
       CheckResult result = of_vertices(
-          {v}, "the hook of " + name("vertex", v) + ", " + name("cell", c) + ", is no cell of it");
+          {v}, "the incident cell of " + name("vertex", v) + ", " + name("cell", c) + ", is no cell of it");
       result.cells = {c};
       return result;
     }
-    const auto hookless = [&](VertexHandle v) { return !mesh_.hook(v).is_valid(); };
+    const auto has_no_cell = [&](VertexHandle v) { return !mesh_.incident_cell(v).is_valid(); };
     const CellHandle c = first_cell([&](CellHandle cell) {
       const auto& v = mesh_.cell(cell).v;
-      return std::any_of(v.begin(), v.end(), hookless);
+      return std::any_of(v.begin(), v.end(), has_no_cell);
     });
     if (!c.is_valid()) return {};
     const auto& v = mesh_.cell(c).v;
-    const VertexHandle lost = *std::find_if(v.begin(), v.end(), hookless);
+    const VertexHandle lost = *std::find_if(v.begin(), v.end(), has_no_cell);
     CheckResult result =
-        of_vertices({lost}, name("vertex", lost) + " is in " + name("cell", c) + " and has no hook");
+        of_vertices({lost}, name("vertex", lost) + " is in " + name("cell", c) + " and has no incident cell");
     result.cells = {c};
     return result;
   }
@@ -321,20 +322,20 @@ class Checker {
       const std::size_t size =
           mesh_.gather_star(v, star) ? static_cast<std::size_t>(star.size) : large_star(v);
       if (size == n_cells_of[i]) continue;
-      CheckResult result =
-          of_vertices({v}, "the cells of " + name("vertex", v) +
-                               " do not connect through faces: " + std::to_string(size) + " of " +
-                               std::to_string(n_cells_of[i]) + " do with " + name("cell", mesh_.hook(v)));
-      result.cells = {mesh_.hook(v)};
+      CheckResult result = of_vertices({v}, "the cells of " + name("vertex", v) +
+                                                " do not connect through faces: " + std::to_string(size) +
+                                                " of " + std::to_string(n_cells_of[i]) + " do with " +
+                                                name("cell", mesh_.incident_cell(v)));
+      result.cells = {mesh_.incident_cell(v)};
       return result;
     }
     return {};
   }
 
-  /// Number of cells that connect to the hook round v, however many.
+  /// Number of cells that connect to the incident cell round v, however many.
   std::size_t large_star(VertexHandle v) const {
-    std::unordered_set<CellHandle> seen{mesh_.hook(v)};
-    std::vector<CellHandle> todo{mesh_.hook(v)};
+    std::unordered_set<CellHandle> seen{mesh_.incident_cell(v)};
+    std::vector<CellHandle> todo{mesh_.incident_cell(v)};
     while (!todo.empty()) {
       const Cell& k = mesh_.cell(todo.back());
       todo.pop_back();
@@ -370,11 +371,11 @@ class Checker {
 }  // namespace
 
 std::string_view rule_name(Rule rule) {
-  constexpr std::string_view kNames[] = {
-      "kNone",          "kIndexRange",     "kRepeatedVertex",  "kFreeList",
-      "kMateSymmetry",  "kSharedVertices", "kOrientation",     "kHook",
-      "kDuplicateFace", "kDuplicateEdge",  "kNonManifoldEdge", "kNonManifoldVertex",
-      "kLabel"};
+  constexpr std::string_view kNames[] = {"kNone",          "kIndexRange",      "kRepeatedVertex",
+                                         "kFreeList",      "kMateSymmetry",    "kSharedVertices",
+                                         "kOrientation",   "kIncidentCell",    "kDuplicateFace",
+                                         "kDuplicateEdge", "kNonManifoldEdge", "kNonManifoldVertex",
+                                         "kLabel"};
   return kNames[static_cast<std::size_t>(rule)];
 }
 
@@ -389,7 +390,8 @@ CheckResult check(const TetMesh& mesh, CheckOptions options) { return Checker(me
 std::vector<VertexHandle> unused_vertices(const TetMesh& mesh) {
   std::vector<VertexHandle> unused;
   for (std::size_t i = 0; i < mesh.n_vertices(); ++i)
-    if (!mesh.is_deleted(VertexHandle(i)) && !mesh.hook(VertexHandle(i)).is_valid()) unused.emplace_back(i);
+    if (!mesh.is_deleted(VertexHandle(i)) && !mesh.incident_cell(VertexHandle(i)).is_valid())
+      unused.emplace_back(i);
   return unused;
 }
 

@@ -15,16 +15,17 @@ namespace hfr {
 /// kDuplicateEdge they are the kernel's own; a mesh that breaks the manifold rules can still be walked and
 /// written, but operators leave the places alone.
 enum class Rule {
-  kNone,               ///< no rule is broken
-  kIndexRange,         ///< vertices and mates of cells exist and are not deleted; arrays have their lengths
-  kRepeatedVertex,     ///< a cell has four different vertices
-  kFreeList,           ///< the free list holds each deleted cell once and nothing else
-  kMateSymmetry,       ///< the mate of a half-face's mate is the half-face, and is of another cell
-  kSharedVertices,     ///< mates have the same three vertices
-  kOrientation,        ///< mates see them in opposite order
-  kHook,               ///< the hook of a vertex is a cell of it; a vertex without a hook is in no cell
-  kDuplicateFace,      ///< two half-faces of the same three vertices are mates
-  kDuplicateEdge,      ///< where two vertices have a closed ring of cells, it is their only one
+  kNone,            ///< no rule is broken
+  kIndexRange,      ///< vertices and mates of cells exist and are not deleted; arrays have their lengths
+  kRepeatedVertex,  ///< a cell has four different vertices
+  kFreeList,        ///< the free list holds each deleted cell once and nothing else
+  kMateSymmetry,    ///< the mate of a half-face's mate is the half-face, and is of another cell
+  kSharedVertices,  ///< mates have the same three vertices
+  kOrientation,     ///< mates see them in opposite order
+  kIncidentCell,   ///< the incident cell of a vertex is a cell of it; a vertex without an incident cell is in
+                   ///< no cell
+  kDuplicateFace,  ///< two half-faces of the same three vertices are mates
+  kDuplicateEdge,  ///< where two vertices have a closed ring of cells, it is their only one
   kNonManifoldEdge,    ///< two vertices have one fan of cells
   kNonManifoldVertex,  ///< the cells of a vertex connect through faces
   kLabel               ///< labelled faces and edges are faces and edges of cells

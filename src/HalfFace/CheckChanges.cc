@@ -149,7 +149,7 @@ class ChangeChecker {
   bool cell_fits(CellHandle c) const {
     const Cell& k = mesh_.cell(c);
     for (std::size_t i = 0; i < 4; ++i) {
-      if (mesh_.is_deleted(k.v[i]) || !mesh_.hook(k.v[i]).is_valid()) return false;
+      if (mesh_.is_deleted(k.v[i]) || !mesh_.incident_cell(k.v[i]).is_valid()) return false;
       for (std::size_t j = 0; j < i; ++j)
         if (k.v[i] == k.v[j]) return false;
       const HalfFaceHandle m = k.mate[i];
@@ -181,9 +181,9 @@ class ChangeChecker {
   }
 
   bool is_sound(VertexHandle v, std::uint32_t n_cells) const {
-    const CellHandle hook = mesh_.hook(v);
-    if (n_cells == 0) return !hook.is_valid();
-    if (hook.idx() >= mesh_.n_cells() || !mesh_.cell(hook).has(v)) return false;
+    const CellHandle incident_cell = mesh_.incident_cell(v);
+    if (n_cells == 0) return !incident_cell.is_valid();
+    if (incident_cell.idx() >= mesh_.n_cells() || !mesh_.cell(incident_cell).has(v)) return false;
     Star star;
     if (!mesh_.gather_star(v, star) || static_cast<std::uint32_t>(star.size) != n_cells) return false;
     SmallSet<2048> vertices(3 * n_cells), edges(3 * n_cells);

@@ -222,7 +222,7 @@ template <class Policy>
 class StarRange : public PlaceRange<StarRange<Policy>, typename Policy::Value> {
  public:
   StarRange(const TetMesh& mesh, VertexHandle v) : mesh_(&mesh), v_(v) {
-    scan_ = !mesh.gather_star(v, star_) && mesh.hook(v).is_valid();
+    scan_ = !mesh.gather_star(v, star_) && mesh.incident_cell(v).is_valid();
     limit_ = Policy::kSlots * (scan_ ? mesh.n_cells() : static_cast<std::size_t>(star_.size));
   }
   std::size_t limit() const { return limit_; }
@@ -255,8 +255,8 @@ class StarRange : public PlaceRange<StarRange<Policy>, typename Policy::Value> {
   Star star_;
 };
 
-/// The vertices that share an edge with a vertex, each once, in order of discovery from the hook: those of
-/// its cell, then what each cell adds to the one before.
+/// The vertices that share an edge with a vertex, each once, in order of discovery from the incident cell:
+/// those of its cell, then what each cell adds to the one before.
 class VertexVertices : public PlaceRange<VertexVertices, VertexHandle> {
  public:
   VertexVertices(const TetMesh& mesh, VertexHandle v);

@@ -195,8 +195,8 @@ VertexHandle TetMesh::split(std::span<const CellHandle> parents, std::span<const
     for (std::size_t j = 0; j < simplex.size(); ++j) corner[j] = old[i].corner(simplex[j]);
     for (std::size_t j = 0; j < simplex.size(); ++j) {
       const CellHandle c = part[i][j];
-      Cell born = old[i];
-      born.v[static_cast<std::size_t>(corner[j])] = middle;
+      Cell created = old[i];
+      created.v[static_cast<std::size_t>(corner[j])] = middle;
       for (std::size_t r = 0; r < 4; ++r) {
         const HalfFaceHandle m = old[i].mate[r];
         const auto l = static_cast<std::size_t>(std::find(simplex.begin(), simplex.end(), old[i].v[r]) -
@@ -204,21 +204,21 @@ VertexHandle TetMesh::split(std::span<const CellHandle> parents, std::span<const
         if (l == j) {  // an outer face, as it was
           if (m.is_valid()) cells_[m.idx() / 4].mate[m.idx() % 4] = halfface_of(c, static_cast<int>(r));
         } else if (l < simplex.size()) {  // between two parts
-          born.mate[r] = halfface_of(part[i][l], corner[j]);
+          created.mate[r] = halfface_of(part[i][l], corner[j]);
         } else if (m.is_valid()) {  // a part of a face that is cut on both sides
-          born.mate[r] = halfface_of(part[number(cell_of(m))][j], corner_of(m));
+          created.mate[r] = halfface_of(part[number(cell_of(m))][j], corner_of(m));
         }
       }
-      cells_[c.idx()] = born;
+      cells_[c.idx()] = created;
     }
-    if (hook_[simplex[0].idx()] == parents[i]) hook_[simplex[0].idx()] = part[i][1];
+    if (incident_cell_[simplex[0].idx()] == parents[i]) incident_cell_[simplex[0].idx()] = part[i][1];
     if (hand_index_state_ == kVoid) continue;
     count_cells();
     for (VertexHandle v : old[i].v) hand_index_.n_cells[v.idx()] += static_cast<Index>(simplex.size()) - 1;
     for (VertexHandle s : simplex) --hand_index_.n_cells[s.idx()];
     hand_index_.n_cells[middle.idx()] += static_cast<Index>(simplex.size());
   }
-  hook_[middle.idx()] = *std::min_element(parents.begin(), parents.end());
+  incident_cell_[middle.idx()] = *std::min_element(parents.begin(), parents.end());
   outdate_hand_faces();
   return middle;
 }
@@ -302,11 +302,11 @@ VertexHandle TetMesh::collapse_edge(HalfEdgeHandle e) {
     if (b.is_valid()) cells_[b.idx() / 4].mate[b.idx() % 4] = a;
     for (VertexHandle u : k.v) {
       --hand_index_.n_cells[u.idx()];
-      if (u == v || hook_[u.idx()] != c) continue;
+      if (u == v || incident_cell_[u.idx()] != c) continue;
       CellHandle next;
       for (HalfFaceHandle m : {a, b})
         if (m.is_valid()) next = std::min(next, cell_of(m));
-      hook_[u.idx()] = next;
+      incident_cell_[u.idx()] = next;
     }
     cells_[c.idx()] = Cell{};
     free_cells_.push_back(c);

@@ -65,9 +65,9 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
   hand_index_state_ = kVoid;
   free_cells_.clear();
   n_deleted_vertices_ = 0;
-  hook_.assign(n_vertices, CellHandle());
+  incident_cell_.assign(n_vertices, CellHandle());
   for (std::size_t i = n_cells; i-- > 0;)  // downwards, so that the smallest cell stays
-    for (VertexHandle v : cells_[i].v) hook_[v.idx()] = CellHandle(i);
+    for (VertexHandle v : cells_[i].v) incident_cell_[v.idx()] = CellHandle(i);
 }
 
 GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
@@ -75,7 +75,8 @@ GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
   std::size_t n_vertices = 0;
   std::size_t n_cells = 0;
   map.vertices = close_up<VertexHandle>(points_.size(), n_vertices, [&](std::size_t i) {
-    return (vertex_status_[i] & kDeleted) == 0 && !(options.drop_unused_vertices && !hook_[i].is_valid());
+    return (vertex_status_[i] & kDeleted) == 0 &&
+           !(options.drop_unused_vertices && !incident_cell_[i].is_valid());
   });
   map.cells =
       close_up<CellHandle>(cells_.size(), n_cells, [&](std::size_t i) { return !is_deleted(CellHandle(i)); });

@@ -24,7 +24,7 @@ int TetMesh::genus() const {
 std::size_t TetMesh::memory_bytes() const {
   const auto array = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
   std::size_t sum = array(cells_) + array(regions_) + array(cell_status_) + array(free_cells_) +
-                    array(points_) + array(hook_) + array(vertex_status_) + array(labels_.vertices) +
+                    array(points_) + array(incident_cell_) + array(vertex_status_) + array(labels_.vertices) +
                     array(hand_index_.n_cells);
   sum += labels_.faces.memory_bytes() + labels_.edges.memory_bytes() + locks_.faces.memory_bytes() +
          locks_.edges.memory_bytes() + properties_.memory_bytes();
@@ -254,14 +254,14 @@ bool TetMesh::is_boundary(VertexHandle v) const {
 
 // --- by vertices ---
 
-/// A cell of both vertices, sought from the hook of a by crossing the face at a that b lies farthest behind.
-/// Takes a few steps where a's cells are positive. An invalid handle says no more than that it was not found
-/// that way.
+/// A cell of both vertices, sought from the incident cell of a by crossing the face at a that b lies farthest
+/// behind. Takes a few steps where a's cells are positive. An invalid handle says no more than that it was
+/// not found that way.
 static CellHandle walk_towards(const TetMesh& mesh, VertexHandle a, VertexHandle b) {
   constexpr int kSteps = 16;
   const Vec3 from = mesh.point(a);
   const Vec3 direction = mesh.point(b) - from;
-  CellHandle c = mesh.hook(a);
+  CellHandle c = mesh.incident_cell(a);
   for (int step = 0; step < kSteps; ++step) {
     const Cell& k = mesh.cell(c);
     if (k.has(b)) return c;
@@ -303,7 +303,7 @@ static CellHandle walk_to_cell(const TetMesh& mesh, const std::array<VertexHandl
 
 template <std::size_t N>
 CellHandle TetMesh::find_cell_with(const std::array<VertexHandle, N>& wanted) const {
-  const auto exists_here = [&](VertexHandle v) { return exists(v) && hook(v).is_valid(); };
+  const auto exists_here = [&](VertexHandle v) { return exists(v) && incident_cell(v).is_valid(); };
   if (!std::all_of(wanted.begin(), wanted.end(), exists_here)) return {};
   if (const CellHandle near = walk_to_cell(*this, wanted); near.is_valid()) return near;
   for (VertexHandle v : wanted) {  // should v pinch the mesh, the thing may hang on the others alone
@@ -383,7 +383,7 @@ static std::size_t gather_neighbours(const TetMesh& mesh, VertexHandle v, std::s
                                      HalfFaceHandle* entry, VertexHandle* out) {
   SmallSet<CellHandle, kSlots> cells;
   SmallSet<VertexHandle, kSlots> neighbours;
-  const CellHandle first = mesh.hook(v);
+  const CellHandle first = mesh.incident_cell(v);
   entry[0] = halfface_of(first, mesh.cell(first).own_corner(v));
   cells.enter(first);
   std::size_t n_cells = 1;
@@ -413,7 +413,7 @@ static std::size_t gather_neighbours(const TetMesh& mesh, VertexHandle v, std::s
 }
 
 VertexVertices::VertexVertices(const TetMesh& mesh, VertexHandle v) : mesh_(&mesh), v_(v) {
-  if (!mesh.hook(v).is_valid()) return;
+  if (!mesh.incident_cell(v).is_valid()) return;
   constexpr std::size_t kMostInSmall = 64;  // cells; few stars have more, and small tables are soon cleared
   RawArray<HalfFaceHandle, Star::kCapacity + 1> entry;
   limit_ = gather_neighbours<128>(mesh, v, kMostInSmall, entry.data(), neighbours_.data());

@@ -131,7 +131,7 @@ std::vector<VertexHandle> split_pinched(TetMesh& mesh) {
     if (root == corner && taken[v.idx()] != 0) {
       copied.push_back(v);
       of_root[root] = mesh.add_vertex(mesh.point(v));
-      writer.set_hook(of_root[root], c);
+      writer.set_incident_cell(of_root[root], c);
     }
     taken[v.idx()] = 1;
     if (of_root[root].is_valid()) v = of_root[root];

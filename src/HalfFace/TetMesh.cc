@@ -72,7 +72,7 @@ void TetMesh::restore(TetMesh saved) {
 VertexHandle TetMesh::add_vertex(Vec3 p) {
   const VertexHandle v(points_.size());
   points_.push_back(p);
-  hook_.push_back(CellHandle());
+  incident_cell_.push_back(CellHandle());
   vertex_status_.push_back(0);
   if (!labels_.vertices.empty()) labels_.vertices.push_back(0);
   properties_.resize_vertices(points_.size());
@@ -96,13 +96,13 @@ void TetMesh::grow_cells(std::size_t n) {
 void TetMesh::mark_deleted(VertexHandle v) {
   if (is_deleted(v)) return;
   vertex_status_[v.idx()] |= kDeleted;
-  hook_[v.idx()].reset();
+  incident_cell_[v.idx()].reset();
   ++n_deleted_vertices_;
 }
 
 bool TetMesh::gather_star(VertexHandle v, Star& star) const {
   star.size = 0;
-  const CellHandle first = hook(v);
+  const CellHandle first = incident_cell(v);
   if (!first.is_valid()) return false;
   star.cells[0] = first;
   unsigned size = 1;
@@ -128,14 +128,15 @@ bool TetMesh::gather_star(VertexHandle v, Star& star) const {
 }
 
 bool TetMesh::has_edge(VertexHandle a, VertexHandle b, Star& scratch) const {
-  if (!gather_star(a, scratch)) return hook(a).is_valid();  // too large to tell: say yes, which only refuses
+  if (!gather_star(a, scratch))
+    return incident_cell(a).is_valid();  // too large to tell: say yes, which only refuses
   for (int i = 0; i < scratch.size; ++i)
     if (cell(scratch.cells[static_cast<std::size_t>(i)]).has(b)) return true;
   return false;
 }
 
 bool TetMesh::has_face(VertexHandle a, VertexHandle b, VertexHandle c, Star& scratch) const {
-  if (!gather_star(a, scratch)) return hook(a).is_valid();
+  if (!gather_star(a, scratch)) return incident_cell(a).is_valid();
   for (int i = 0; i < scratch.size; ++i) {
     const Cell& k = cell(scratch.cells[static_cast<std::size_t>(i)]);
     if (k.has(b) && k.has(c)) return true;

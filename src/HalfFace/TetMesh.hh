@@ -110,9 +110,9 @@ class TetMesh : public PropertyAccess<TetMesh> {
   /// c. 0 for a deleted cell. O(rings) of those that no neighbour of c is smaller for.
   unsigned first_edges(CellHandle c) const;
 
-  // --- round a vertex: the cells that connect to its hook through faces at the vertex ---
-  /// In order of discovery from the hook. O(star); O(mesh) for a vertex with more than Star::kCapacity cells,
-  /// which is given all its cells, connected or not.
+  // --- round a vertex: the cells that connect to its incident cell through faces at the vertex ---
+  /// In order of discovery from the incident cell. O(star); O(mesh) for a vertex with more than
+  /// Star::kCapacity cells, which is given all its cells, connected or not.
   StarRange<policy::StarCells> vertex_cells(VertexHandle v) const;
   StarRange<policy::StarEdges> vertex_edges(VertexHandle v) const;
   StarRange<policy::StarFaces> vertex_faces(VertexHandle v) const;
@@ -254,7 +254,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
   double* point_data() { return points_.empty() ? nullptr : &points_[0].x; }
   const double* point_data() const { return points_.empty() ? nullptr : &points_[0].x; }
   /// A cell of the vertex; invalid when no cell uses it.
-  CellHandle hook(VertexHandle v) const { return hook_[v.idx()]; }
+  CellHandle incident_cell(VertexHandle v) const { return incident_cell_[v.idx()]; }
   bool is_deleted(VertexHandle v) const { return (vertex_status_[v.idx()] & kDeleted) != 0; }
   // Edges and faces go with their last cell. A handle that is no longer the canonical one counts as deleted.
   bool is_deleted(EdgeHandle e) const { return !exists(e); }
@@ -306,8 +306,8 @@ class TetMesh : public PropertyAccess<TetMesh> {
   const PropertySet& properties() const { return properties_; }
 
   // --- what a new cell or vertex inherits ---
-  /// Gives `to` the region, status and properties of `from`: for a cell born in a fresh slot. A cell born in
-  /// the slot of a dead one keeps that slot's. Safe in parallel for distinct `to`.
+  /// Gives `to` the region, status and properties of `from`: for a cell created in a fresh slot. A cell
+  /// created in the slot of a removed one keeps that slot's. Safe in parallel for distinct `to`.
   void copy_cell_data(CellHandle from, CellHandle to) {
     if (!regions_.empty()) regions_[to.idx()] = regions_[from.idx()];
     if (!cell_status_.empty()) cell_status_[to.idx()] = cell_status_[from.idx()];
@@ -336,8 +336,8 @@ class TetMesh : public PropertyAccess<TetMesh> {
   }
 
   // --- neighbourhoods in bulk, for operators ---
-  /// Fills `star` with the cells that face-connect to the hook of v round v. False, with star.size == 0, when
-  /// v has no cell or more than Star::kCapacity.
+  /// Fills `star` with the cells that face-connect to the incident cell of v round v. False, with star.size
+  /// == 0, when v has no cell or more than Star::kCapacity.
   bool gather_star(VertexHandle v, Star& star) const;
   /// Fills `ring` with the cells round a→b, from the cell of `start` when they go all the way round, else
   /// from the boundary. False, with ring.size == 0, when there are more than Ring::kCapacity.
@@ -400,7 +400,8 @@ class TetMesh : public PropertyAccess<TetMesh> {
   CellHandle add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, VertexHandle v3);
   /// Deleted things keep their handles until collect_garbage(); labels of edges and faces that vanish go at
   /// once. O(1), but for
-  ///  - a vertex that loses its hook and has no neighbour of c at it: then the cells of all vertices are
+  ///  - a vertex that loses its incident cell and has no neighbour of c at it: then the cells of all vertices
+  ///  are
   ///    counted, once until other writing;
   ///  - a labelled or fixed edge or face that vanishes: O(number of these).
   void delete_cell(CellHandle c);
@@ -484,7 +485,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
   void resize_cells(std::size_t n);
   void mark_deleted(VertexHandle v);
   void grow_cells(std::size_t n);
-  void drop_labels_of_nothing(const Cell& dead);
+  void drop_labels_of_nothing(const Cell& removed);
 
   /// Moves vertices and cells to new places; those with an invalid one go.
   void renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells, par::Policy policy);
@@ -494,7 +495,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
   std::vector<std::uint8_t> cell_status_;  // empty until a bit is set
   std::vector<CellHandle> free_cells_;
   std::vector<Vec3> points_;
-  std::vector<CellHandle> hook_;
+  std::vector<CellHandle> incident_cell_;
   std::vector<std::uint8_t> vertex_status_;
   std::size_t n_deleted_vertices_ = 0;
   Labels labels_;

@@ -12,7 +12,7 @@ namespace hfr {
 
 /// Per entry of an edge map (N = 2) or face map (N = 3): 1 when a cell of the mesh has that edge or face. One
 /// pass over the cells, hashing only tuples of vertices that all occur in the map; so it does not depend on
-/// hooks or mates being right.
+/// incident cells or mates being right.
 template <std::size_t N, class T, class Order>
 std::vector<std::uint8_t> used_entries(const TetMesh& mesh, const TupleMap<N, T, Order>& map) {
   static_assert(N == 2 || N == 3);

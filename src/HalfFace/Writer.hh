@@ -25,8 +25,8 @@ class TetMesh::Writer {
     outdate_hand_index();
     mesh_.cells_[h.idx() / 4].mate[h.idx() % 4] = m;
   }
-  void set_hook(VertexHandle v, CellHandle c) { mesh_.hook_[v.idx()] = c; }
-  CellHandle& hook(VertexHandle v) { return mesh_.hook_[v.idx()]; }
+  void set_incident_cell(VertexHandle v, CellHandle c) { mesh_.incident_cell_[v.idx()] = c; }
+  CellHandle& incident_cell(VertexHandle v) { return mesh_.incident_cell_[v.idx()]; }
   /// Neither does it go on the free list, nor do others learn of it.
   void mark_deleted(CellHandle c) { cell(c) = Cell{}; }
   void mark_deleted(VertexHandle v) { mesh_.mark_deleted(v); }

@@ -44,8 +44,8 @@ struct AnyOf {
       return plan;
     });
   }
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
-    with(plan.plan, [&](auto, const auto& op, const auto& p) { op.commit(mesh, p, out); });
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+    with(plan.plan, [&](auto, const auto& op, const auto& p) { op.cavity(mesh, p, out); });
   }
   Tet identity(const TetMesh& mesh, const Seed& seed) const {
     return with(seed, [&](auto, const auto& op, const auto& s) { return op.identity(mesh, s); });

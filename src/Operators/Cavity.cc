@@ -51,9 +51,9 @@ SimplexSet<3> faces_of(const Cells& tets) {
   return set;
 }
 
-FixedVector<Tet, Cavity::kCapacity> dead_tets(const TetMesh& mesh, const Cavity& cavity) {
+FixedVector<Tet, Cavity::kCapacity> removed_tets(const TetMesh& mesh, const Cavity& cavity) {
   FixedVector<Tet, Cavity::kCapacity> tets;
-  for (CellHandle c : cavity.dead) tets.push_back(mesh.cell(c).v);
+  for (CellHandle c : cavity.removed) tets.push_back(mesh.cell(c).v);
   return tets;
 }
 
@@ -63,11 +63,12 @@ bool is_ball(const TetMesh& mesh, const Cavity& cavity) {
   FixedVector<std::array<VertexHandle, 2>, 6 * Cavity::kCapacity> edges;
   FixedVector<VertexHandle, 6 * Cavity::kCapacity> vertices;
   std::size_t n_faces = 0;
-  for (CellHandle c : cavity.dead) {
+  for (CellHandle c : cavity.removed) {
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(c, k);
       const HalfFaceHandle m = mesh.opposite_halfface(h);
-      if (m.is_valid() && std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m)) != cavity.dead.end())
+      if (m.is_valid() &&
+          std::find(cavity.removed.begin(), cavity.removed.end(), cell_of(m)) != cavity.removed.end())
         continue;
       ++n_faces;
       const auto f = mesh.halfface_vertices(h);
@@ -91,27 +92,27 @@ bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
   const Labels& labels = mesh.labels();
   const Locks& locks = mesh.locks();
   if (!labels.faces.empty() || !locks.faces.empty()) {
-    for (CellHandle c : cavity.dead) {
+    for (CellHandle c : cavity.removed) {
       for (int k = 0; k < 4; ++k) {
         const HalfFaceHandle h = halfface_of(c, k);
         const HalfFaceHandle m = mesh.opposite_halfface(h);
         if (!m.is_valid() || m < h) continue;
-        const auto first = cavity.dead.begin() + static_cast<std::ptrdiff_t>(cavity.n_dead_first);
-        const auto other = std::find(cavity.dead.begin(), cavity.dead.end(), cell_of(m));
+        const auto first = cavity.removed.begin() + static_cast<std::ptrdiff_t>(cavity.n_removed_first);
+        const auto other = std::find(cavity.removed.begin(), cavity.removed.end(), cell_of(m));
         // See find_heirs() for what an interface is labelled with.
-        const bool is_first = std::find(cavity.dead.begin(), first, c) != first;
-        const bool inside = other != cavity.dead.end() && is_first == (other < first);
+        const bool is_first = std::find(cavity.removed.begin(), first, c) != first;
+        const bool inside = other != cavity.removed.end() && is_first == (other < first);
         const auto face = mesh.halfface_vertices(h);
         if (inside && (labels.faces.find(face) || locks.faces.find(face))) return false;
       }
     }
   }
   if (!labels.edges.empty() || !locks.edges.empty()) {
-    const SimplexSet<2> kept = edges_of(cavity.born);
-    for (const auto& edge : edges_of(dead_tets(mesh, cavity)))
+    const SimplexSet<2> kept = edges_of(cavity.created);
+    for (const auto& edge : edges_of(removed_tets(mesh, cavity)))
       if (!kept.has(edge) && (labels.edges.find(edge) || locks.edges.find(edge))) return false;
   }
-  return !cavity.removed.is_valid() || labels.vertex(cavity.removed) == 0;
+  return !cavity.removed_vertex.is_valid() || labels.vertex(cavity.removed_vertex) == 0;
 }
 
 /// False only when it is sure that no cell has all the vertices.
@@ -123,7 +124,7 @@ bool may_exist(const TetMesh& mesh, const std::array<VertexHandle, N>& wanted, c
     return std::all_of(wanted.begin(), wanted.end(), [&](VertexHandle v) { return cell.has(v); });
   };
   for (VertexHandle v : wanted) {
-    if (!mesh.hook(v).is_valid()) return false;
+    if (!mesh.incident_cell(v).is_valid()) return false;
     if (known.pinched) {
       const std::span<const CellHandle> all = known.pinched->cells(v);
       if (!all.empty()) return std::any_of(all.begin(), all.end(), has_all);
@@ -143,7 +144,7 @@ bool may_exist(const TetMesh& mesh, const std::array<VertexHandle, N>& wanted, c
 
 bool has_face_of_three_cells(const Cavity& cavity) {
   FixedVector<std::array<VertexHandle, 3>, 4 * Cavity::kCapacity> faces;
-  for (const Tet& t : cavity.born)
+  for (const Tet& t : cavity.created)
     for (const auto& f : kFaceCorners) faces.push_back(AnyOrder::key<3>({t[f[0]], t[f[1]], t[f[2]]}));
   std::sort(faces.begin(), faces.end());
   for (std::size_t i = 2; i < faces.size(); ++i)
@@ -151,11 +152,11 @@ bool has_face_of_three_cells(const Cavity& cavity) {
   return false;
 }
 
-/// Number of born cells with these vertices.
+/// Number of created cells with these vertices.
 template <std::size_t N>
-int n_born_with(const Cavity& cavity, const std::array<VertexHandle, N>& wanted) {
+int n_created_with(const Cavity& cavity, const std::array<VertexHandle, N>& wanted) {
   int n = 0;
-  for (const Tet& t : cavity.born)
+  for (const Tet& t : cavity.created)
     n += std::all_of(wanted.begin(), wanted.end(),
                      [&](VertexHandle v) { return std::find(t.begin(), t.end(), v) != t.end(); })
              ? 1
@@ -163,7 +164,7 @@ int n_born_with(const Cavity& cavity, const std::array<VertexHandle, N>& wanted)
   return n;
 }
 
-/// Appends the faces into which the new vertex cuts one that goes; n_sides born cells have each.
+/// Appends the faces into which the new vertex cuts one that goes; n_sides created cells have each.
 bool append_heirs(const Cavity& cavity, const std::array<VertexHandle, 3>& parent, int n_sides, Heirs& out) {
   constexpr std::size_t kNone = 3;
   if (!cavity.new_vertex || out.size() + 3 > 96) return false;
@@ -171,7 +172,7 @@ bool append_heirs(const Cavity& cavity, const std::array<VertexHandle, 3>& paren
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<VertexHandle, 3> child = parent;
     child[k] = Cavity::kNewVertex;
-    if (n_born_with(cavity, child) == n_sides) {
+    if (n_created_with(cavity, child) == n_sides) {
       out.push_back({parent, child});
       continue;
     }
@@ -180,7 +181,7 @@ bool append_heirs(const Cavity& cavity, const std::array<VertexHandle, 3>& paren
   }
   // The child at an edge may be missing only where the new vertex lies on the edge.
   return missing == kNone ||
-         n_born_with<2>(cavity, {parent[(missing + 1) % 3], parent[(missing + 2) % 3]}) == 0;
+         n_created_with<2>(cavity, {parent[(missing + 1) % 3], parent[(missing + 2) % 3]}) == 0;
 }
 
 }  // namespace
@@ -190,20 +191,20 @@ bool find_heirs(const TetMesh& mesh, const Cavity& cavity, Heirs& out) {
   const Labels& labels = mesh.labels();
   const Locks& locks = mesh.locks();
   if (cavity.surface_is_held || (labels.faces.empty() && locks.faces.empty())) return true;
-  const auto first = cavity.dead.begin() + static_cast<std::ptrdiff_t>(cavity.n_dead_first);
-  for (const CellHandle* c = cavity.dead.begin(); c != cavity.dead.end(); ++c) {
+  const auto first = cavity.removed.begin() + static_cast<std::ptrdiff_t>(cavity.n_removed_first);
+  for (const CellHandle* c = cavity.removed.begin(); c != cavity.removed.end(); ++c) {
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle m = mesh.opposite_halfface(halfface_of(*c, k));
       // A face between the regions once, from the first.
       if (m.is_valid() &&
-          (c >= first || std::find(first, cavity.dead.end(), cell_of(m)) == cavity.dead.end()))
+          (c >= first || std::find(first, cavity.removed.end(), cell_of(m)) == cavity.removed.end()))
         continue;
       const auto face = mesh.halfface_vertices(halfface_of(*c, k));
       const std::size_t at = labels.faces.position(face);
       const bool is_labelled = at != labels.faces.size();
       const bool is_fixed = locks.faces.find(face) != nullptr ||
                             (is_labelled && locks.patches.contains(labels.faces.entries()[at].value));
-      if ((!is_labelled && !is_fixed) || n_born_with(cavity, face) > 0) continue;
+      if ((!is_labelled && !is_fixed) || n_created_with(cavity, face) > 0) continue;
       if (is_fixed || !append_heirs(cavity, labels.faces.entries()[at].vertices, m.is_valid() ? 2 : 1, out))
         return false;
     }
@@ -225,14 +226,14 @@ void inherit_labels(TetMesh& mesh, std::span<const Heir> heirs, VertexHandle new
 
 bool makes_twice(const TetMesh& mesh, const Cavity& cavity, Star& scratch, const StarKnowledge& known) {
   if (has_face_of_three_cells(cavity)) return true;
-  const auto before = dead_tets(mesh, cavity);
+  const auto before = removed_tets(mesh, cavity);
   const SimplexSet<2> old_edges = edges_of(before);
   const SimplexSet<3> old_faces = faces_of(before);
-  for (const auto& edge : edges_of(cavity.born)) {
+  for (const auto& edge : edges_of(cavity.created)) {
     if (old_edges.has(edge) || edge[1] == Cavity::kNewVertex) continue;
     if (may_exist(mesh, edge, known, scratch)) return true;
   }
-  for (const auto& face : faces_of(cavity.born)) {
+  for (const auto& face : faces_of(cavity.created)) {
     if (old_faces.has(face) || face[2] == Cavity::kNewVertex) continue;
     // A face with a new edge is new with it; what is left has three old edges.
     if (!old_edges.has({face[0], face[1]}) || !old_edges.has({face[0], face[2]}) ||
@@ -247,9 +248,9 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
                 const StarKnowledge& known) {
   if (cavity.moved.is_valid()) return true;
   if (mesh.has_regions()) {
-    for (std::size_t i = 0; i < cavity.dead.size(); ++i) {
-      const std::size_t first = i < cavity.n_dead_first ? 0 : cavity.n_dead_first;
-      if (mesh.region(cavity.dead[i]) != mesh.region(cavity.dead[first])) return false;
+    for (std::size_t i = 0; i < cavity.removed.size(); ++i) {
+      const std::size_t first = i < cavity.n_removed_first ? 0 : cavity.n_removed_first;
+      if (mesh.region(cavity.removed[i]) != mesh.region(cavity.removed[first])) return false;
     }
   }
   Heirs heirs;
@@ -267,14 +268,14 @@ bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const C
   const auto at = [&](VertexHandle v) {
     return v == Cavity::kNewVertex ? *cavity.new_vertex : mesh.point(v);
   };
-  for (const Tet& t : cavity.born) after.add(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
+  for (const Tet& t : cavity.created) after.add(at(t[0]), at(t[1]), at(t[2]), at(t[3]));
   return !before.may_become(after, floor);
 }
 
 VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity) {
   VertexHandle nearest;
   double least = std::numeric_limits<double>::infinity();
-  for (CellHandle c : cavity.dead) {
+  for (CellHandle c : cavity.removed) {
     for (VertexHandle v : mesh.cell(c).v) {
       const double distance = norm2(mesh.point(v) - *cavity.new_vertex);
       if (distance < least || (distance == least && v < nearest)) {
@@ -289,13 +290,13 @@ VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity) {
 std::vector<Simplex> created_simplices(const TetMesh& mesh, const Cavity& cavity) {
   std::vector<Simplex> created;
   if (cavity.moved.is_valid()) return created;
-  const auto before = dead_tets(mesh, cavity);
+  const auto before = removed_tets(mesh, cavity);
   const SimplexSet<2> old_edges = edges_of(before);
-  for (const auto& edge : edges_of(cavity.born))
+  for (const auto& edge : edges_of(cavity.created))
     if (edge[1] != Cavity::kNewVertex && !old_edges.has(edge))
       created.push_back({edge[0], edge[1], VertexHandle()});
   const SimplexSet<3> old_faces = faces_of(before);
-  for (const auto& face : faces_of(cavity.born))
+  for (const auto& face : faces_of(cavity.created))
     if (face[2] != Cavity::kNewVertex && !old_faces.has(face) && old_edges.has({face[0], face[1]}) &&
         old_edges.has({face[0], face[2]}) && old_edges.has({face[1], face[2]}))
       created.push_back(face);

@@ -48,44 +48,47 @@ using Scope = FixedVector<CellHandle, Star::kCapacity>;
 using Tet = std::array<VertexHandle, 4>;
 
 /// What a plan does to the mesh, in full: the cells that go, the cells that come into the same place, a
-/// vertex that goes, comes or moves. A new vertex is named kNewVertex in `born`.
+/// vertex that goes, comes or moves. A new vertex is named kNewVertex in `created`.
 struct Cavity {
   static constexpr VertexHandle kNewVertex{VertexHandle::kInvalid - 1};
   static constexpr std::size_t kCapacity = 2 * Star::kCapacity;
 
-  FixedVector<CellHandle, kCapacity> dead;
-  FixedVector<Tet, kCapacity> born;
-  VertexHandle removed;            ///< has no cell afterwards
+  FixedVector<CellHandle, kCapacity> removed;
+  FixedVector<Tet, kCapacity> created;
+  VertexHandle removed_vertex;     ///< has no cell afterwards
   std::optional<Vec3> new_vertex;  ///< position of kNewVertex
   VertexHandle moved;              ///< no cell changes, only this vertex's place
   Vec3 target;                     ///< of `moved`
-  /// Where dead cells lie in two regions, as many of `dead` and `born` belong to the first and stand first.
-  std::size_t n_dead_first = 0, n_born_first = 0;
+  /// Where removed cells lie in two regions, as many of `removed` and `created` belong to the first and stand
+  /// first.
+  std::size_t n_removed_first = 0, n_created_first = 0;
   /// Somebody holds the surface (SurfaceMesh) and writes the labels of its faces; nobody else looks at them.
   bool surface_is_held = false;
 
   void clear() {
-    dead.clear();
-    born.clear();
-    n_dead_first = n_born_first = 0;
+    removed.clear();
+    created.clear();
+    n_removed_first = n_created_first = 0;
     surface_is_held = false;
-    removed.reset();
+    removed_vertex.reset();
     new_vertex.reset();
     moved.reset();
   }
 };
 
-/// The cells of one region in a cavity: dead ones from first_dead on, and as many born.
+/// The cells of one region in a cavity: removed ones from first_removed on, and as many created.
 struct CavityPart {
-  std::size_t first_dead = 0, n_dead = 0, n_born = 0;
+  std::size_t first_removed = 0, n_removed = 0, n_created = 0;
 };
-/// Of n_dead and n_born cells in all, those of the first region and those of the second, or only one.
-inline std::array<CavityPart, 2> parts_of(std::size_t n_dead, std::size_t n_born, std::size_t n_dead_first,
-                                          std::size_t n_born_first) {
-  return {{{0, n_dead_first, n_born_first}, {n_dead_first, n_dead - n_dead_first, n_born - n_born_first}}};
+/// Of n_removed and n_created cells in all, those of the first region and those of the second, or only one.
+inline std::array<CavityPart, 2> parts_of(std::size_t n_removed, std::size_t n_created,
+                                          std::size_t n_removed_first, std::size_t n_created_first) {
+  return {{{0, n_removed_first, n_created_first},
+           {n_removed_first, n_removed - n_removed_first, n_created - n_created_first}}};
 }
 inline std::array<CavityPart, 2> parts_of(const Cavity& cavity) {
-  return parts_of(cavity.dead.size(), cavity.born.size(), cavity.n_dead_first, cavity.n_born_first);
+  return parts_of(cavity.removed.size(), cavity.created.size(), cavity.n_removed_first,
+                  cavity.n_created_first);
 }
 
 class PinchedStars;
@@ -99,8 +102,8 @@ struct StarKnowledge {
 
 /// True when the cavity may be committed as far as labels, regions and, if `check_links`, the link condition
 /// go:
-///  - all dead cells lie in one region, or in two as the cavity says,
-///  - no face between dead cells of one region is labelled or fixed, and no such edge is lost,
+///  - all removed cells lie in one region, or in two as the cavity says,
+///  - no face between removed cells of one region is labelled or fixed, and no such edge is lost,
 ///  - a labelled face of the boundary or between the regions that goes is cut by the new vertex into faces
 ///    that can take its label (see find_heirs()), and none that is fixed goes,
 ///  - the outer faces are a sphere and no edge or face would exist twice (the full link condition; it can
@@ -114,36 +117,36 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
 /// `known` it is looked for in the whole mesh.
 bool makes_twice(const TetMesh& mesh, const Cavity& cavity, Star& scratch, const StarKnowledge& known = {});
 
-/// A labelled face that goes with the cavity, and a born one that lies on it and takes its label; both with
-/// their vertices as the label names them.
+/// A labelled face that goes with the cavity, and a created one that lies on it and takes its label; both
+/// with their vertices as the label names them.
 struct Heir {
   std::array<VertexHandle, 3> parent, child;
 };
 using Heirs = FixedVector<Heir, 96>;
-/// The heirs of the labelled faces of the boundary, and of those between the two regions, that no born cell
-/// has; none where the surface is held. A face has heirs when the new vertex cuts it: into three, or into two
-/// where an edge of it goes too. False when one has none, is fixed, or there are too many.
+/// The heirs of the labelled faces of the boundary, and of those between the two regions, that no created
+/// cell has; none where the surface is held. A face has heirs when the new vertex cuts it: into three, or
+/// into two where an edge of it goes too. False when one has none, is fixed, or there are too many.
 bool find_heirs(const TetMesh& mesh, const Cavity& cavity, Heirs& out);
 /// Takes the labels from the parents to the children, in which `new_vertex` stands in for
 /// Cavity::kNewVertex; parents' labels go. The heirs of a parent stand together.
 void inherit_labels(TetMesh& mesh, std::span<const Heir> heirs, VertexHandle new_vertex);
 
-/// True when the change would leave `cells`, the dead ones or those of the vertex that moves, more damaged
+/// True when the change would leave `cells`, the removed ones or those of the vertex that moves, more damaged
 /// than they are: more of them inverted, more inverted or flat, more overlap while no fewer are inverted, or
 /// an angle below `floor` (Workspace::floor) that they have not had. A worst cell that rises must not pay for
 /// itself so; see kernels/damage.h.
 bool worsens_damage(const TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> cells,
                     double floor);
 
-/// Of the dead cells' vertices the one nearest to the new vertex, which inherits its data. Needs a new
+/// Of the removed cells' vertices the one nearest to the new vertex, which inherits its data. Needs a new
 /// vertex.
 VertexHandle nearest_vertex(const TetMesh& mesh, const Cavity& cavity);
 
 /// An edge or a face (third vertex invalid for an edge), vertices ascending.
 using Simplex = std::array<VertexHandle, 3>;
 
-/// What the cavity creates that none of its dead cells has: edges, and faces with none of these; what has the
-/// new vertex is left out. Two cavities that create the same simplex must not be committed together.
+/// What the cavity creates that none of its removed cells has: edges, and faces with none of these; what has
+/// the new vertex is left out. Two cavities that create the same simplex must not be committed together.
 std::vector<Simplex> created_simplices(const TetMesh& mesh, const Cavity& cavity);
 
 }  // namespace hfr

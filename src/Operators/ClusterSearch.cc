@@ -343,7 +343,7 @@ void ClusterSearch<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope& 
 
 template <class Metric>
 auto ClusterSearch<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
-  static_assert(kMaxPoints == kPoints && kMaxBorn == kMaxDepth);
+  static_assert(kMaxPoints == kPoints && kMaxCreated == kMaxDepth);
   constexpr std::size_t kFewestCells = 3;
   const std::size_t limit = std::min(max_points, kMaxPoints);
   GrownCells cells(mesh, seed.cell);
@@ -385,9 +385,9 @@ auto ClusterSearch<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) cons
         plan.seed.growth = cells.growth();
         plan.old_worst = old_worst;
         plan.new_worst = worst;
-        plan.n_dead = static_cast<std::uint32_t>(cells.cells().size());
-        plan.n_born = static_cast<std::uint32_t>(search.found().size());
-        std::copy(search.found().begin(), search.found().end(), plan.born.begin());
+        plan.n_removed = static_cast<std::uint32_t>(cells.cells().size());
+        plan.n_created = static_cast<std::uint32_t>(search.found().size());
+        std::copy(search.found().begin(), search.found().end(), plan.created.begin());
         return plan;
       }
     }
@@ -400,18 +400,18 @@ auto ClusterSearch<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) cons
 }
 
 template <class Metric>
-void ClusterSearch<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void ClusterSearch<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   Scope cells;
   plan.seed.growth.cells(mesh, cells);
   out.clear();
   Points points;
   for (CellHandle c : cells) {
-    out.dead.push_back(c);
+    out.removed.push_back(c);
     add_points(mesh, c, kMaxPoints, points);
   }
-  for (std::size_t i = 0; i < plan.n_born; ++i) {
-    const auto& t = plan.born[i];
-    out.born.push_back({points[t[0]], points[t[1]], points[t[2]], points[t[3]]});
+  for (std::size_t i = 0; i < plan.n_created; ++i) {
+    const auto& t = plan.created[i];
+    out.created.push_back({points[t[0]], points[t[1]], points[t[2]], points[t[3]]});
   }
 }
 

@@ -20,7 +20,7 @@ template <class Metric>
 struct ClusterSearch {
   static constexpr double kSeedNanoseconds = 1'000'000;
   static constexpr std::size_t kMaxPoints = 32;
-  static constexpr std::size_t kMaxBorn = 96;  ///< cells; a filling with more is not found
+  static constexpr std::size_t kMaxCreated = 96;  ///< cells; a filling with more is not found
 
   /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
   struct Seed {
@@ -33,7 +33,7 @@ struct ClusterSearch {
   struct Plan : PlanBase {
     Seed seed;
     /// Corners of the new cells as numbers of the cavity's points, in the order in which its cells name them.
-    std::array<std::array<std::uint8_t, 4>, kMaxBorn> born;
+    std::array<std::array<std::uint8_t, 4>, kMaxCreated> created;
   };
 
   Metric metric;
@@ -47,7 +47,7 @@ struct ClusterSearch {
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, const Seed& seed) const;
 };
 

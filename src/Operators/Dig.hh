@@ -123,14 +123,14 @@ void fill_cavity(const TetMesh& mesh, const Growth& growth, Vec3 place, Cavity& 
   Scope cells;
   growth.cells(mesh, cells);
   out.clear();
-  for (CellHandle c : cells) out.dead.push_back(c);
+  for (CellHandle c : cells) out.removed.push_back(c);
   for (CellHandle c : cells) {
     for (HalfFaceHandle h : mesh.cell_halffaces(c)) {
       const HalfFaceHandle m = mesh.opposite_halfface(h);
       if (m.is_valid() && std::find(cells.begin(), cells.end(), cell_of(m)) != cells.end()) continue;
       if (is_cut(h)) continue;
       const auto f = mesh.halfface_vertices(h);
-      out.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+      out.created.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
     }
   }
   out.new_vertex = place;
@@ -147,9 +147,9 @@ typename Op::Plan plan_for(const Op& op, const TetMesh& mesh, const typename Op:
   plan.old_worst = site.old_worst;
   plan.new_worst = site.new_worst;
   Cavity cavity;
-  op.commit(mesh, plan, cavity);
-  plan.n_dead = static_cast<std::uint32_t>(cavity.dead.size());
-  plan.n_born = static_cast<std::uint32_t>(cavity.born.size());
+  op.cavity(mesh, plan, cavity);
+  plan.n_removed = static_cast<std::uint32_t>(cavity.removed.size());
+  plan.n_created = static_cast<std::uint32_t>(cavity.created.size());
   plan.adds_vertex = true;
   return plan;
 }

@@ -41,8 +41,8 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
   Plan plan;
   plan.old_worst = old_worst;
   plan.new_worst = new_worst;
-  plan.n_dead = static_cast<std::uint32_t>(n);
-  plan.n_born = static_cast<std::uint32_t>(2 * (n - 2));
+  plan.n_removed = static_cast<std::uint32_t>(n);
+  plan.n_created = static_cast<std::uint32_t>(2 * (n - 2));
   plan.seed = seed;
   plan.ring = static_cast<std::uint8_t>(n);
   table.preorder(plan.apex.data());
@@ -50,11 +50,11 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
 }
 
 template <class Metric>
-void EdgeRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void EdgeRemoval<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   EdgeRing ring;
   gather_closed_ring(mesh, plan.seed, ring);
   out.clear();
-  for (CellHandle c : ring) out.dead.push_back(c);
+  for (CellHandle c : ring) out.removed.push_back(c);
   append_ring_cells(ring.vertices, ring.a, ring.b, ring.n_cells - 1, plan.apex.data(), out);
 }
 

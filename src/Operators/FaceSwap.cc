@@ -37,22 +37,22 @@ std::optional<typename FaceSwap<Metric>::Plan> FaceSwap<Metric>::evaluate(const 
   Plan plan;
   plan.old_worst = old_worst;
   plan.new_worst = new_worst;
-  plan.n_dead = 2;
-  plan.n_born = 3;
+  plan.n_removed = 2;
+  plan.n_created = 3;
   plan.seed = seed;
   return plan;
 }
 
 template <class Metric>
-void FaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void FaceSwap<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   const HalfFaceHandle m = mesh.opposite_halfface(plan.seed);
   const VertexHandle above = mesh.halfface_opposite_vertex(plan.seed);
   const VertexHandle below = mesh.halfface_opposite_vertex(m);
   const auto f = mesh.halfface_vertices(plan.seed);
   out.clear();
-  out.dead.push_back(cell_of(plan.seed));
-  out.dead.push_back(cell_of(m));
-  for (std::size_t i = 0; i < 3; ++i) out.born.push_back({below, above, f[i], f[(i + 1) % 3]});
+  out.removed.push_back(cell_of(plan.seed));
+  out.removed.push_back(cell_of(m));
+  for (std::size_t i = 0; i < 3; ++i) out.created.push_back({below, above, f[i], f[(i + 1) % 3]});
 }
 
 template <class Metric>

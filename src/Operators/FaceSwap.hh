@@ -23,7 +23,7 @@ struct FaceSwap {
 
   void scope(const TetMesh& mesh, Seed seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, Seed seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, Seed seed) const;
 };
 

@@ -96,24 +96,24 @@ auto FanMerge<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> 
   for (int i = first; i < last; ++i)
     plan.old_worst = std::min(plan.old_worst, quality[row.cells[static_cast<std::size_t>(i)].idx()]);
   plan.new_worst = best;
-  plan.n_dead = static_cast<std::uint32_t>(last - first);
-  plan.n_born = 2 * plan.n_dead - 1;
+  plan.n_removed = static_cast<std::uint32_t>(last - first);
+  plan.n_created = 2 * plan.n_removed - 1;
   plan.seed = {seed.cell, seed.edge, static_cast<std::uint8_t>(at - first),
                static_cast<std::uint8_t>(last - 1 - at)};
   table.preorder(first, last, plan.apex.data());
-  for (std::uint32_t t = 0; t + 1 < plan.n_dead; ++t)
+  for (std::uint32_t t = 0; t + 1 < plan.n_removed; ++t)
     plan.apex[t] = static_cast<std::uint8_t>(plan.apex[t] - first);
   return plan;
 }
 
 template <class Metric>
-void FanMerge<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void FanMerge<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   const Seed& seed = plan.seed;
   const auto row = gather_row<kMaxCells>(mesh, seed.cell, seed.edge, seed.n_before, seed.n_after);
   const int last = static_cast<int>(row.cells.size());
   out.clear();
-  for (CellHandle c : row.cells) out.dead.push_back(c);
-  out.born.push_back({row.a, row.b, row.vertices[0], row.vertices[row.cells.size()]});
+  for (CellHandle c : row.cells) out.removed.push_back(c);
+  out.created.push_back({row.a, row.b, row.vertices[0], row.vertices[row.cells.size()]});
   append_ring_cells(row.vertices, row.a, row.b, last, plan.apex.data(), out);
 }
 

@@ -42,7 +42,7 @@ struct FanMerge {
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   /// The corners of the cell that comes to the edge.
   Tet identity(const TetMesh& mesh, const Seed& seed) const;
 };

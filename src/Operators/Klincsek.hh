@@ -72,7 +72,7 @@ auto ring_value(const Metric& metric, std::span<const Vec3> points, Vec3 a, Vec3
   };
 }
 
-/// Appends these two cells of each triangle to the born ones. `apex`: the triangulation of the polygon
+/// Appends these two cells of each triangle to the created ones. `apex`: the triangulation of the polygon
 /// 0 … last in preorder.
 inline void append_ring_cells(std::span<const VertexHandle> ring, VertexHandle a, VertexHandle b, int last,
                               const std::uint8_t* apex, Cavity& out) {
@@ -80,8 +80,8 @@ inline void append_ring_cells(std::span<const VertexHandle> ring, VertexHandle a
     const VertexHandle x = ring[static_cast<std::size_t>(i)];
     const VertexHandle y = ring[static_cast<std::size_t>(k)];
     const VertexHandle z = ring[static_cast<std::size_t>(j)];
-    out.born.push_back({x, y, z, b});
-    out.born.push_back({y, x, z, a});
+    out.created.push_back({x, y, z, b});
+    out.created.push_back({y, x, z, a});
   });
 }
 

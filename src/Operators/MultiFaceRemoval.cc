@@ -143,20 +143,20 @@ auto MultiFaceRemoval<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) c
   plan.seed.tree = programme.tree();
   plan.old_worst = worst.old_one;
   plan.new_worst = worst.new_one;
-  plan.n_dead = 2 * (1U + plan.seed.tree.n_steps);
-  plan.n_born = 3U + plan.seed.tree.n_steps;
+  plan.n_removed = 2 * (1U + plan.seed.tree.n_steps);
+  plan.n_created = 3U + plan.seed.tree.n_steps;
   return plan;
 }
 
 template <class Metric>
-void MultiFaceRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void MultiFaceRemoval<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   out.clear();
   const Faces faces = faces_of(mesh, plan.seed.tree);
   const VertexHandle a = mesh.halfface_opposite_vertex(faces[0]);
   const VertexHandle b = mesh.halfface_opposite_vertex(mesh.opposite_halfface(faces[0]));
   for (HalfFaceHandle h : faces) {
-    out.dead.push_back(cell_of(h));
-    out.dead.push_back(cell_of(mesh.opposite_halfface(h)));
+    out.removed.push_back(cell_of(h));
+    out.removed.push_back(cell_of(mesh.opposite_halfface(h)));
   }
   for (HalfFaceHandle h : faces) {
     const auto f = mesh.halfface_vertices(h);
@@ -167,7 +167,7 @@ void MultiFaceRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cav
       const bool inside = over.is_valid() && std::any_of(faces.begin(), faces.end(), [&](HalfFaceHandle g) {
                             return cell_of(g) == cell_of(over);
                           });
-      if (!inside) out.born.push_back({f[i], f[(i + 1) % 3], b, a});
+      if (!inside) out.created.push_back({f[i], f[(i + 1) % 3], b, a});
     }
   }
 }

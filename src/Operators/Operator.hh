@@ -16,16 +16,16 @@ namespace hfr {
 
 /// First members of every plan: what ranking and slot assignment need.
 struct PlanBase {
-  double old_worst = 0;      ///< smallest decision value among the cells of the cluster as it is
-  double new_worst = 0;      ///< and as it would be; always > old_worst
-  std::uint32_t n_dead = 0;  ///< cells that go
-  std::uint32_t n_born = 0;  ///< cells that come; both 0 when a vertex only moves
+  double old_worst = 0;         ///< smallest decision value among the cells of the cluster as it is
+  double new_worst = 0;         ///< and as it would be; always > old_worst
+  std::uint32_t n_removed = 0;  ///< cells that go
+  std::uint32_t n_created = 0;  ///< cells that come; both 0 when a vertex only moves
   bool removes_vertex = false;
   bool adds_vertex = false;
-  /// Where the cluster lies in two regions: of n_dead and n_born, those of the first, which come first in the
-  /// scope and among the born.
-  std::uint16_t n_dead_first = 0;
-  std::uint16_t n_born_first = 0;
+  /// Where the cluster lies in two regions: of n_removed and n_created, those of the first, which come first
+  /// in the scope and among the created.
+  std::uint16_t n_removed_first = 0;
+  std::uint16_t n_created_first = 0;
 };
 
 /// What the scheduler needs of a local operator.
@@ -33,7 +33,7 @@ struct PlanBase {
 ///  - evaluate: pure; nothing when the cluster would not get better. Reads cells of the scope, points, and
 ///  what
 ///    the operator itself was given. No allocation.
-///  - commit: says in full what the plan does; cannot fail. Its dead cells are the scope, in the scope's
+///  - commit: says in full what the plan does; cannot fail. Its removed cells are the scope, in the scope's
 ///  order.
 ///    The writing is the scheduler's, because the mates of a cavity's outer faces depend on the other
 ///    cavities of the same round.
@@ -48,7 +48,7 @@ concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
              Scope& scope, Cavity& cavity) {
   { op.scope(mesh, seed, scope) } -> std::same_as<void>;
   { op.evaluate(mesh, seed) } -> std::same_as<std::optional<typename Op::Plan>>;
-  { op.commit(mesh, plan, cavity) } -> std::same_as<void>;
+  { op.cavity(mesh, plan, cavity) } -> std::same_as<void>;
   { op.identity(mesh, seed) } -> std::same_as<Tet>;
   { plan.seed } -> std::convertible_to<typename Op::Seed>;
   op.metric;

@@ -51,18 +51,18 @@ class OpenFaces {
   RawArray<std::array<VertexHandle, 3>, kMaxSize> key_;
 };
 
-bool is_dead(const Cavity& cavity, CellHandle c) {
-  return std::find(cavity.dead.begin(), cavity.dead.end(), c) != cavity.dead.end();
+bool is_removed(const Cavity& cavity, CellHandle c) {
+  return std::find(cavity.removed.begin(), cavity.removed.end(), c) != cavity.removed.end();
 }
 
-/// visit(half-face of a dead cell, its mate) for each outer face, in a fixed order.
+/// visit(half-face of a removed cell, its mate) for each outer face, in a fixed order.
 template <class Visit>
 void for_outer_faces(const TetMesh& mesh, const Cavity& cavity, Visit&& visit) {
-  for (CellHandle c : cavity.dead) {
+  for (CellHandle c : cavity.removed) {
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(c, k);
       const HalfFaceHandle m = mesh.opposite_halfface(h);
-      if (!m.is_valid() || !is_dead(cavity, cell_of(m))) visit(h, m);
+      if (!m.is_valid() || !is_removed(cavity, cell_of(m))) visit(h, m);
     }
   }
 }
@@ -71,21 +71,21 @@ void for_outer_faces(const TetMesh& mesh, const Cavity& cavity, Visit&& visit) {
 
 void write_cells(TetMesh& mesh, const Cavity& cavity, std::span<const CellHandle> slots,
                  VertexHandle new_vertex, std::vector<OuterFace>& notes) {
-  HFR_ASSERT(slots.size() == cavity.born.size());
+  HFR_ASSERT(slots.size() == cavity.created.size());
   TetMesh::Writer writer(mesh);
   const std::size_t first_note = notes.size();
-  OpenFaces open(4 * (cavity.born.size() + cavity.dead.size()));
+  OpenFaces open(4 * (cavity.created.size() + cavity.removed.size()));
   for_outer_faces(mesh, cavity, [&](HalfFaceHandle h, HalfFaceHandle m) {
     open.exchange(mesh.halfface_vertices(h), static_cast<std::int32_t>(notes.size() - first_note));
     notes.push_back({h, m, HalfFaceHandle()});
   });
   for (const CavityPart& part : parts_of(cavity))
-    for (std::size_t i = part.n_born; i < part.n_dead; ++i)
-      writer.mark_deleted(cavity.dead[part.first_dead + i]);
+    for (std::size_t i = part.n_created; i < part.n_removed; ++i)
+      writer.mark_deleted(cavity.removed[part.first_removed + i]);
   const auto n_notes = static_cast<std::int32_t>(notes.size() - first_note);
-  for (std::size_t i = 0; i < cavity.born.size(); ++i) {
+  for (std::size_t i = 0; i < cavity.created.size(); ++i) {
     Cell& cell = writer.cell(slots[i]);
-    cell.v = cavity.born[i];
+    cell.v = cavity.created[i];
     cell.mate = {};  // a face that nothing is behind, new or old, stays on the boundary
     for (VertexHandle& v : cell.v)
       if (v == Cavity::kNewVertex) v = new_vertex;
@@ -117,16 +117,17 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
   std::vector<CellHandle> slots, freed;
   std::vector<CellHandle>& free = writer.free_cells();
   for (const CavityPart& part : parts_of(cavity)) {
-    const CellHandle* dead = cavity.dead.begin() + part.first_dead;
-    for (std::size_t i = 0; i < part.n_dead; ++i) (i < part.n_born ? slots : freed).push_back(dead[i]);
-    for (std::size_t i = part.n_dead; i < part.n_born; ++i) {
+    const CellHandle* removed = cavity.removed.begin() + part.first_removed;
+    for (std::size_t i = 0; i < part.n_removed; ++i)
+      (i < part.n_created ? slots : freed).push_back(removed[i]);
+    for (std::size_t i = part.n_removed; i < part.n_created; ++i) {
       if (free.empty()) {
         writer.resize_cells(mesh.n_cells() + 1);
         free.push_back(CellHandle(mesh.n_cells() - 1));
       }
       slots.push_back(free.back());
       free.pop_back();
-      mesh.copy_cell_data(dead[0], slots.back());
+      mesh.copy_cell_data(removed[0], slots.back());
     }
   }
   free.insert(free.end(), freed.begin(), freed.end());
@@ -142,9 +143,9 @@ void replace(TetMesh& mesh, const Cavity& cavity) {
   for (const OuterFace& note : notes)
     if (note.behind.is_valid()) writer.set_mate(note.behind, note.after);
   for (std::size_t i = slots.size(); i-- > 0;)
-    for (VertexHandle v : mesh.cell(slots[i]).v) writer.set_hook(v, slots[i]);
+    for (VertexHandle v : mesh.cell(slots[i]).v) writer.set_incident_cell(v, slots[i]);
   inherit_labels(mesh, heirs, new_vertex);
-  if (cavity.removed.is_valid()) writer.mark_deleted(cavity.removed);
+  if (cavity.removed_vertex.is_valid()) writer.mark_deleted(cavity.removed_vertex);
 }
 
 }  // namespace hfr

@@ -9,7 +9,8 @@
 
 namespace hfr {
 
-/// Writes one cavity by itself, hooks included: taking slots from the free list, appending where it is empty.
+/// Writes one cavity by itself, incident cells included: taking slots from the free list, appending where it
+/// is empty.
 void replace(TetMesh& mesh, const Cavity& cavity);
 
 /// Evaluates one seed and, if its cluster gets better and nothing forbids it, commits: for tests, examples
@@ -19,7 +20,7 @@ bool apply(const Op& op, TetMesh& mesh, typename Op::Seed seed) {
   const auto plan = op.evaluate(mesh, seed);
   if (!plan) return false;
   Cavity cavity;
-  op.commit(mesh, *plan, cavity);
+  op.cavity(mesh, *plan, cavity);
 #ifndef NDEBUG
   Scope scope;
   op.scope(mesh, plan->seed, scope);

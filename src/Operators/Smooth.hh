@@ -57,7 +57,7 @@ struct Smooth {
     plan.target = move->target;
     return plan;
   }
-  void commit(const TetMesh&, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh&, const Plan& plan, Cavity& out) const {
     out.clear();
     out.moved = plan.seed;
     out.target = plan.target;

@@ -90,7 +90,7 @@ auto StarFromVertex<kCluster, Metric>::evaluate(const TetMesh& mesh, Seed seed) 
   if (cells.empty()) return std::nullopt;
   Plan plan;
   plan.seed = seed;
-  plan.n_dead = static_cast<std::uint32_t>(cells.size());
+  plan.n_removed = static_cast<std::uint32_t>(cells.size());
   plan.removes_vertex = kCluster == Cluster::kNode;
   plan.old_worst = std::numeric_limits<double>::infinity();
   for (CellHandle c : cells) plan.old_worst = std::min(plan.old_worst, quality[c.idx()]);
@@ -105,17 +105,17 @@ auto StarFromVertex<kCluster, Metric>::evaluate(const TetMesh& mesh, Seed seed) 
 
   const auto try_apex = [&](VertexHandle apex, Vec3 p, double floor) {
     double worst = std::numeric_limits<double>::infinity();
-    std::uint32_t n_born = 0;
+    std::uint32_t n_created = 0;
     for (const Face& f : surface) {
       if (has_vertex(f, apex)) continue;
-      ++n_born;
+      ++n_created;
       worst = std::min(worst, metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p));
       if (!(worst > floor)) return;
     }
-    if (n_born == 0) return;
+    if (n_created == 0) return;
     plan.new_worst = worst;
     plan.apex = apex;
-    plan.n_born = n_born;
+    plan.n_created = n_created;
   };
   if (reconnect) {
     for (VertexHandle apex : vertices)
@@ -133,14 +133,14 @@ auto StarFromVertex<kCluster, Metric>::evaluate(const TetMesh& mesh, Seed seed) 
 }
 
 template <Cluster kCluster, class Metric>
-void StarFromVertex<kCluster, Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void StarFromVertex<kCluster, Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   Scope cells;
   gather<kCluster>(mesh, plan.seed, cells);
   out.clear();
-  for (CellHandle c : cells) out.dead.push_back(c);
+  for (CellHandle c : cells) out.removed.push_back(c);
   for (const Face& f : surface_of(mesh, cells))
-    if (!has_vertex(f, plan.apex)) out.born.push_back({f[0], f[1], f[2], plan.apex});
-  if (plan.removes_vertex) out.removed = mesh.cell(plan.seed.cell).v[plan.seed.local];
+    if (!has_vertex(f, plan.apex)) out.created.push_back({f[0], f[1], f[2], plan.apex});
+  if (plan.removes_vertex) out.removed_vertex = mesh.cell(plan.seed.cell).v[plan.seed.local];
   if (plan.adds_vertex) out.new_vertex = plan.middle;
 }
 

@@ -17,7 +17,7 @@ enum class Cluster { kEdge, kFace, kNode };
 /// CLUSTER OPTIMIZATION in exactly the paper's form: takes the outer surface of the cluster, joins all its
 /// triangles to each surface vertex in turn and, where insertion is allowed, to a new vertex in the middle,
 /// and keeps the best if its worst cell beats the old worst. Here for --compat and as the centre insertion;
-/// the stronger forms are EdgeRemoval, FaceSwap and VertexRemoval.
+/// the stronger forms are EdgeRemoval, FaceSwap and VertexCollapse.
 template <Cluster kCluster, class Metric>
 struct StarFromVertex {
   struct Seed {
@@ -38,7 +38,7 @@ struct StarFromVertex {
 
   void scope(const TetMesh& mesh, Seed seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, Seed seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, Seed seed) const;
 };
 

@@ -38,12 +38,12 @@ bool multiplies_poor(const TetMesh& mesh, const VertexInsertion<Metric>& op, con
   Cavity cavity;
   detail::fill_cavity(mesh, site.growth, site.place, cavity);
   const auto point = [&](VertexHandle v) { return v == Cavity::kNewVertex ? site.place : mesh.point(v); };
-  const auto n_dead = std::count_if(cavity.dead.begin(), cavity.dead.end(),
-                                    [&](CellHandle c) { return op.quality[c.idx()] < op.poor_below; });
-  const auto n_born = std::count_if(cavity.born.begin(), cavity.born.end(), [&](const Tet& t) {
+  const auto n_removed = std::count_if(cavity.removed.begin(), cavity.removed.end(),
+                                       [&](CellHandle c) { return op.quality[c.idx()] < op.poor_below; });
+  const auto n_created = std::count_if(cavity.created.begin(), cavity.created.end(), [&](const Tet& t) {
     return op.metric(point(t[0]), point(t[1]), point(t[2]), point(t[3])) < op.poor_below;
   });
-  return n_born > n_dead + VertexInsertion<Metric>::kMorePoor;
+  return n_created > n_removed + VertexInsertion<Metric>::kMorePoor;
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
 }
 
 template <class Metric>
-void VertexInsertion<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void VertexInsertion<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   detail::fill_cavity(mesh, plan.seed.growth, plan.place, out);
 }
 

@@ -39,7 +39,7 @@ void add_vertices(const TetMesh& mesh, par::Policy policy, Statistics& s) {
   s.unused_vertices = par::reduce(
       policy, mesh.n_vertices(), std::size_t{0},
       [&](std::size_t i) {
-        return static_cast<std::size_t>(live(i) && !mesh.hook(VertexHandle(i)).is_valid());
+        return static_cast<std::size_t>(live(i) && !mesh.incident_cell(VertexHandle(i)).is_valid());
       },
       sum);
   const Box box = par::reduce(

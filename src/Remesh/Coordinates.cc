@@ -50,7 +50,7 @@ Box box_of(const TetMesh& mesh, par::Policy policy) {
       policy, mesh.n_vertices(), kNoBox,
       [&](std::size_t i) {
         const VertexHandle v(i);
-        return mesh.hook(v).is_valid() ? Box{mesh.point(v), mesh.point(v)} : kNoBox;
+        return mesh.incident_cell(v).is_valid() ? Box{mesh.point(v), mesh.point(v)} : kNoBox;
       },
       joined);
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "Remesh/Limits.hh"
+#include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
 
 namespace hfr {
@@ -19,14 +19,14 @@ double missed_target(const Strategy& strategy, double smallest) {
 }
 
 /// What ended the run before it was done; kNotFound where nothing did.
-Limit ended_by(const ImproveOptions& options, const Result& result) {
+StuckReason ended_by(const ImproveOptions& options, const Result& result) {
   switch (result.stop) {
     case Stop::kTimeLimit:
-      return Limit::kTimeLimit;
+      return StuckReason::kTimeLimit;
     case Stop::kCancelled:
-      return Limit::kCancelled;
+      return StuckReason::kCancelled;
     case Stop::kDeviceLost:
-      return Limit::kDeviceLost;
+      return StuckReason::kDeviceLost;
     case Stop::kIterations:
       // Only where the last one that was allowed still changed something.
       return std::any_of(result.passes.begin(), result.passes.end(),
@@ -34,13 +34,13 @@ Limit ended_by(const ImproveOptions& options, const Result& result) {
                            return pass.iteration == options.iterations && pass.winners > 0 &&
                                   (pass.stage == "bulk" || pass.stage == "polish");
                          })
-                 ? Limit::kIterations
-                 : Limit::kNotFound;
+                 ? StuckReason::kIterations
+                 : StuckReason::kNotFound;
     case Stop::kGoal:
     case Stop::kNoProgress:
       break;
   }
-  return Limit::kNotFound;
+  return StuckReason::kNotFound;
 }
 
 }  // namespace
@@ -54,9 +54,9 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy&
   stuck = stuck_cells(mesh, result.stuck_below, result.unfillable_faces, options.policy);
   const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
   if (!frozen) blame_features(mesh, stuck, result.stuck_below, options);
-  const Limit ended = ended_by(options, result);
+  const StuckReason ended = ended_by(options, result);
   for (StuckCell& cell : stuck)
-    if (cell.limit == Limit::kNotFound) cell.limit = ended;
+    if (cell.reason == StuckReason::kNotFound) cell.reason = ended;
   if (max_cells_met > 0 && has(options.ops, Ops::kInsert))
     blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
   if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, options);

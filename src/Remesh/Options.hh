@@ -21,7 +21,7 @@ enum class Ops : unsigned {
   kNone = 0,
   kEdge = 1,      ///< edge removal
   kFace = 2,      ///< 2-3 face swap; towards an angle, also removal of several faces
-  kNode = 4,      ///< vertex removal by collapse onto a neighbour
+  kNode = 4,      ///< vertex collapse by collapse onto a neighbour
   kSmooth = 8,    ///< vertex smoothing
   kInsert = 16,   ///< a new vertex in a dug cavity, for the few cells that nothing else mends
   kCluster = 32,  ///< branch and bound over all ways to connect the points round such a cell; not by default
@@ -42,7 +42,7 @@ std::string ops_to_list(Ops ops);
 enum class Smoother { kNewton, kCandidates, kLaplacian, kTaubin };
 Smoother smoother_from_name(const std::string& name);
 
-/// Whether edge removal, face swap and vertex removal run one kind after the other, or compete in one
+/// Whether edge removal, face swap and vertex collapse run one kind after the other, or compete in one
 /// selection where the largest gain wins. kAuto: competing while the worst cells are raised as far as they
 /// go; in turn otherwise (measured in docs/scheduler.md).
 enum class Rounds { kAuto, kByKind, kMixed };
@@ -69,7 +69,7 @@ struct ImproveOptions {
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
   Ops ops = Ops::kDefault;
   Metric metric = Metric::kVolumeLength;  ///< of the bulk passes
-  /// Vertex removal in the bulk stage as well, on the surface, too, where that may change: fewer cells,
+  /// Vertex collapse in the bulk stage as well, on the surface, too, where that may change: fewer cells,
   /// better percentiles on some meshes, and a lower worst angle on most (measured in docs/worst-angles.md).
   bool bulk_nodes = false;
   /// No vertex is removed where cells would come to be fewer than min_cells, none inserted where more than

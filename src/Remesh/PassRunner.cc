@@ -18,8 +18,8 @@
 #include "Operators/SmoothMaxMin.hh"
 #include "Operators/SmoothNewton.hh"
 #include "Operators/StarFromVertex.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Operators/VertexInsertion.hh"
-#include "Operators/VertexRemoval.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/SmoothPass.hh"
 
@@ -190,7 +190,7 @@ std::vector<VertexHandle> PassRunner<Metric>::removable(const Worklist& list) co
 
 template <class Metric>
 std::size_t PassRunner<Metric>::node_pass(const Turn& turn) {
-  using Op = VertexRemoval<Metric>;
+  using Op = VertexCollapse<Metric>;
   const Workspace& work = run().work;
   return rounds<Op>(PassKind::kNode, turn, [&](auto& round, const Worklist& list) {
     return round.run(Op{metric_, work.quality, work.frozen}, removable(list));
@@ -201,7 +201,7 @@ template <class Metric>
 std::size_t PassRunner<Metric>::mixed_pass(const Turn& turn) {
   // Towards an angle several faces at once; see multi_face_pass().
   using Faces = std::conditional_t<kMeasuresAngles<Metric>, MultiFaceRemoval<Metric>, FaceSwap<Metric>>;
-  using Op = AnyOf<EdgeRemoval<Metric>, Faces, VertexRemoval<Metric>>;
+  using Op = AnyOf<EdgeRemoval<Metric>, Faces, VertexCollapse<Metric>>;
   using Seed = typename Op::Seed;
   const Run& run = this->run();
   const Workspace& work = run.work;
@@ -209,7 +209,7 @@ std::size_t PassRunner<Metric>::mixed_pass(const Turn& turn) {
   const bool with_face = has(effort().ops, Ops::kFace);
   return rounds<Op>(PassKind::kMixed, turn, [&](auto& round, const Worklist& list) {
     const Op op{{EdgeRemoval<Metric>{metric_, work.quality}, Faces{metric_, work.quality},
-                 VertexRemoval<Metric>{metric_, work.quality, work.frozen}}};
+                 VertexCollapse<Metric>{metric_, work.quality, work.frozen}}};
     const std::size_t n_cells = list.cells().size();
     std::vector<VertexHandle> vertices;
     if (turn.removes_vertices && has(effort().ops, Ops::kNode)) vertices = removable(list);
@@ -348,7 +348,8 @@ std::size_t PassRunner<Metric>::star_pass(PassKind kind, int iteration) {
         if constexpr (kStar == Cluster::kNode) {
           std::vector<Seed> seeds;
           for (VertexHandle v : removable(list))
-            seeds.push_back({mesh.hook(v), static_cast<std::uint8_t>(mesh.cell(mesh.hook(v)).corner(v))});
+            seeds.push_back({mesh.incident_cell(v),
+                             static_cast<std::uint8_t>(mesh.cell(mesh.incident_cell(v)).corner(v))});
           return round.run(op, seeds);
         } else {
           return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {

@@ -56,7 +56,8 @@ class PassRunner : public PassState {
   std::size_t smooth_pass(const Turn& turn);
   /// Face swap and its extension to several faces; more than face_pass finds, at three times its cost.
   std::size_t multi_face_pass(const Turn& turn);
-  /// Edge removal, face swap and vertex removal in one selection: a cluster goes to the kind that gains most.
+  /// Edge removal, face swap and vertex collapse in one selection: a cluster goes to the kind that gains
+  /// most.
   std::size_t mixed_pass(const Turn& turn);
   /// All ways to connect the points round a poor cell: milliseconds a cell.
   std::size_t cluster_pass(const Turn& turn);

@@ -129,7 +129,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
     Cell& cell = writer.cell(slots[i]);
     for (std::size_t k = 0; k < 4; ++k) {
       cell.v[k] = vertices[changed.cell(local).v[k].idx()];
-      writer.set_hook(cell.v[k], slots[i]);
+      writer.set_incident_cell(cell.v[k], slots[i]);
     }
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(slots[i], k);

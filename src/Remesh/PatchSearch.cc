@@ -12,8 +12,8 @@
 #include "Operators/Metrics.hh"
 #include "Operators/Needle.hh"
 #include "Operators/Replace.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Operators/VertexInsertion.hh"
-#include "Operators/VertexRemoval.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Patch.hh"
 #include "Remesh/Polish.hh"
@@ -132,7 +132,7 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
           work.frozen[v.idx()] != 0)
         return false;
       const std::vector<double> nothing_to_lose(mesh.n_cells(), rules.flat);
-      return apply(VertexRemoval<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
+      return apply(VertexCollapse<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
     }
   }
   return false;
@@ -240,7 +240,7 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     pass.winners += done.n_changed;
     if (done.n_changed > 0) {
       run.work.attach(run.mesh, run.policy());
-      if (run.strategy.patch.has_surface) take_again(run.surface, run.mesh, run.policy());
+      if (run.strategy.patch.has_surface) rebuild(run.surface, run.mesh, run.policy());
     }
     if (!done.worst_rose) break;
   }

@@ -114,7 +114,7 @@ void add_all_cells(Lines& lines, const Strategy& strategy) {
   lines.add("bulk",
             say("all cells", std::isfinite(bulk.focus) ? say(" of decision value below ", bulk.focus) : "",
                 " in ", metric_name(bulk.metric), ", ", bulk.iterations, " iterations",
-                bulk.removes_vertices ? ", with vertex removal" : ""));
+                bulk.removes_vertices ? ", with vertex collapse" : ""));
   lines.add("floor", say("cells below ", strategy.floor, " degrees, the input's worst"));
 }
 

@@ -72,7 +72,7 @@ struct HeldCells {
 
 /// Why a cell is below an angle, the strongest reason first. The first four are proofs, for meshes whose
 /// cells go round each edge no more than once; then come bounds that the run met; the last claims nothing.
-enum class Limit {
+enum class StuckReason {
   kFoldedSurface,   ///< an inverted or flat cell that touches a boundary face of unfillable_faces()
   kSurfaceCeiling,  ///< two boundary faces leave too narrow a wedge, or one that a single poor cell has to
                     ///< fill
@@ -85,17 +85,17 @@ enum class Limit {
   kDeviceLost,      ///< by a device that failed
   kNotFound,        ///< nothing better was found, which proves nothing
 };
-inline constexpr std::array<const char*, 10> kLimitNames = {
+inline constexpr std::array<const char*, 10> kStuckReasonNames = {
     "folded surface", "surface ceiling", "input feature", "surface feature", "max cells",
     "time limit",     "cancelled",       "iterations",    "device lost",     "not found"};
 
 /// Whether the reason is that no mesh which keeps the faces has a larger angle there.
-constexpr bool is_proof(Limit limit) { return limit <= Limit::kSurfaceFeature; }
+constexpr bool is_proof(StuckReason limit) { return limit <= StuckReason::kSurfaceFeature; }
 
 struct StuckCell {
   CellHandle cell;
   double degrees = 0;  ///< its smallest dihedral; not positive for an inverted or flat cell
-  Limit limit = Limit::kNotFound;
+  StuckReason reason = StuckReason::kNotFound;
   int n_frozen_vertices = 0;  ///< of its four
   /// Where the limit is a surface ceiling or an input feature, the proof: while the faces at the edge (a, b)
   /// that may not change stay as they are, some cell at this edge has a dihedral of at most `ceiling` degrees
@@ -105,7 +105,7 @@ struct StuckCell {
 };
 
 /// How many cells each limit keeps, in the order of Limit.
-std::array<std::size_t, kLimitNames.size()> count_limits(const std::vector<StuckCell>& cells);
+std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells);
 
 /// What became of vertices and cells in a run. "Old" handles are those of the mesh before it, "new" ones
 /// those of the mesh after it.

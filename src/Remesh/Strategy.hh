@@ -28,7 +28,7 @@ namespace hfr {
 inline constexpr double kLargestGoal = 70.5;
 inline constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
-/// Numbers of cells that a mesh may come to have. Vertex removal keeps to `min`, insertion to `max`; swaps
+/// Numbers of cells that a mesh may come to have. Vertex collapse keeps to `min`, insertion to `max`; swaps
 /// may add or take a few. 0: no bound.
 struct CellBounds {
   std::size_t min = 0;
@@ -44,7 +44,7 @@ struct CellBounds {
   }
 };
 
-/// Whether edge removal, face swap and vertex removal run in turn or compete in one selection.
+/// Whether edge removal, face swap and vertex collapse run in turn or compete in one selection.
 enum class Selection {
   kByKind,
   kMixedOnAngles,  ///< compete where the metric of the stage measures dihedral angles

@@ -33,7 +33,7 @@ std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& 
     for (VertexHandle v : mesh.cell(CellHandle(c)).v) {
       if (!work.frozen[v.idx()] || seen[v.idx()]) continue;  // the surface is frozen for what works inside
       seen[v.idx()] = 1;
-      const SurfaceKind kind = surface.freedom(v).kind;
+      const SurfaceKind kind = surface.motion_constraint(v).kind;
       if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
     }
   }
@@ -106,7 +106,7 @@ std::size_t SurfacePasses<Metric>::split(const Turn& turn) {
     if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
     round.for_committed([&](const auto& plan, VertexHandle middle) {
       const auto [a, b] = ends.at(plan.seed.edge.idx());
-      surface.was_split(a, b, middle, plan.place);
+      surface.on_split(a, b, middle, plan.place);
       run.work.frozen[middle.idx()] = 1;  // for what works inside
     });
     surface.write_labels(run.mesh);
@@ -129,7 +129,7 @@ std::size_t SurfacePasses<Metric>::swaps(const char* name, bool inside, const Tu
   if (!seeds.empty()) {
     Round<Op> round(run.mesh, run.work, {run.policy(), /*check_links=*/true, run.strategy.pass.seed});
     counts = round.run(Op{metric_, run.work.quality, &surface}, seeds);
-    round.for_committed([&](const auto& plan, VertexHandle) { surface.swapped(plan.edge[0], plan.edge[1]); });
+    round.for_committed([&](const auto& plan, VertexHandle) { surface.on_swap(plan.edge[0], plan.edge[1]); });
     surface.write_labels(run.mesh);
   }
   state_.report(name, turn, counts, run.control.seconds() - start);
@@ -183,7 +183,7 @@ std::size_t SurfacePasses<Metric>::collapses(const Turn& turn, const Worklist& l
     Round<Op> round(run.mesh, run.work, {run.policy(), /*check_links=*/true, run.strategy.pass.seed});
     counts = round.run(Op{metric_, run.work.quality, &surface, targets}, seeds);
     round.for_committed(
-        [&](const auto& plan, VertexHandle) { surface.collapsed(plan.seed.vertex, plan.onto); });
+        [&](const auto& plan, VertexHandle) { surface.on_collapse(plan.seed.vertex, plan.onto); });
     surface.write_labels(run.mesh);
   }
   state_.report("surface node", turn, counts, run.control.seconds() - start);
@@ -206,7 +206,7 @@ std::size_t SurfacePasses<Metric>::moves(const Turn& turn, const Worklist& list)
         vertices.size() > std::min(effort.many_moves, run.mesh.n_vertices() / effort.many_moves_share);
     if (many && effort.move_gain > 0) search.gain = effort.move_gain;
     counts += hfr::smooth_pass(run.mesh, run.work, search, metric_, vertices, run.policy());
-    surface.moved(run.mesh, vertices);
+    surface.on_move(run.mesh, vertices);
   }
   state_.report("surface smooth", turn, counts, run.control.seconds() - start);
   return counts.winners;
@@ -246,7 +246,7 @@ RoundCounts SurfacePasses<Metric>::periodic_moves(std::span<const VertexHandle> 
       for (VertexHandle u : v) run.work.changed[u.idx()] = run.work.clock;
     }
     if (!run.work.all_touched) run.work.touch(cells);
-    surface.moved(run.mesh, orbit);
+    surface.on_move(run.mesh, orbit);
   }
   return counts;
 }
@@ -281,7 +281,7 @@ void SurfacePasses<Metric>::restore_volume(const VolumeEffort& effort) {
     const double start = run.control.seconds();
     const RoundCounts counts = hfr::smooth_pass(run.mesh, run.work, SurfaceOffset{&surface, state_.worst()},
                                                 metric_, vertices, run.policy());
-    surface.moved(run.mesh, vertices);
+    surface.on_move(run.mesh, vertices);
     state_.count(Focus{});
     state_.report("surface volume", {.iteration = i}, counts, run.control.seconds() - start);
     if (counts.winners == 0) break;

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "HalfFace/Errors.hh"
-#include "Remesh/Limits.hh"
+#include "Remesh/StuckCells.hh"
 #include "Remesh/Surfaces.hh"
 #include "Surface/HeldCells.hh"
 #include "Surface/SurfaceMesh.hh"
@@ -109,8 +109,8 @@ PartOfSurface::PartOfSurface(const TetMesh& part, const SurfaceMesh* whole,
     : surface_(whole ? std::make_shared<SurfaceMesh>(part, *whole, vertices) : nullptr) {}
 SurfaceMesh* PartOfSurface::get() const { return surface_.get(); }
 
-void take_again(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy) {
-  if (surface) surface->take_again(mesh, policy);
+void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy) {
+  if (surface) surface->rebuild(mesh, policy);
 }
 
 SurfaceCopy::SurfaceCopy(const SurfaceMesh* surface) {
@@ -142,13 +142,13 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
   for (const StuckCell& cell : stuck) cells.push_back(cell.cell);
   const auto held = held_by_features(mesh, cells, degrees, options.surface, options.policy);
   for (std::size_t i = 0; i < stuck.size(); ++i) {
-    Limit& limit = stuck[i].limit;
-    if (limit == Limit::kFoldedSurface) continue;
+    StuckReason& limit = stuck[i].reason;
+    if (limit == StuckReason::kFoldedSurface) continue;
     if (!held[i])
-      limit = Limit::kNotFound;
-    else if (limit != Limit::kInputFeature)
-      limit = Limit::kSurfaceFeature;
-    if (limit != Limit::kInputFeature) stuck[i].ceiling = 180;
+      limit = StuckReason::kNotFound;
+    else if (limit != StuckReason::kInputFeature)
+      limit = StuckReason::kSurfaceFeature;
+    if (limit != StuckReason::kInputFeature) stuck[i].ceiling = 180;
   }
 }
 

@@ -45,7 +45,7 @@ class PartOfSurface {
   std::shared_ptr<SurfaceMesh> surface_;  // shared: a build without surfaces cannot delete one
 };
 /// After patches have been put back: the flat surface as it is now. Does nothing without one.
-void take_again(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
+void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
 
 /// The surface of a run as it is now, to be put back together with the mesh. Nothing while it is frozen.
 class SurfaceCopy {

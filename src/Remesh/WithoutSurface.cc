@@ -4,8 +4,8 @@
 #include "HalfFace/Errors.hh"
 #include "Operators/Metrics.hh"
 #include "Remesh/ImproveTriangles.hh"
-#include "Remesh/Limits.hh"
 #include "Remesh/PassState.hh"
+#include "Remesh/StuckCells.hh"
 #include "Remesh/SurfacePasses.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Surface/FeatureLabels.hh"
@@ -51,7 +51,7 @@ SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
 
 PartOfSurface::PartOfSurface(const TetMesh&, const SurfaceMesh*, std::span<const VertexHandle>) {}
 SurfaceMesh* PartOfSurface::get() const { return nullptr; }
-void take_again(SurfaceMesh*, const TetMesh&, par::Policy) {}
+void rebuild(SurfaceMesh*, const TetMesh&, par::Policy) {}
 
 SurfaceCopy::SurfaceCopy(const SurfaceMesh*) {}
 void SurfaceCopy::put_back(SurfaceMesh*) const {}

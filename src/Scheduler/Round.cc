@@ -50,7 +50,7 @@ class RoundCore::State {
   struct Winner {
     std::uint32_t candidate = 0;
     std::uint32_t rank = 0;
-    VertexHandle new_vertex, removed;
+    VertexHandle new_vertex, removed_vertex;
     std::size_t first_slot = 0;
     std::span<OuterFace> notes;
   };
@@ -112,7 +112,7 @@ class RoundCore::State {
 
  private:
   bool holds_links(const Cavity& cavity) const {
-    return options_.check_links || work_.has_two_pinched(mesh_, cavity.dead);
+    return options_.check_links || work_.has_two_pinched(mesh_, cavity.removed);
   }
 
   /// By the metric as well as by the volumes of the cells.
@@ -120,7 +120,7 @@ class RoundCore::State {
     Scope star;
     if (cavity.moved.is_valid()) round_.scope(plan, star);
     using Cells = std::span<const CellHandle>;
-    const Cells cells = cavity.moved.is_valid() ? Cells(star) : Cells(cavity.dead);
+    const Cells cells = cavity.moved.is_valid() ? Cells(star) : Cells(cavity.removed);
     std::ptrdiff_t more = 0;
     const auto is_invalid = [&](const Tet& t) {
       const auto at = [&](VertexHandle v) {
@@ -134,7 +134,7 @@ class RoundCore::State {
       if (!(work_.quality[c.idx()] > 0)) --more;
       if (cavity.moved.is_valid() && is_invalid(mesh_.cell(c).v)) ++more;
     }
-    for (const Tet& t : cavity.born)
+    for (const Tet& t : cavity.created)
       if (is_invalid(t)) ++more;
     return more > 0 || (work_.holds_damage && hfr::worsens_damage(mesh_, cavity, cells, work_.floor));
   }
@@ -186,10 +186,12 @@ class RoundCore::State {
   /// Gives up the winners that would take away or add too many cells. Serial, over winners in rank order.
   void keep_number_of_cells() {
     const auto loss = [](const PlanBase& plan) {
-      return plan.removes_vertex && plan.n_dead > plan.n_born ? plan.n_dead - plan.n_born : std::size_t{0};
+      return plan.removes_vertex && plan.n_removed > plan.n_created ? plan.n_removed - plan.n_created
+                                                                    : std::size_t{0};
     };
     const auto gain = [](const PlanBase& plan) {
-      return plan.adds_vertex && plan.n_born > plan.n_dead ? plan.n_born - plan.n_dead : std::size_t{0};
+      return plan.adds_vertex && plan.n_created > plan.n_removed ? plan.n_created - plan.n_removed
+                                                                 : std::size_t{0};
     };
     std::size_t lost = 0, gained = 0, n = 0;
     for (const Winner& winner : winners_) {
@@ -250,7 +252,7 @@ class RoundCore::State {
         Winner& winner = winners_[w];
         round_.cavity(plan_of(winner), cavity);
         HFR_ASSERT(disagreement(plan_of(winner), cavity, scopes_[winner.rank]).empty());
-        winner.removed = cavity.removed;
+        winner.removed_vertex = cavity.removed_vertex;
         if (cavity.moved.is_valid()) {
           mesh_.set_point(cavity.moved, cavity.target);
           continue;
@@ -258,7 +260,7 @@ class RoundCore::State {
         count_stars(cavity, winner.new_vertex);
         if (has_labels) note_heirs(cavity, winner.new_vertex, inheritances[static_cast<std::size_t>(part)]);
         std::vector<OuterFace>& mine =
-            room_for(4 * cavity.dead.size(), notes[static_cast<std::size_t>(part)]);
+            room_for(4 * cavity.removed.size(), notes[static_cast<std::size_t>(part)]);
         const std::size_t first = mine.size();
         write_cells(mesh_, cavity, slots_of(w), winner.new_vertex, mine);
         winner.notes = {mine.data() + first, mine.data() + mine.size()};
@@ -295,17 +297,17 @@ class RoundCore::State {
       par::before_shared_access();
       par::atomic(work_.star_size[v.idx()]).fetch_add(n, std::memory_order_relaxed);
     };
-    for (CellHandle c : cavity.dead)
+    for (CellHandle c : cavity.removed)
       for (VertexHandle v : mesh_.cell(c).v) add(v, static_cast<std::uint32_t>(-1));
-    for (const Tet& t : cavity.born)
+    for (const Tet& t : cavity.created)
       for (VertexHandle v : t) add(v == Cavity::kNewVertex ? new_vertex : v, 1);
   }
 
   std::span<const CellHandle> slots_of(std::size_t w) const {
-    return {slots_.data() + winners_[w].first_slot, plan_of(winners_[w]).n_born};
+    return {slots_.data() + winners_[w].first_slot, plan_of(winners_[w]).n_created};
   }
 
-  /// Dead cells' slots first, then the free list from its back, then new ones; freed slots go to its back.
+  /// Removed cells' slots first, then the free list from its back, then new ones; freed slots go to its back.
   /// All in rank order, so slots do not depend on threads.
   void assign_slots() {
     slots_.clear();
@@ -313,25 +315,26 @@ class RoundCore::State {
     freed_.clear();
     std::size_t n_cells = mesh_.n_cells();
     std::vector<std::pair<CellHandle, CellHandle>>
-        fresh;  // a dead cell of the cavity, a slot that it extends to
+        fresh;  // a removed cell of the cavity, a slot that it extends to
     Cavity cavity;
     for (Winner& winner : winners_) {
       const PlanBase& plan = plan_of(winner);
       const auto scope = scopes_[winner.rank];
       winner.first_slot = slots_.size();
-      if (plan.n_dead == 0) continue;
-      HFR_ASSERT(scope.size() == plan.n_dead);
-      for (const CavityPart& p : parts_of(plan.n_dead, plan.n_born, plan.n_dead_first, plan.n_born_first)) {
-        for (std::size_t i = 0; i < p.n_dead; ++i)
-          (i < p.n_born ? slots_ : freed_).push_back(scope[p.first_dead + i]);
-        for (std::size_t i = p.n_dead; i < p.n_born; ++i) {
+      if (plan.n_removed == 0) continue;
+      HFR_ASSERT(scope.size() == plan.n_removed);
+      for (const CavityPart& p :
+           parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first)) {
+        for (std::size_t i = 0; i < p.n_removed; ++i)
+          (i < p.n_created ? slots_ : freed_).push_back(scope[p.first_removed + i]);
+        for (std::size_t i = p.n_removed; i < p.n_created; ++i) {
           if (free.empty()) {
             slots_.push_back(CellHandle(n_cells++));
           } else {
             slots_.push_back(free.back());
             free.pop_back();
           }
-          fresh.emplace_back(scope[p.first_dead], slots_.back());
+          fresh.emplace_back(scope[p.first_removed], slots_.back());
         }
       }
       if (plan.adds_vertex) {
@@ -361,13 +364,13 @@ class RoundCore::State {
     }
   }
 
-  /// Qualities, pending bits, change stamps and hooks (the smallest cell made in this round) of what was
-  /// written.
+  /// Qualities, pending bits, change stamps and incident cells (the smallest cell made in this round) of what
+  /// was written.
   template <class ForWinners>
   void refresh(ForWinners&& for_winners) {
     for_winners([&](std::size_t, std::size_t w) {
       const Winner& winner = winners_[w];
-      const bool moves = plan_of(winner).n_dead == 0;
+      const bool moves = plan_of(winner).n_removed == 0;
       const std::span<const CellHandle> cells = moves ? scopes_[winner.rank] : slots_of(w);
       round_.measure(cells);
       for (CellHandle c : cells) {
@@ -375,34 +378,34 @@ class RoundCore::State {
         work_.claim[c.idx()] = kUnclaimed;
         for (VertexHandle u : mesh_.cell(c).v) {
           store(work_.changed[u.idx()], work_.clock);
-          if (!moves) store(writer_.hook(u), CellHandle());
+          if (!moves) store(writer_.incident_cell(u), CellHandle());
         }
       }
     });
     for_winners([&](std::size_t, std::size_t w) {
-      if (plan_of(winners_[w]).n_dead == 0) return;
+      if (plan_of(winners_[w]).n_removed == 0) return;
       for (CellHandle c : slots_of(w))
-        for (VertexHandle u : mesh_.cell(c).v) lower_hook(u, c);
+        for (VertexHandle u : mesh_.cell(c).v) lower_incident_cell(u, c);
     });
     work_.touch(slots_);
     for (const Winner& winner : winners_) {
-      if (plan_of(winner).n_dead == 0) work_.touch(scopes_[winner.rank]);
+      if (plan_of(winner).n_removed == 0) work_.touch(scopes_[winner.rank]);
     }
     for (CellHandle c : freed_) {
       work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
       work_.claim[c.idx()] = kUnclaimed;
     }
     for (const Winner& winner : winners_)
-      if (winner.removed.is_valid()) writer_.mark_deleted(winner.removed);
+      if (winner.removed_vertex.is_valid()) writer_.mark_deleted(winner.removed_vertex);
   }
 
-  void lower_hook(VertexHandle v, CellHandle c) {
-    const auto hook = par::atomic(writer_.hook(v));
+  void lower_incident_cell(VertexHandle v, CellHandle c) {
+    const auto incident_cell = par::atomic(writer_.incident_cell(v));
     par::before_shared_access();
-    CellHandle now = hook.load(std::memory_order_relaxed);
+    CellHandle now = incident_cell.load(std::memory_order_relaxed);
     while (c < now) {
       par::before_shared_access();
-      if (hook.compare_exchange_weak(now, c, std::memory_order_relaxed)) return;
+      if (incident_cell.compare_exchange_weak(now, c, std::memory_order_relaxed)) return;
     }
   }
 

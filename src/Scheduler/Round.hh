@@ -119,7 +119,7 @@ class Round : private detail::RoundCore {
   std::size_t n_candidates() const override { return candidates_.size(); }
   const PlanBase& candidate(std::size_t i) const override { return candidates_[i]; }
   void scope(const PlanBase& plan, Scope& out) const override { op_->scope(mesh_, own(plan).seed, out); }
-  void cavity(const PlanBase& plan, Cavity& out) const override { op_->commit(mesh_, own(plan), out); }
+  void cavity(const PlanBase& plan, Cavity& out) const override { op_->cavity(mesh_, own(plan), out); }
   Tet identity(const PlanBase& plan) const override { return op_->identity(mesh_, own(plan).seed); }
   double quality(Vec3 a, Vec3 b, Vec3 c, Vec3 d) const override { return op_->metric(a, b, c, d); }
   void measure(std::span<const CellHandle> cells) const override {

@@ -32,7 +32,8 @@ FeatureLabels label_features(TetMesh& mesh, SurfaceOptions options, par::Policy 
     ++labels.edges;
   }
   for (VertexHandle v : mesh.vertices()) {
-    if (!ends[v.idx()] || found.freedom[v.idx()].kind != SurfaceKind::kFixed || all.vertex(v) != 0) continue;
+    if (!ends[v.idx()] || found.motion_constraint[v.idx()].kind != SurfaceKind::kFixed || all.vertex(v) != 0)
+      continue;
     if (all.vertices.empty()) all.vertices.resize(mesh.n_vertices(), 0);
     all.vertices[v.idx()] = labels.corner_label;
     ++labels.corners;

@@ -37,7 +37,7 @@ double diagonal(const Arrays& arrays) {
 /// Planar facets: grown from the largest face that is in none yet, over edges where the surface does not turn
 /// back, as long as all corners lie in the plane.
 std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<Edge>& edges, double tolerance,
-                                       std::vector<Freedom>& planes) {
+                                       std::vector<MotionConstraint>& planes) {
   constexpr std::uint32_t kNone = ~0U;
   const std::size_t n = arrays.faces.size();
   std::vector<Vec3> normal(n);
@@ -57,7 +57,8 @@ std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<E
   for (std::uint32_t seed : order) {
     if (facet[seed] != kNone) continue;
     const auto number = static_cast<std::uint32_t>(planes.size());
-    const Freedom plane{SurfaceKind::kFacet, arrays.points[arrays.faces[seed][0].idx()], unit(normal[seed])};
+    const MotionConstraint plane{SurfaceKind::kFacet, arrays.points[arrays.faces[seed][0].idx()],
+                                 unit(normal[seed])};
     planes.push_back(plane);
     facet[seed] = number;
     front.assign(1, seed);
@@ -192,10 +193,11 @@ struct Incidence {
   bool locked = false;
 };
 
-Freedom freedom_of(std::span<const Vec3> points, VertexHandle v, const Incidence& at,
-                   const SurfaceOptions& options, double tolerance, Freedom plane) {
+MotionConstraint motion_constraint_of(std::span<const Vec3> points, VertexHandle v, const Incidence& at,
+                                      const SurfaceOptions& options, double tolerance,
+                                      MotionConstraint plane) {
   const Vec3 p = points[v.idx()];
-  const Freedom fixed{SurfaceKind::kFixed, p, {}};
+  const MotionConstraint fixed{SurfaceKind::kFixed, p, {}};
   if (at.locked || (at.n_features != 0 && at.n_features != 2)) return fixed;
   if (at.n_features == 0) return plane;
   const Vec3 back = points[at.along[0].idx()];
@@ -204,11 +206,11 @@ Freedom freedom_of(std::span<const Vec3> points, VertexHandle v, const Incidence
   if (options.mode == SurfaceMode::kFlat) {
     const Vec3 r = p - back;
     const bool straight = norm(r - dot(r, axis) * axis) <= tolerance && dot(p - back, ahead - p) > 0;
-    return straight ? Freedom{SurfaceKind::kCurve, back, axis} : fixed;
+    return straight ? MotionConstraint{SurfaceKind::kCurve, back, axis} : fixed;
   }
   const double cosine = dot(unit(p - back), unit(ahead - p));
   return cosine >= std::cos(options.feature_angle * (std::numbers::pi / 180.0))
-             ? Freedom{SurfaceKind::kCurve, p, axis}
+             ? MotionConstraint{SurfaceKind::kCurve, p, axis}
              : fixed;
 }
 
@@ -389,7 +391,7 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
   const std::size_t n_vertices = arrays.points.size();
   Features found;
   found.edges = find_edges(arrays);
-  std::vector<Freedom> planes;
+  std::vector<MotionConstraint> planes;
   if (flat) found.facet = find_facets(arrays, found.edges, tolerance, planes);
 
   std::vector<Incidence> at(n_vertices);
@@ -429,13 +431,14 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
     }
   }
   for (VertexHandle v : arrays.locked_vertices) at[v.idx()].locked = true;
-  found.freedom.resize(n_vertices);
+  found.motion_constraint.resize(n_vertices);
   for (std::size_t i = 0; i < n_vertices; ++i) {
     if (!on_surface[i]) continue;
     const std::uint32_t f = at[i].face;
-    const Freedom plane =
-        flat ? planes[found.facet[f]] : Freedom{SurfaceKind::kFacet, arrays.points[i], normal[f]};
-    found.freedom[i] = freedom_of(arrays.points, VertexHandle(i), at[i], options, tolerance, plane);
+    const MotionConstraint plane =
+        flat ? planes[found.facet[f]] : MotionConstraint{SurfaceKind::kFacet, arrays.points[i], normal[f]};
+    found.motion_constraint[i] =
+        motion_constraint_of(arrays.points, VertexHandle(i), at[i], options, tolerance, plane);
   }
   return found;
 }

@@ -48,7 +48,7 @@ std::vector<Edge> find_edges(const Arrays& arrays);
 struct Features {
   std::vector<Edge> edges;           ///< by ascending vertices
   std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
-  std::vector<Freedom> freedom;      ///< per vertex of the volume
+  std::vector<MotionConstraint> motion_constraint;  ///< per vertex of the volume
 };
 /// `distance`: how far the surface may go in free mode; what turns only within a few times that is too small
 /// to be a feature.

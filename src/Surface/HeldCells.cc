@@ -37,7 +37,7 @@ class View {
     const auto& v = mesh.cell(c).v;
     return std::any_of(v.begin(), v.end(),
                        [&](VertexHandle w) {
-                         const SurfaceKind kind = features_.freedom[w.idx()].kind;
+                         const SurfaceKind kind = features_.motion_constraint[w.idx()].kind;
                          return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
                        }) ||
            std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
@@ -61,7 +61,8 @@ class View {
     const auto& v = arrays_.faces[face];
     for (std::size_t k = 0; k < 3; ++k) {
       const surface::Edge* e = edge(v[k], v[(k + 1) % 3]);
-      if (features_.freedom[v[k].idx()].kind != SurfaceKind::kFixed || !e || !e->feature) return false;
+      if (features_.motion_constraint[v[k].idx()].kind != SurfaceKind::kFixed || !e || !e->feature)
+        return false;
     }
     return true;
   }

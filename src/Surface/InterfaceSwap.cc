@@ -59,30 +59,30 @@ auto InterfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> st
   const Vec3 at_p = mesh.point(p);
   const Vec3 at_q = mesh.point(q);
   const std::array<std::array<VertexHandle, 3>, 2> faces = {{{two.b, two.a, p}, {two.a, two.b, q}}};
-  const std::array<Triangle, 2> dead = {{{b, a, at_p}, {a, b, at_q}}};
-  const std::array<Triangle, 2> born = {{{at_q, at_p, b}, {at_p, at_q, a}}};
-  if (!surface->keeps_shape(faces, dead, born)) return std::nullopt;
+  const std::array<Triangle, 2> removed = {{{b, a, at_p}, {a, b, at_q}}};
+  const std::array<Triangle, 2> created = {{{at_q, at_p, b}, {at_p, at_q, a}}};
+  if (!surface->keeps_shape(faces, removed, created)) return std::nullopt;
   plan.seed = seed;
   plan.edge = {two.a, two.b};
-  plan.n_dead_first = static_cast<std::uint16_t>(n);
-  plan.n_born_first = static_cast<std::uint16_t>(2 * (n - 1));
+  plan.n_removed_first = static_cast<std::uint16_t>(n);
+  plan.n_created_first = static_cast<std::uint16_t>(2 * (n - 1));
   const auto m = static_cast<std::size_t>(two.sides[1].n_cells);
-  plan.n_dead = static_cast<std::uint32_t>(n + m);
-  plan.n_born = static_cast<std::uint32_t>(2 * (n + m - 2));
+  plan.n_removed = static_cast<std::uint32_t>(n + m);
+  plan.n_created = static_cast<std::uint32_t>(2 * (n + m - 2));
   return plan;
 }
 
 template <class Metric>
-void InterfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void InterfaceSwap<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   TwoSidedRing two;
   gather(mesh, plan.seed, two);
   out.clear();
   out.surface_is_held = true;
-  out.n_dead_first = plan.n_dead_first;
-  out.n_born_first = plan.n_born_first;
+  out.n_removed_first = plan.n_removed_first;
+  out.n_created_first = plan.n_created_first;
   for (std::size_t s = 0; s < 2; ++s) {
     const EdgeFan& side = two.sides[s];
-    for (CellHandle c : side) out.dead.push_back(c);
+    for (CellHandle c : side) out.removed.push_back(c);
     append_ring_cells(side.vertices, two.a, two.b, side.n_cells, plan.apex[s].data(), out);
   }
 }

@@ -15,7 +15,7 @@ namespace hfr {
 /// Swap of an edge (a, b) of the interface between two regions, on both sides in one step: the cells round it
 /// are two open rings that share the vertices p and q of the two interface faces. Each ring is triangulated
 /// anew as in SurfaceSwap, and both triangulations have the side (p, q), so that the interface faces at (a,
-/// b) give way to those at (p, q), and every born cell lies in the region of its ring. A side of a single
+/// b) give way to those at (p, q), and every created cell lies in the region of its ring. A side of a single
 /// cell is left alone: it would have to change its region.
 template <class Metric>
 struct InterfaceSwap {
@@ -35,7 +35,7 @@ struct InterfaceSwap {
 
   void scope(const TetMesh& mesh, Seed seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, Seed seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, Seed seed) const;
 };
 

@@ -20,7 +20,7 @@ struct Member {
   Vec3 place;
   std::vector<HalfFaceHandle> link;
   std::vector<std::array<VertexHandle, 3>> faces;  // seen from outside
-  std::vector<Triangle> dead;
+  std::vector<Triangle> removed;
 };
 
 Triangle with(Triangle t, const std::array<VertexHandle, 3>& f, VertexHandle v, Vec3 x) {
@@ -48,7 +48,7 @@ std::optional<std::vector<Member>> gather(const TetMesh& mesh, std::span<const V
         if (k == star.corners[i] || !mesh.is_boundary(halfface_of(c, k))) continue;
         const auto f = mesh.halfface_vertices(halfface_of(c, k));
         member.faces.push_back({f[0], f[2], f[1]});
-        member.dead.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
+        member.removed.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
       }
     }
   }
@@ -59,7 +59,7 @@ std::optional<std::vector<Member>> gather(const TetMesh& mesh, std::span<const V
 
 Vec3 area_normal(const Member& member) {
   Vec3 sum;
-  for (const Triangle& t : member.dead) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
+  for (const Triangle& t : member.removed) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
   const double length = norm(sum);  // by division: along an axis it is that axis to the last bit
   return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : sum;
 }
@@ -69,14 +69,14 @@ Vec3 area_normal(const Member& member) {
 template <class Metric>
 auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const VertexHandle> orbit) const
     -> std::optional<Plan> {
-  const Freedom& freedom = surface->freedom(orbit[0]);
-  const bool on_curve = freedom.kind == SurfaceKind::kCurve;
-  if (!on_curve && freedom.kind != SurfaceKind::kFacet) return std::nullopt;
+  const MotionConstraint& motion_constraint = surface->motion_constraint(orbit[0]);
+  const bool on_curve = motion_constraint.kind == SurfaceKind::kCurve;
+  if (!on_curve && motion_constraint.kind != SurfaceKind::kFacet) return std::nullopt;
   const auto members = gather(mesh, orbit);
   if (!members) return std::nullopt;
   const Vec3 origin = members->front().place;
   const bool in_free = surface->options().mode == SurfaceMode::kFree;
-  const Vec3 axis = in_free && !on_curve ? area_normal(members->front()) : freedom.axis;
+  const Vec3 axis = in_free && !on_curve ? area_normal(members->front()) : motion_constraint.axis;
   if (axis == Vec3{}) return std::nullopt;
 
   std::ptrdiff_t n_invalid = 0;
@@ -160,10 +160,10 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
         n_left += quality_with(mesh, cell_of(h), member.v, plan.targets[k], metric) > 0 ? 0 : 1;
         left.add(mesh, cell_of(h), member.v, plan.targets[k]);
       }
-      std::vector<Triangle> born;
+      std::vector<Triangle> created;
       for (std::size_t f = 0; f < member.faces.size(); ++f)
-        born.push_back(with(member.dead[f], member.faces[f], member.v, plan.targets[k]));
-      keeps = surface->keeps_shape(member.faces, member.dead, born);
+        created.push_back(with(member.removed[f], member.faces[f], member.v, plan.targets[k]));
+      keeps = surface->keeps_shape(member.faces, member.removed, created);
     }
     if (keeps && n_left <= n_invalid && damage.may_become(left, floor)) return plan;
   }

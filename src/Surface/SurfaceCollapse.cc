@@ -20,10 +20,10 @@ struct Cluster {
   std::size_t n_first = 0;                         // of the smaller region, where there are two
 };
 
-/// A vertex that has only one or two cells of the star may have none left that is born anew; the hook of
-/// such a vertex would point nowhere. So the cells behind those that belong to it come along. Which these are
-/// must not depend on the target: all cells behind link faces at vertices with at most two cells in the star.
-/// No cells where they are too many, or of more than two regions.
+/// A vertex that has only one or two cells of the star may have none left that is created anew; the incident
+/// cell of such a vertex would point nowhere. So the cells behind those that belong to it come along. Which
+/// these are must not depend on the target: all cells behind link faces at vertices with at most two cells in
+/// the star. No cells where they are too many, or of more than two regions.
 void gather_cluster(const TetMesh& mesh, VertexHandle v, Cluster& out) {
   out.cells.clear();
   out.n_first = 0;
@@ -122,16 +122,16 @@ bool SurfaceCollapse<Metric>::may_gain(const TetMesh& mesh, VertexHandle v) cons
   FixedVector<VertexHandle, 3 * kMaxFaces> asked;
   const auto gains = [&](VertexHandle onto) {
     const Vec3 p = mesh.point(onto);
-    bool has_born = false;
+    bool has_created = false;
     for (std::size_t k = 0; k < n; ++k) {
       const auto& f = link[k];
       if (has(f, onto)) continue;
-      has_born = true;
+      has_created = true;
       if (metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p) > old_worst) continue;
       std::swap(link[0], link[k]);  // a face that has ended one search is likely to end the next
       return false;
     }
-    return has_born;
+    return has_created;
   };
   for (const auto& f : faces) {
     for (VertexHandle w : f) {
@@ -177,23 +177,23 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
     const VertexHandle onto = targets[i];
     const Vec3 p = mesh.point(onto);
     double worst = floor;
-    std::uint32_t n_born = 0;
+    std::uint32_t n_created = 0;
     for (std::size_t k = 0; k < n && worst > plan.new_worst; ++k) {
       const auto f = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
       if (has(f, onto)) continue;
-      ++n_born;
+      ++n_created;
       worst = std::min(worst, metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p));
     }
-    if (!(worst > plan.new_worst) || n_born == 0) continue;
-    FixedVector<Triangle, kMaxFaces> dead, born;
+    if (!(worst > plan.new_worst) || n_created == 0) continue;
+    FixedVector<Triangle, kMaxFaces> removed, created;
     bool meets_twice = false;  // an inner face (v, onto, x) whose edge (v, x) is on the surface
     for (const auto& f : faces) {
       Triangle t = {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
-      dead.push_back(t);
+      removed.push_back(t);
       if (has(f, onto)) continue;
       for (std::size_t k = 0; k < 3; ++k)
         if (f[k] == v) t[k] = p;
-      born.push_back(t);
+      created.push_back(t);
     }
     for (std::size_t k = 0; k < n && !meets_twice; ++k) {
       const auto f = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
@@ -209,41 +209,41 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
         meets_twice = meets_twice || (n_with_x > 0 && n_with_both == 0);
       }
     }
-    if (meets_twice || !surface->keeps_shape(faces, dead, born)) continue;
+    if (meets_twice || !surface->keeps_shape(faces, removed, created)) continue;
     plan.new_worst = worst;
     plan.onto = onto;
-    plan.n_born = n_born + static_cast<std::uint32_t>(n_behind);
+    plan.n_created = n_created + static_cast<std::uint32_t>(n_behind);
   }
   if (!plan.onto.is_valid()) return std::nullopt;
-  plan.n_dead = static_cast<std::uint32_t>(cells.size());
-  plan.n_dead_first = static_cast<std::uint16_t>(cluster.n_first);
+  plan.n_removed = static_cast<std::uint32_t>(cells.size());
+  plan.n_removed_first = static_cast<std::uint16_t>(cluster.n_first);
   for (std::size_t i = 0; i < cluster.n_first; ++i)
     if (cluster.corner[i] == 4 ||
         !has(mesh.halfface_vertices(halfface_of(cells[i], cluster.corner[i])), plan.onto))
-      ++plan.n_born_first;
+      ++plan.n_created_first;
   plan.removes_vertex = true;
   plan.seed = seed;
   return plan;
 }
 
 template <class Metric>
-void SurfaceCollapse<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void SurfaceCollapse<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   Cluster cluster;
   gather_cluster(mesh, plan.seed.vertex, cluster);
   out.clear();
   out.surface_is_held = true;
-  out.removed = plan.seed.vertex;
-  out.n_dead_first = plan.n_dead_first;
-  out.n_born_first = plan.n_born_first;
+  out.removed_vertex = plan.seed.vertex;
+  out.n_removed_first = plan.n_removed_first;
+  out.n_created_first = plan.n_created_first;
   for (std::size_t i = 0; i < cluster.cells.size(); ++i) {
     const CellHandle c = cluster.cells[i];
-    out.dead.push_back(c);
+    out.removed.push_back(c);
     if (cluster.corner[i] == 4) {
-      out.born.push_back(mesh.cell(c).v);
+      out.created.push_back(mesh.cell(c).v);
       continue;
     }
     const auto f = mesh.halfface_vertices(halfface_of(c, cluster.corner[i]));
-    if (!has(f, plan.onto)) out.born.push_back({f[0], f[1], f[2], plan.onto});
+    if (!has(f, plan.onto)) out.created.push_back({f[0], f[1], f[2], plan.onto});
   }
 }
 

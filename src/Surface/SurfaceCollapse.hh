@@ -12,9 +12,10 @@
 
 namespace hfr {
 
-/// Surface vertex removal: collapses a vertex of the surface along the edge of the surface that makes the
+/// Surface vertex collapse: collapses a vertex of the surface along the edge of the surface that makes the
 /// best cells of its star. A vertex of an interface takes the cells of both regions along, in one step. Cells
-/// behind the star that a vertex would otherwise lose sight of belong to the scope and are born as they were.
+/// behind the star that a vertex would otherwise lose sight of belong to the scope and are created as they
+/// were.
 template <class Metric>
 struct SurfaceCollapse {
   /// The vertex, and where its legal targets stand in `targets`; see SurfaceMesh::collapse_targets().
@@ -38,7 +39,7 @@ struct SurfaceCollapse {
 
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh&, const Seed& seed) const {
     return {seed.vertex, VertexHandle(), VertexHandle(), VertexHandle()};
   }

@@ -147,7 +147,7 @@ void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted
   surface::Features features = surface::find_features(arrays, options, hausdorff);
   build(arrays, features);
   if (!flat()) take_shape(arrays, features);
-  freedom = std::move(features.freedom);
+  motion_constraint = std::move(features.motion_constraint);
 }
 
 namespace {
@@ -174,7 +174,7 @@ SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par
   impl_->bind(surface::periodic_orbits(arrays, options));
 }
 
-void SurfaceMesh::take_again(const TetMesh& mesh, par::Policy policy) {
+void SurfaceMesh::rebuild(const TetMesh& mesh, par::Policy policy) {
   HFR_ASSERT(impl_->flat() && !impl_->alone && impl_->gone.empty() && impl_->fresh.empty());
   const SurfaceOptions options = impl_->options;
   SurfaceMesh again(mesh, options, policy);
@@ -191,15 +191,15 @@ void SurfaceMesh::take_back(const SurfaceMesh& copied) { *impl_ = *copied.impl_;
 
 void SurfaceMesh::Impl::bind(std::vector<std::vector<VertexHandle>> found) {
   orbits = std::move(found);
-  if (!orbits.empty()) orbit_of.assign(freedom.size(), kNoOrbit);
+  if (!orbits.empty()) orbit_of.assign(motion_constraint.size(), kNoOrbit);
   for (std::uint32_t i = 0; i < orbits.size(); ++i) {
-    const SurfaceKind kind = freedom[orbits[i][0].idx()].kind;
+    const SurfaceKind kind = motion_constraint[orbits[i][0].idx()].kind;
     const bool alike = std::all_of(orbits[i].begin(), orbits[i].end(),
-                                   [&](VertexHandle v) { return freedom[v.idx()].kind == kind; });
+                                   [&](VertexHandle v) { return motion_constraint[v.idx()].kind == kind; });
     for (VertexHandle v : orbits[i]) {
       orbit_of[v.idx()] = i;
       const auto& p = om.point(first[v.idx()]);
-      if (!alike) freedom[v.idx()] = {SurfaceKind::kFixed, {p[0], p[1], p[2]}, {}};
+      if (!alike) motion_constraint[v.idx()] = {SurfaceKind::kFixed, {p[0], p[1], p[2]}, {}};
     }
   }
 }
@@ -231,13 +231,14 @@ std::size_t SurfaceMesh::n_feature_edges() const {
       [&](OmEdge e) { return !impl_->om.status(e).deleted() && impl_->om.status(e).feature(); }));
 }
 std::size_t SurfaceMesh::n_vertices(SurfaceKind kind) const {
-  return static_cast<std::size_t>(std::count_if(impl_->freedom.begin(), impl_->freedom.end(),
-                                                [&](const Freedom& f) { return f.kind == kind; }));
+  return static_cast<std::size_t>(std::count_if(impl_->motion_constraint.begin(),
+                                                impl_->motion_constraint.end(),
+                                                [&](const MotionConstraint& f) { return f.kind == kind; }));
 }
 
-const Freedom& SurfaceMesh::freedom(VertexHandle v) const {
-  static const Freedom kInner;
-  return v.idx() < impl_->freedom.size() ? impl_->freedom[v.idx()] : kInner;
+const MotionConstraint& SurfaceMesh::motion_constraint(VertexHandle v) const {
+  static const MotionConstraint kInner;
+  return v.idx() < impl_->motion_constraint.size() ? impl_->motion_constraint[v.idx()] : kInner;
 }
 
 bool SurfaceMesh::has_interfaces() const { return impl_->has_interfaces; }
@@ -333,7 +334,7 @@ bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
 }
 
 void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& out) {
-  const SurfaceKind kind = freedom(v).kind;
+  const SurfaceKind kind = motion_constraint(v).kind;
   if ((kind != SurfaceKind::kFacet && kind != SurfaceKind::kCurve) || !impl_->has_one_sheet(v)) return;
   Om& om = impl_->om;
   const OmVertex from = impl_->first[v.idx()];

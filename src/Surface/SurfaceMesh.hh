@@ -25,7 +25,7 @@ enum class SurfaceKind : std::uint8_t {
 /// Where a vertex of the surface may go: the plane through `anchor` with the normal `axis`, or the line
 /// through it in the direction of `axis`, both of length 1. In free mode axis is that of the input near the
 /// vertex's first place and only says which side is out.
-struct Freedom {
+struct MotionConstraint {
   SurfaceKind kind = SurfaceKind::kInside;
   Vec3 anchor, axis;
 };
@@ -66,7 +66,7 @@ class SurfaceMesh {
   std::size_t n_edges() const;
   std::size_t n_feature_edges() const;
   std::size_t n_vertices(SurfaceKind kind) const;
-  const Freedom& freedom(VertexHandle v) const;
+  const MotionConstraint& motion_constraint(VertexHandle v) const;
   bool has_interfaces() const;
   /// The vertices that move with v by the same step, itself included; none where it moves alone. See
   /// SurfaceOptions::periodic.
@@ -109,23 +109,23 @@ class SurfaceMesh {
   /// By how far the whole surface would have to move outwards for the volume to be what it was; at most a
   /// tenth of hausdorff() either way.
   double outward() const;
-  /// May the triangles `born` replace `dead` (vertices in outward order; a vertex that is moved or new stands
-  /// with its new place in `born`)? Orientation and normals, and in free mode the distance from the input
-  /// and of the input from them.
-  bool keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_dead, std::span<const Triangle> dead,
-                   std::span<const Triangle> born) const;
+  /// May the triangles `created` replace `removed` (vertices in outward order; a vertex that is moved or new
+  /// stands with its new place in `created`)? Orientation and normals, and in free mode the distance from the
+  /// input and of the input from them.
+  bool keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_removed,
+                   std::span<const Triangle> removed, std::span<const Triangle> created) const;
 
   // --- what has happened ---
   /// Vertices of the list may have been moved.
-  void moved(const TetMesh& mesh, std::span<const VertexHandle> vertices);
-  void moved(VertexHandle v, Vec3 place);
-  void swapped(VertexHandle a, VertexHandle b);
-  void collapsed(VertexHandle v, VertexHandle onto);
+  void on_move(const TetMesh& mesh, std::span<const VertexHandle> vertices);
+  void on_move(VertexHandle v, Vec3 place);
+  void on_swap(VertexHandle a, VertexHandle b);
+  void on_collapse(VertexHandle v, VertexHandle onto);
   /// The edge from a to b has got the vertex `middle`.
-  void was_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place);
+  void on_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place);
   /// In flat mode, after cells have been replaced without a word: takes the surface as it is now. Labels must
   /// have been written.
-  void take_again(const TetMesh& mesh, par::Policy policy = {});
+  void rebuild(const TetMesh& mesh, par::Policy policy = {});
   /// The surface as it is now, for take_back().
   std::unique_ptr<SurfaceMesh> copy() const;
   /// The surface as it was when it was copied, after the volume has been put back to what it was then.

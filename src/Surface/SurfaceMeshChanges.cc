@@ -63,11 +63,11 @@ void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among, std::vec
   }
 }
 
-void SurfaceMesh::moved(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
-  for (VertexHandle v : vertices) moved(v, mesh.point(v));
+void SurfaceMesh::on_move(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
+  for (VertexHandle v : vertices) on_move(v, mesh.point(v));
 }
 
-void SurfaceMesh::moved(VertexHandle v, Vec3 x) {
+void SurfaceMesh::on_move(VertexHandle v, Vec3 x) {
   const Eigen::Vector3d place = eigen(x);
   impl_->for_sheets(v, [&](OmVertex w) {
     if (impl_->om.point(w) == place) return;
@@ -79,7 +79,7 @@ void SurfaceMesh::moved(VertexHandle v, Vec3 x) {
   });
 }
 
-void SurfaceMesh::swapped(VertexHandle a, VertexHandle b) {
+void SurfaceMesh::on_swap(VertexHandle a, VertexHandle b) {
   Om& om = impl_->om;
   const OmHalfedge h = impl_->find(a, b);
   HFR_ASSERT(h.is_valid() && om.is_flip_ok(om.edge_handle(h)));
@@ -92,7 +92,7 @@ void SurfaceMesh::swapped(VertexHandle a, VertexHandle b) {
   if (!impl_->flat()) impl_->share_samples(both, {});
 }
 
-void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
+void SurfaceMesh::on_collapse(VertexHandle v, VertexHandle onto) {
   Om& om = impl_->om;
   const OmHalfedge h = impl_->find(v, onto);
   HFR_ASSERT(h.is_valid() && om.is_collapse_ok(h));
@@ -129,10 +129,10 @@ void SurfaceMesh::collapsed(VertexHandle v, VertexHandle onto) {
   for (OmFace f : round) impl_->note_fresh(f);
   if (!impl_->flat()) impl_->share_samples(round, std::move(samples));
   impl_->first[v.idx()] = OmVertex();
-  impl_->freedom[v.idx()] = {};
+  impl_->motion_constraint[v.idx()] = {};
 }
 
-void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place) {
+void SurfaceMesh::on_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place) {
   Om& om = impl_->om;
   OmHalfedge h = impl_->find(a, b);
   HFR_ASSERT(h.is_valid());
@@ -147,11 +147,13 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
     const auto& p = om.point(v);
     return Vec3{p[0], p[1], p[2]};
   };
-  Freedom freedom{SurfaceKind::kFacet, place, unit(scaled_normal(impl_->corners(halves[0])))};
-  if (feature) freedom = {SurfaceKind::kCurve, place, unit(place_of(ends[1]) - place_of(ends[0]))};
+  MotionConstraint motion_constraint{SurfaceKind::kFacet, place,
+                                     unit(scaled_normal(impl_->corners(halves[0])))};
+  if (feature) motion_constraint = {SurfaceKind::kCurve, place, unit(place_of(ends[1]) - place_of(ends[0]))};
   // In flat mode the middle lies where both ends may go, or in the plane that one of them names.
   for (VertexHandle v : {a, b})
-    if (impl_->flat() && impl_->freedom[v.idx()].kind == freedom.kind) freedom = impl_->freedom[v.idx()];
+    if (impl_->flat() && impl_->motion_constraint[v.idx()].kind == motion_constraint.kind)
+      motion_constraint = impl_->motion_constraint[v.idx()];
 
   for (OmFace f : halves) impl_->note_gone(f);
   impl_->account(halves, -1);
@@ -177,8 +179,8 @@ void SurfaceMesh::was_split(VertexHandle a, VertexHandle b, VertexHandle middle,
     const OmVertex to = om.to_vertex_handle(*it);
     om.status(om.edge_handle(*it)).set_feature(feature && (to == ends[0] || to == ends[1]));
   }
-  impl_->freedom.resize(std::max<std::size_t>(impl_->freedom.size(), middle.idx() + 1));
-  impl_->freedom[middle.idx()] = freedom;
+  impl_->motion_constraint.resize(std::max<std::size_t>(impl_->motion_constraint.size(), middle.idx() + 1));
+  impl_->motion_constraint[middle.idx()] = motion_constraint;
   if (impl_->flat()) return;
   impl_->share_samples(round, std::move(samples));
 }

@@ -86,7 +86,7 @@ struct SurfaceMesh::Impl {
   std::vector<OmVertex> first;                   // OpenMesh's per vertex of the volume; invalid inside
   std::vector<std::pair<Index, OmVertex>> more;  // where there are several, ascending
   std::vector<FaceRecord> faces;
-  std::vector<Freedom> freedom;
+  std::vector<MotionConstraint> motion_constraint;
   std::shared_ptr<const InputSurface> shape, curves;  // free mode
   std::vector<std::array<VertexHandle, 3>> gone;      // labelled faces that are no more
   std::set<int> fresh;                                // labelled faces with other vertices
@@ -174,10 +174,10 @@ struct SurfaceMesh::Impl {
 
   /// Triangles of the input that may be the nearest ones.
   using Guesses = FixedVector<std::uint32_t, 64>;
-  bool are_near(std::span<const Triangle> born, std::span<const Triangle> dead, Guesses& beneath,
+  bool are_near(std::span<const Triangle> created, std::span<const Triangle> removed, Guesses& beneath,
                 double distance) const;
-  bool turn_little(std::span<const Triangle> born, std::span<const Triangle> dead, const Guesses& beneath,
-                   double distance) const;
+  bool turn_little(std::span<const Triangle> created, std::span<const Triangle> removed,
+                   const Guesses& beneath, double distance) const;
 
   OmVertex add_vertex(VertexHandle v, Vec3 p);
   /// Before the vertices of a face change.
@@ -201,8 +201,8 @@ struct SurfaceMesh::Impl {
   void account(const std::vector<OmFace>& some, double sign);
   /// True when a volume that has lost or gained much already would lose or gain more.
   static bool is_too_much(const Region& region, double six_more, double share);
-  bool keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_dead, std::span<const Triangle> dead,
-                     std::span<const Triangle> born) const;
+  bool keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_removed,
+                     std::span<const Triangle> removed, std::span<const Triangle> created) const;
   int cuts_of(const Triangle& t) const {
     const double longest2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
     const double cuts = std::ceil(std::sqrt(longest2) / spacing);

@@ -16,7 +16,7 @@ SurfaceMesh::SurfaceMesh(const TetMesh& part, const SurfaceMesh& whole,
   surface::Features features;
   features.edges = surface::find_edges(arrays);
   features.facet.resize(arrays.faces.size());
-  features.freedom.resize(part.n_vertices());
+  features.motion_constraint.resize(part.n_vertices());
   const auto n_facets = static_cast<std::uint32_t>(there.om.n_faces());  // at most
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
     const auto& [a, b, c] = arrays.faces[i];
@@ -39,14 +39,14 @@ SurfaceMesh::SurfaceMesh(const TetMesh& part, const SurfaceMesh& whole,
   }
   for (std::size_t i = 0; i < arrays.faces.size(); ++i)
     for (VertexHandle v : arrays.faces[i])
-      if (features.freedom[v.idx()].kind == SurfaceKind::kInside)
-        features.freedom[v.idx()] = whole.freedom(whole_of(v));
+      if (features.motion_constraint[v.idx()].kind == SurfaceKind::kInside)
+        features.motion_constraint[v.idx()] = whole.motion_constraint(whole_of(v));
   for (std::size_t i = 0; i < arrays.faces.size(); ++i)
     for (VertexHandle v : arrays.faces[i])
       if (arrays.fixed[i] || !there.has_one_sheet(whole_of(v)) || !whole.orbit(whole_of(v)).empty())
-        features.freedom[v.idx()] = {SurfaceKind::kFixed, part.point(v), {}};
+        features.motion_constraint[v.idx()] = {SurfaceKind::kFixed, part.point(v), {}};
   impl_->build(arrays, features);
-  impl_->freedom = std::move(features.freedom);
+  impl_->motion_constraint = std::move(features.motion_constraint);
 }
 
 }  // namespace hfr

@@ -26,7 +26,7 @@ constexpr std::size_t kMostRegions = 16;
 }  // namespace
 
 Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
-  const Freedom& f = freedom(v);
+  const MotionConstraint& f = motion_constraint(v);
   const bool on_curve = f.kind == SurfaceKind::kCurve;
   if (f.kind == SurfaceKind::kInside) return x;
   if (f.kind == SurfaceKind::kFixed) return f.anchor;
@@ -37,7 +37,7 @@ Vec3 SurfaceMesh::project(VertexHandle v, Vec3 x) const {
 
 /// Are points spread over the new triangles no further than `distance` from the input? What the new triangles
 /// have in common with the old ones has been looked at before.
-bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const Triangle> dead,
+bool SurfaceMesh::Impl::are_near(std::span<const Triangle> created, std::span<const Triangle> removed,
                                  Guesses& beneath, double distance) const {
   Guesses found;  // beneath these triangles, too
   const auto is_near = [&](Vec3 x) {
@@ -57,21 +57,21 @@ bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const
     return (t[0] == p && t[1] == q) || (t[1] == p && t[2] == q) || (t[2] == p && t[0] == q);
   };
   const auto is_old = [&](Vec3 x) {
-    return std::any_of(dead.begin(), dead.end(),
+    return std::any_of(removed.begin(), removed.end(),
                        [&](const Triangle& d) { return d[0] == x || d[1] == x || d[2] == x; });
   };
-  for (std::size_t i = 0; i < born.size(); ++i) {
-    const Triangle& t = born[i];
+  for (std::size_t i = 0; i < created.size(); ++i) {
+    const Triangle& t = created[i];
     const int cuts = cuts_of(t);
     if (!surface::all_inner_points(t, cuts, is_near)) return false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 p = t[k];
       const Vec3 q = t[(k + 1) % 3];
       if (!is_old(p) && !is_near(p)) return false;
-      const bool seen =
-          std::any_of(born.begin(), born.begin() + static_cast<std::ptrdiff_t>(i),
-                      [&](const Triangle& other) { return has_edge(other, q, p); }) ||
-          std::any_of(dead.begin(), dead.end(), [&](const Triangle& old) { return has_edge(old, p, q); });
+      const bool seen = std::any_of(created.begin(), created.begin() + static_cast<std::ptrdiff_t>(i),
+                                    [&](const Triangle& other) { return has_edge(other, q, p); }) ||
+                        std::any_of(removed.begin(), removed.end(),
+                                    [&](const Triangle& old) { return has_edge(old, p, q); });
       for (int j = 1; j < cuts && !seen; ++j)
         if (!is_near(p + (1.0 * j / cuts) * (q - p))) return false;
     }
@@ -82,7 +82,7 @@ bool SurfaceMesh::Impl::are_near(std::span<const Triangle> born, std::span<const
 /// Are the normals of the new triangles near those of the input no further than `distance` beneath them? The
 /// normals of triangles no larger than noise say little, but they must not turn back. What is worse already
 /// must not get worse still: a surface that folds over has to be mended somehow.
-bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> born, std::span<const Triangle> dead,
+bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> created, std::span<const Triangle> removed,
                                     const Guesses& beneath, double distance) const {
   const auto turned = [&](const Triangle& t) {  // cosine of the angle with the input beneath
     const Vec3 n = unit(scaled_normal(t));
@@ -91,34 +91,34 @@ bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> born, std::span<co
     return hit.distance <= distance ? dot(n, shape->normal(hit.item)) : -1.0;
   };
   const double bound = std::cos(options.normal_angle * kDegree);
-  double worst_dead = 2;  // not known yet
-  for (const Triangle& t : born) {
+  double worst_removed = 2;  // not known yet
+  for (const Triangle& t : created) {
     const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
     const bool small = size2 < 4 * detail * detail;
     const double now = turned(t);
     if (now >= (small ? kNotBack : bound)) continue;
-    if (worst_dead == 2)
-      for (const Triangle& d : dead) worst_dead = std::min(worst_dead, turned(d));
-    if (now < worst_dead) return false;
+    if (worst_removed == 2)
+      for (const Triangle& d : removed) worst_removed = std::min(worst_removed, turned(d));
+    if (now < worst_removed) return false;
   }
   return true;
 }
 
-bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_dead,
-                              std::span<const Triangle> dead, std::span<const Triangle> born) const {
+bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_removed,
+                              std::span<const Triangle> removed, std::span<const Triangle> created) const {
   constexpr double kSameSide = 0.5;
-  for (const Triangle& t : born) {
+  for (const Triangle& t : created) {
     const Vec3 n = unit(scaled_normal(t));
     if (n == Vec3{}) return false;
     if (!impl_->flat()) continue;
-    const bool found = std::any_of(dead.begin(), dead.end(), [&](const Triangle& d) {
+    const bool found = std::any_of(removed.begin(), removed.end(), [&](const Triangle& d) {
       return dot(n, unit(scaled_normal(d))) > kSameSide;
     });
     if (!found) return false;
   }
   if (impl_->flat()) return true;
 
-  if (!impl_->keeps_regions(faces_dead, dead, born)) return false;
+  if (!impl_->keeps_regions(faces_removed, removed, created)) return false;
 
   // What was beneath the old triangles is likely to be beneath the new ones.
   Impl::Guesses beneath;
@@ -126,19 +126,19 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   std::size_t last = 0;                        // the triangle that was near
   thread_local std::vector<NearTriangle> now;  // of this thread, so that it is allocated once
   now.clear();
-  for (const Triangle& t : born) now.emplace_back(t);
-  for (std::size_t i = 0; i < faces_dead.size(); ++i) {
-    const OmFace face = impl_->find(faces_dead[i]);
+  for (const Triangle& t : created) now.emplace_back(t);
+  for (std::size_t i = 0; i < faces_removed.size(); ++i) {
+    const OmFace face = impl_->find(faces_removed[i]);
     if (!face.is_valid()) return false;
     const FaceRecord& record = impl_->record(face);
     if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
       beneath.push_back(record.beneath);
-    if (born.size() == faces_dead.size()) {
+    if (created.size() == faces_removed.size()) {
       // Each point of the face as it was told last, which a move that has not been told yet may have changed,
       // has one of the new triangle as near as the furthest that a corner goes.
       double step2 = 0;
       for (std::size_t k = 0; k < 3; ++k)
-        step2 = std::max(step2, norm2(born[i][k] - point(faces_dead[i][k])));
+        step2 = std::max(step2, norm2(created[i][k] - point(faces_removed[i][k])));
       if (record.reach + std::sqrt(step2) <= kSurely * h) continue;
       last = i;
     }
@@ -150,7 +150,8 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
       last = static_cast<std::size_t>(at - now.begin());
     }
   }
-  return impl_->are_near(born, dead, beneath, h) && impl_->turn_little(born, dead, beneath, 2 * h);
+  return impl_->are_near(created, removed, beneath, h) &&
+         impl_->turn_little(created, removed, beneath, 2 * h);
 }
 
 bool SurfaceMesh::Impl::is_too_much(const Region& region, double six_more, double share) {
@@ -159,14 +160,15 @@ bool SurfaceMesh::Impl::is_too_much(const Region& region, double six_more, doubl
          std::abs(six_more) > 1e-6 * enough;
 }
 
-/// Dead and born triangles correspond one to one where they bound different regions.
-bool SurfaceMesh::Impl::keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_dead,
-                                      std::span<const Triangle> dead, std::span<const Triangle> born) const {
-  if (is_open || dead.empty()) return true;
+/// Removed and created triangles correspond one to one where they bound different regions.
+bool SurfaceMesh::Impl::keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_removed,
+                                      std::span<const Triangle> removed,
+                                      std::span<const Triangle> created) const {
+  if (is_open || removed.empty()) return true;
   if (regions.size() == 1) {
     double change = 0;
-    for (const Triangle& t : born) change += surface::six_volume(t, dead[0][0]);
-    for (const Triangle& t : dead) change -= surface::six_volume(t, dead[0][0]);
+    for (const Triangle& t : created) change += surface::six_volume(t, removed[0][0]);
+    for (const Triangle& t : removed) change -= surface::six_volume(t, removed[0][0]);
     return !is_too_much({six_volume, six_gain}, change, kVolume);
   }
   double outer = 0;
@@ -190,16 +192,16 @@ bool SurfaceMesh::Impl::keeps_regions(std::span<const std::array<VertexHandle, 3
     const OmFace f = find(like);
     if (!f.is_valid()) return;
     const FaceRecord& of_f = record(f);
-    const double volume = sign * surface::six_volume(t, dead[0][0]);
+    const double volume = sign * surface::six_volume(t, removed[0][0]);
     note(of_f.sides[0], volume);
     if (of_f.interface)
       note(of_f.sides[1], -volume);
     else
       outer += volume;
   };
-  for (std::size_t i = 0; i < dead.size(); ++i) add(dead[i], faces_dead[i], -1);
-  for (std::size_t i = 0; i < born.size(); ++i)
-    add(born[i], faces_dead[born.size() == dead.size() ? i : 0], 1);
+  for (std::size_t i = 0; i < removed.size(); ++i) add(removed[i], faces_removed[i], -1);
+  for (std::size_t i = 0; i < created.size(); ++i)
+    add(created[i], faces_removed[created.size() == removed.size() ? i : 0], 1);
   if (!fits || is_too_much({six_volume, six_gain}, outer, kVolume)) return false;
   for (const Change& change : changes) {
     // Of a small region a single change may be a large share.

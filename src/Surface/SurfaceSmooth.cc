@@ -25,7 +25,7 @@ static_assert(2 * TangentSteps::kMost <= StarForm::kTrials);
 /// The surface round a vertex, before and after a move.
 struct Patch {
   FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
-  FixedVector<Triangle, kMaxFaces> dead;
+  FixedVector<Triangle, kMaxFaces> removed;
   FixedVector<std::uint8_t, kMaxFaces> corner;  // of the vertex
   bool has_interface = false;
 
@@ -40,29 +40,29 @@ struct Patch {
         const auto f = mesh.halfface_vertices(g);
         if (faces.full()) return false;
         faces.push_back({f[0], f[2], f[1]});
-        dead.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
+        removed.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
         corner.push_back(f[0] == v ? 0 : f[2] == v ? 1 : 2);
       }
     }
     return true;
   }
   bool keeps_shape(const SurfaceMesh& surface, Vec3 x) const {
-    FixedVector<Triangle, kMaxFaces> born = dead;
-    for (std::size_t i = 0; i < born.size(); ++i) born[i][corner[i]] = x;
-    return surface.keeps_shape(faces, dead, born);
+    FixedVector<Triangle, kMaxFaces> created = removed;
+    for (std::size_t i = 0; i < created.size(); ++i) created[i][corner[i]] = x;
+    return surface.keeps_shape(faces, removed, created);
   }
   /// True when the faces lie in one plane, as far as rounding lets them: such a vertex stays in it.
   bool is_flat() const {
     constexpr double kLevel = 1.0 - 1e-9;
     const Vec3 n = normal();
-    return std::all_of(dead.begin(), dead.end(), [&](const Triangle& t) {
+    return std::all_of(removed.begin(), removed.end(), [&](const Triangle& t) {
       const Vec3 m = cross(t[1] - t[0], t[2] - t[0]);
       return dot(n, m) >= kLevel * norm(m);
     });
   }
   Vec3 normal() const {
     Vec3 sum;
-    for (const Triangle& t : dead) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
+    for (const Triangle& t : removed) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
     const double length = norm(sum);  // by division: along an axis it is that axis to the last bit
     return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : sum;
   }
@@ -97,13 +97,13 @@ template <class Metric>
 std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle v,
                                               std::span<const HalfFaceHandle> link, const Metric& metric,
                                               std::span<const double> quality) const {
-  const Freedom& freedom = surface->freedom(v);
-  const bool on_curve = freedom.kind == SurfaceKind::kCurve;
-  if (!on_curve && freedom.kind != SurfaceKind::kFacet) return std::nullopt;
+  const MotionConstraint& motion_constraint = surface->motion_constraint(v);
+  const bool on_curve = motion_constraint.kind == SurfaceKind::kCurve;
+  if (!on_curve && motion_constraint.kind != SurfaceKind::kFacet) return std::nullopt;
   Patch patch;
   if (!patch.gather(mesh, v, link)) return std::nullopt;
   const Vec3 origin = mesh.point(v);
-  Vec3 axis = freedom.axis;
+  Vec3 axis = motion_constraint.axis;
   if (!on_curve && surface->options().mode == SurfaceMode::kFree) axis = patch.normal();
   if (axis == Vec3{}) return std::nullopt;
   // In the plane normal to the axis the volume stays; a little outwards makes up for what swaps have cost.
@@ -176,7 +176,7 @@ std::optional<Move> SurfaceOffset::operator()(const TetMesh& mesh, VertexHandle 
                                               std::span<const double> quality) const {
   constexpr double kTrifle = 0.97;   // of a cell's decision value
   constexpr double kFarAbove = 1.1;  // the worst
-  if (surface->freedom(v).kind != SurfaceKind::kFacet) return std::nullopt;
+  if (surface->motion_constraint(v).kind != SurfaceKind::kFacet) return std::nullopt;
   Patch patch;
   if (!patch.gather(mesh, v, link) || patch.has_interface || patch.is_flat()) return std::nullopt;
   Move move;

@@ -44,16 +44,16 @@ auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const
     if (!cells.grow(halfface_of(ring.places[i].cell, ring.places[i].p))) return std::nullopt;
 
   FixedVector<std::array<VertexHandle, 3>, 2> faces;  // that are cut, seen from outside
-  FixedVector<Triangle, 2> dead;
+  FixedVector<Triangle, 2> removed;
   Vec3 area;
   for (HalfFaceHandle h : cells.outer()) {
     if (!is_cut(h)) continue;
     const auto f = mesh.halfface_vertices(h);
     if (faces.full()) return std::nullopt;
     faces.push_back({f[0], f[2], f[1]});
-    dead.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
-    area = area + cross(dead[dead.size() - 1][1] - dead[dead.size() - 1][0],
-                        dead[dead.size() - 1][2] - dead[dead.size() - 1][0]);
+    removed.push_back({mesh.point(f[0]), mesh.point(f[2]), mesh.point(f[1])});
+    area = area + cross(removed[removed.size() - 1][1] - removed[removed.size() - 1][0],
+                        removed[removed.size() - 1][2] - removed[removed.size() - 1][0]);
   }
   if (faces.size() != 2) return std::nullopt;
   const bool on_curve = surface->is_feature(a, b);
@@ -69,21 +69,21 @@ auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const
   // Smaller inverted cells would look better in some metrics, and be cut again without end.
   if (!(best.new_worst > 0) || !(best.new_worst > std::max(gain * best.old_worst, best.old_worst)))
     return std::nullopt;
-  FixedVector<Triangle, 4> born;
+  FixedVector<Triangle, 4> created;
   for (std::size_t i = 0; i < 2; ++i) {
     for (VertexHandle end : {a, b}) {
-      Triangle t = dead[i];
+      Triangle t = removed[i];
       for (std::size_t k = 0; k < 3; ++k)
         if (faces[i][k] == end) t[k] = best.place;
-      born.push_back(t);
+      created.push_back(t);
     }
   }
-  if (!surface->keeps_shape(faces, dead, born)) return std::nullopt;
+  if (!surface->keeps_shape(faces, removed, created)) return std::nullopt;
   return detail::plan_for(*this, mesh, seed, best);
 }
 
 template <class Metric>
-void SurfaceSplit<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void SurfaceSplit<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   const auto [a, b] = mesh.edge_vertices(plan.seed.edge);
   detail::fill_cavity(mesh, plan.seed.growth, plan.place, out, CutFaces{mesh, a, b});
   out.surface_is_held = true;

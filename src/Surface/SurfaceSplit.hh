@@ -39,7 +39,7 @@ struct SurfaceSplit {
 
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, const Seed& seed) const;
 };
 

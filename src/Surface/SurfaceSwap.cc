@@ -33,7 +33,7 @@ bool gather(const TetMesh& mesh, EdgeHandle seed, SwapRing& ring) {
 }
 
 template <class Visit>
-void for_dead(const SwapRing& ring, Visit&& visit) {
+void for_removed(const SwapRing& ring, Visit&& visit) {
   for (CellHandle c : ring.behind) visit(c);
   for (CellHandle c : ring) visit(c);
 }
@@ -44,7 +44,7 @@ template <class Metric>
 void SurfaceSwap<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
   SwapRing ring;
   out.clear();
-  if (gather(mesh, seed, ring)) for_dead(ring, [&](CellHandle c) { out.push_back(c); });
+  if (gather(mesh, seed, ring)) for_removed(ring, [&](CellHandle c) { out.push_back(c); });
 }
 
 template <class Metric>
@@ -54,7 +54,7 @@ auto SurfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std:
   const auto n = static_cast<std::size_t>(ring.n_cells);
   Plan plan;
   plan.old_worst = std::numeric_limits<double>::infinity();
-  for_dead(ring, [&](CellHandle c) { plan.old_worst = std::min(plan.old_worst, quality[c.idx()]); });
+  for_removed(ring, [&](CellHandle c) { plan.old_worst = std::min(plan.old_worst, quality[c.idx()]); });
   const Vec3 a = mesh.point(ring.a);
   const Vec3 b = mesh.point(ring.b);
   RawArray<Vec3, HFR_MAX_RING> p;
@@ -71,24 +71,24 @@ auto SurfaceSwap<Metric>::evaluate(const TetMesh& mesh, Seed seed) const -> std:
   // Cell (a, b, p0, p1) is positive, so that its boundary face is (b, a, p0) seen from outside.
   const std::array<std::array<VertexHandle, 3>, 2> faces = {
       {{ring.b, ring.a, ring.vertices[0]}, {ring.a, ring.b, ring.vertices[n]}}};
-  const std::array<Triangle, 2> dead = {{{b, a, p[0]}, {a, b, p[n]}}};
-  const std::array<Triangle, 2> born = {{{p[n], p[0], b}, {p[0], p[n], a}}};
-  if (!surface->keeps_shape(faces, dead, born)) return std::nullopt;
+  const std::array<Triangle, 2> removed = {{{b, a, p[0]}, {a, b, p[n]}}};
+  const std::array<Triangle, 2> created = {{{p[n], p[0], b}, {p[0], p[n], a}}};
+  if (!surface->keeps_shape(faces, removed, created)) return std::nullopt;
   plan.seed = seed;
   plan.edge = {ring.a, ring.b};
-  plan.n_dead = static_cast<std::uint32_t>(n + ring.behind.size());
-  plan.n_born = static_cast<std::uint32_t>(n == 1 ? ring.behind.size() : 2 * (n - 1));
+  plan.n_removed = static_cast<std::uint32_t>(n + ring.behind.size());
+  plan.n_created = static_cast<std::uint32_t>(n == 1 ? ring.behind.size() : 2 * (n - 1));
   return plan;
 }
 
 template <class Metric>
-void SurfaceSwap<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void SurfaceSwap<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   SwapRing ring;
   gather(mesh, plan.seed, ring);
   out.clear();
   out.surface_is_held = true;
-  for_dead(ring, [&](CellHandle c) { out.dead.push_back(c); });
-  for (CellHandle c : ring.behind) out.born.push_back(mesh.cell(c).v);
+  for_removed(ring, [&](CellHandle c) { out.removed.push_back(c); });
+  for (CellHandle c : ring.behind) out.created.push_back(mesh.cell(c).v);
   if (ring.n_cells == 1) return;
   append_ring_cells(ring.vertices, ring.a, ring.b, ring.n_cells, plan.apex.data(), out);
 }

@@ -56,21 +56,21 @@ double triangle_decision(const Triangle& t) {
 /// The faces round a vertex, and where it stands in each.
 struct TriangleSweep::Star {
   std::vector<Face> faces;
-  std::vector<Triangle> dead;
+  std::vector<Triangle> removed;
   std::vector<std::size_t> corner;
   double worst = std::numeric_limits<double>::infinity();
   double mean_edge = 0;
   Vec3 normal;  // of length 1; zero when there is none
 
   std::vector<Triangle> moved_to(Vec3 x) const {
-    std::vector<Triangle> born = dead;
-    for (std::size_t i = 0; i < born.size(); ++i) born[i][corner[i]] = x;
-    return born;
+    std::vector<Triangle> created = removed;
+    for (std::size_t i = 0; i < created.size(); ++i) created[i][corner[i]] = x;
+    return created;
   }
   double worst_with(Vec3 x, double floor) const {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < dead.size() && least > floor; ++i) {
-      Triangle t = dead[i];
+    for (std::size_t i = 0; i < removed.size() && least > floor; ++i) {
+      Triangle t = removed[i];
       t[corner[i]] = x;
       // A triangle that turns over is none.
       const double now = dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0;
@@ -80,7 +80,7 @@ struct TriangleSweep::Star {
   }
   bool is_flat() const {
     constexpr double kLevel = 1.0 - 1e-9;
-    return std::all_of(dead.begin(), dead.end(), [&](const Triangle& t) {
+    return std::all_of(removed.begin(), removed.end(), [&](const Triangle& t) {
       const Vec3 n = scaled_normal(t);
       return dot(n, normal) >= kLevel * norm(n);
     });
@@ -157,7 +157,7 @@ auto TriangleSweep::free_vertices(const std::vector<Face>& faces) -> std::vector
   std::vector<VertexHandle> vertices;
   for (const Face& f : faces) {
     for (VertexHandle v : f) {
-      const SurfaceKind kind = surface_.freedom(v).kind;
+      const SurfaceKind kind = surface_.motion_constraint(v).kind;
       if (seen[v.idx()] || (kind != SurfaceKind::kFacet && kind != SurfaceKind::kCurve)) continue;
       seen[v.idx()] = 1;
       vertices.push_back(v);
@@ -179,7 +179,7 @@ bool TriangleSweep::gather(VertexHandle v, Star& star) const {
   double length = 0;
   for (const Face& f : star.faces) {
     const Triangle t = corners(f);
-    star.dead.push_back(t);
+    star.removed.push_back(t);
     star.corner.push_back(f[0] == v ? 0 : f[1] == v ? 1 : 2);
     star.worst = std::min(star.worst, triangle_decision(t));
     sum = sum + scaled_normal(t);
@@ -205,12 +205,12 @@ bool TriangleSweep::try_swap(VertexHandle a, VertexHandle b) {
   const auto [c, d] = surface_.across(a, b);
   if (!c.is_valid() || !d.is_valid()) return false;
   const std::array<Face, 2> faces = {{{a, b, c}, {b, a, d}}};
-  const std::array<Triangle, 2> dead = {corners(faces[0]), corners(faces[1])};
-  const std::array<Triangle, 2> born = {corners({c, d, b}), corners({d, c, a})};
-  const double worst = std::min(triangle_decision(dead[0]), triangle_decision(dead[1]));
-  if (!(triangle_decision(born[0]) > worst) || !(triangle_decision(born[1]) > worst)) return false;
-  if (!surface_.may_swap(a, b) || !surface_.keeps_shape(faces, dead, born)) return false;
-  surface_.swapped(a, b);
+  const std::array<Triangle, 2> removed = {corners(faces[0]), corners(faces[1])};
+  const std::array<Triangle, 2> created = {corners({c, d, b}), corners({d, c, a})};
+  const double worst = std::min(triangle_decision(removed[0]), triangle_decision(removed[1]));
+  if (!(triangle_decision(created[0]) > worst) || !(triangle_decision(created[1]) > worst)) return false;
+  if (!surface_.may_swap(a, b) || !surface_.keeps_shape(faces, removed, created)) return false;
+  surface_.on_swap(a, b);
   for (VertexHandle v : {a, b, c, d}) touch(v);
   return true;
 }
@@ -231,14 +231,14 @@ bool TriangleSweep::try_collapse(VertexHandle v) {
   // Best first; the first whose shape is right is taken.
   std::vector<std::pair<double, VertexHandle>> ranked;
   const auto without = [&](VertexHandle onto) {
-    std::vector<Triangle> born;
+    std::vector<Triangle> created;
     for (std::size_t i = 0; i < star.faces.size(); ++i) {
       const Face& f = star.faces[i];
       if (f[0] == onto || f[1] == onto || f[2] == onto) continue;
-      born.push_back(star.dead[i]);
-      born.back()[star.corner[i]] = point(onto);
+      created.push_back(star.removed[i]);
+      created.back()[star.corner[i]] = point(onto);
     }
-    return born;
+    return created;
   };
   for (VertexHandle onto : targets) {
     double worst = std::numeric_limits<double>::infinity();
@@ -250,8 +250,8 @@ bool TriangleSweep::try_collapse(VertexHandle v) {
     return x.first != y.first ? x.first > y.first : x.second < y.second;
   });
   for (const auto& [worst, onto] : ranked) {
-    if (!surface_.keeps_shape(star.faces, star.dead, without(onto))) continue;
-    surface_.collapsed(v, onto);
+    if (!surface_.keeps_shape(star.faces, star.removed, without(onto))) continue;
+    surface_.on_collapse(v, onto);
     for (const Face& f : star.faces)
       for (VertexHandle w : f) touch(w);
     return true;
@@ -267,12 +267,12 @@ std::size_t TriangleSweep::smooth() {
 }
 
 bool TriangleSweep::try_smooth(VertexHandle v) {
-  const Freedom& freedom = surface_.freedom(v);
-  const bool on_curve = freedom.kind == SurfaceKind::kCurve;
+  const MotionConstraint& motion_constraint = surface_.motion_constraint(v);
+  const bool on_curve = motion_constraint.kind == SurfaceKind::kCurve;
   const bool is_free = surface_.options().mode == SurfaceMode::kFree;
   Star star;
   if (!gather(v, star)) return false;
-  const Vec3 axis = !on_curve && is_free ? star.normal : freedom.axis;
+  const Vec3 axis = !on_curve && is_free ? star.normal : motion_constraint.axis;
   if (axis == Vec3{}) return false;
   const Vec3 lift = is_free && !on_curve && !star.is_flat() ? surface_.outward() * axis : Vec3{};
   const Vec3 origin = point(v);
@@ -281,9 +281,9 @@ bool TriangleSweep::try_smooth(VertexHandle v) {
       [&](Vec3 x, double floor) { return star.worst_with(x, floor); });
   for (int i = 0; i < 3 && place != origin; ++i) {
     if (star.worst_with(place, star.worst) > star.worst &&
-        surface_.keeps_shape(star.faces, star.dead, star.moved_to(place))) {
+        surface_.keeps_shape(star.faces, star.removed, star.moved_to(place))) {
       points_[v.idx()] = place;
-      surface_.moved(v, place);
+      surface_.on_move(v, place);
       for (const Face& f : star.faces)
         for (VertexHandle w : f) touch(w);
       return true;
@@ -306,14 +306,15 @@ std::size_t TriangleSweep::offset() {
 bool TriangleSweep::try_offset(VertexHandle v) {
   constexpr double kTrifle = 0.97;
   Star star;
-  if (surface_.freedom(v).kind != SurfaceKind::kFacet || !gather(v, star) || star.is_flat()) return false;
+  if (surface_.motion_constraint(v).kind != SurfaceKind::kFacet || !gather(v, star) || star.is_flat())
+    return false;
   const Vec3 place = point(v) + surface_.outward() * star.normal;
   const double floor = std::max(kTrifle * star.worst, std::min(star.worst, below_));
   if (place == point(v) || !(star.worst_with(place, floor) > floor) ||
-      !surface_.keeps_shape(star.faces, star.dead, star.moved_to(place)))
+      !surface_.keeps_shape(star.faces, star.removed, star.moved_to(place)))
     return false;
   points_[v.idx()] = place;
-  surface_.moved(v, place);
+  surface_.on_move(v, place);
   return true;
 }
 
@@ -409,17 +410,17 @@ bool TriangleSweep::try_split(VertexHandle a, VertexHandle b) {
     cavity.worst = std::min(cavity.worst, decision(cavity.faces.back()));
     cavity.polygon.insert(cavity.polygon.begin() + static_cast<std::ptrdiff_t>(cavity.weakest) + 1, e);
   }
-  std::vector<Triangle> dead, born;
-  for (const Face& f : cavity.faces) dead.push_back(corners(f));
+  std::vector<Triangle> removed, created;
+  for (const Face& f : cavity.faces) removed.push_back(corners(f));
   for (std::size_t i = 0; i < cavity.n_edges(); ++i)
-    born.push_back(
+    created.push_back(
         {cavity.middle, point(cavity.polygon[i]), point(cavity.polygon[(i + 1) % cavity.polygon.size()])});
-  if (!surface_.keeps_shape(cavity.faces, dead, born)) return false;
+  if (!surface_.keeps_shape(cavity.faces, removed, created)) return false;
   const VertexHandle middle(points_.size());
   points_.push_back(cavity.middle);
   changed_.push_back(clock_);
-  surface_.was_split(a, b, middle, cavity.middle);
-  for (const auto& [p, q] : cavity.flips) surface_.swapped(p, q);
+  surface_.on_split(a, b, middle, cavity.middle);
+  for (const auto& [p, q] : cavity.flips) surface_.on_swap(p, q);
   for (VertexHandle v : cavity.polygon) touch(v);
   return true;
 }

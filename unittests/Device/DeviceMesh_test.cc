@@ -20,7 +20,7 @@
 #include "Operators/LimitMeshes.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothNewton.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/Seeds.hh"
 #include "Scheduler/SmoothPass.hh"
@@ -66,7 +66,7 @@ class OnDevice : public testing::TestWithParam<DeviceTuning> {
     if (kind == DeviceMesh::Kind::kVertex) {
       std::vector<VertexHandle> vertices = vertex_seeds(stand.mesh, list, stand.work.frozen, kSerial);
       drop_pinched(stand.mesh, stand.work.star_size, vertices, kSerial);
-      Round<VertexRemoval<VolumeLength>> round(stand.mesh, stand.work, options);
+      Round<VertexCollapse<VolumeLength>> round(stand.mesh, stand.work, options);
       return round.run({{}, stand.work.quality, stand.work.frozen}, vertices);
     }
     if (kind == DeviceMesh::Kind::kEdge) {
@@ -84,7 +84,7 @@ class OnDevice : public testing::TestWithParam<DeviceTuning> {
       ASSERT_EQ(host.mesh.cell(CellHandle(c)).mate, device.mesh.cell(CellHandle(c)).mate) << c;
     }
     for (std::size_t v = 0; v < host.mesh.n_vertices(); ++v) {
-      ASSERT_EQ(host.mesh.hook(VertexHandle(v)), device.mesh.hook(VertexHandle(v))) << v;
+      ASSERT_EQ(host.mesh.incident_cell(VertexHandle(v)), device.mesh.incident_cell(VertexHandle(v))) << v;
       ASSERT_EQ(host.mesh.is_deleted(VertexHandle(v)), device.mesh.is_deleted(VertexHandle(v))) << v;
       ASSERT_EQ(host.mesh.point(VertexHandle(v)), device.mesh.point(VertexHandle(v))) << v;
     }
@@ -306,7 +306,7 @@ TEST_P(OnDevice, OfEquallyGoodPlacesTheVertexGoesToThatOfTheHost) {
     device_->download(there.mesh, there.work);
     expect_same(host, there);
     ASSERT_FALSE(HasFatalFailure()) << first;
-    EXPECT_EQ(host.mesh.cell(host.mesh.hook(VertexHandle(0))).v[3], VertexHandle(0));
+    EXPECT_EQ(host.mesh.cell(host.mesh.incident_cell(VertexHandle(0))).v[3], VertexHandle(0));
   }
 }
 
@@ -353,7 +353,7 @@ TEST_P(OnDevice, VerticesOfOneRegionGoAndThoseOfTwoStay) {
   expect_same(host, there);
 }
 
-TEST_P(OnDevice, CellsBornInFreshSlotsInheritRegionAndFields) {
+TEST_P(OnDevice, CellsCreatedInFreshSlotsInheritRegionAndFields) {
   generate::Arrays arrays = generate::jittered_box({8, 8, 8}, 0.25, 6);
   arrays.regions = generate::two_region_box({8, 8, 8}).regions;
   Stand host(built(arrays));

@@ -56,9 +56,9 @@ TEST(KernelArguments, AreKnownOfEveryKernelInTheFiles) {
 TEST(KernelArguments, StandInTheKernelsOrder) {
   EXPECT_EQ(names_of<kernel::rank_count>(), (Names{"keys", "counters", "capacity", "shift", "bins"}));
   EXPECT_EQ(names_of<kernel::commit_mates>(),
-            (Names{"counters", "n",          "order",   "offsets", "sizes",   "arena", "won",
-                   "extra_at", "free_cells", "n_free",  "n_cells", "claim",   "moved", "points",
-                   "clock",    "cells",      "quality", "pending", "changed", "hooks"}));
+            (Names{"counters", "n",          "order",   "offsets", "sizes",   "arena",         "won",
+                   "extra_at", "free_cells", "n_free",  "n_cells", "claim",   "moved",         "points",
+                   "clock",    "cells",      "quality", "pending", "changed", "incident_cells"}));
 }
 
 TEST(KernelArguments, OfKernelsThatMacrosMakeAreKnown) {

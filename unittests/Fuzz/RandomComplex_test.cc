@@ -61,7 +61,8 @@ void count(const Complex& complex, Kinds& kinds) {
   std::size_t longest_ring = 0, inside = 0;
   for (EdgeHandle e : mesh->edges())
     if (!mesh->is_boundary(e)) longest_ring = std::max(longest_ring, mesh->valence(e));
-  for (VertexHandle v : mesh->vertices()) inside += mesh->hook(v).is_valid() && !mesh->is_boundary(v);
+  for (VertexHandle v : mesh->vertices())
+    inside += mesh->incident_cell(v).is_valid() && !mesh->is_boundary(v);
   kinds.large_rings += longest_ring > 32;
   kinds.without_inside += inside == 0;
 }

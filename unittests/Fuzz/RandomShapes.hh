@@ -79,10 +79,10 @@ inline Arrays glued(Random& random, std::size_t n_cells, bool wild) {
     auto apex = static_cast<Index>(mesh.points.size());
     if (takes_known) apex = random.pick(mesh.cells)[random.below(4)];
     if (std::find(f.begin(), f.end(), apex) != f.end()) continue;
-    const Corners born = {f[0], f[2], f[1], apex};
-    bool legal = known.count(sorted(born)) == 0;
+    const Corners created = {f[0], f[2], f[1], apex};
+    bool legal = known.count(sorted(created)) == 0;
     for (std::size_t k = 0; k < 3; ++k) {  // the fourth face is f
-      const auto at = used.find(sorted(face_of(born, k)));
+      const auto at = used.find(sorted(face_of(created, k)));
       legal = legal && (at == used.end() || at->second < 2);
     }
     if (!legal) continue;
@@ -95,9 +95,9 @@ inline Arrays glued(Random& random, std::size_t n_cells, bool wild) {
       const double out = norm(up) > 0 ? -height * size / norm(up) : 0;
       mesh.points.push_back((1.0 / 3) * (a + b + c) + out * up + random.step(0.15 * size));
     }
-    mesh.cells.push_back(born);
-    known.insert(sorted(born));
-    for (std::size_t k = 0; k < 4; ++k) ++used[sorted(face_of(born, k))];
+    mesh.cells.push_back(created);
+    known.insert(sorted(created));
+    for (std::size_t k = 0; k < 4; ++k) ++used[sorted(face_of(created, k))];
   }
   return mesh;
 }
@@ -200,12 +200,12 @@ inline void split_cells(Random& random, Arrays& mesh, int n) {
     const auto v = static_cast<Index>(mesh.points.size());
     mesh.points.push_back(p);
     for (std::size_t k = 0; k < 4; ++k) {
-      Corners born = c;
-      born[k] = v;
+      Corners created = c;
+      created[k] = v;
       if (k == 0) {
-        mesh.cells[at] = born;
+        mesh.cells[at] = created;
       } else {
-        mesh.cells.push_back(born);
+        mesh.cells.push_back(created);
         if (!mesh.regions.empty()) mesh.regions.push_back(mesh.regions[at]);
       }
     }

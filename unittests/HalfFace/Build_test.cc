@@ -54,7 +54,8 @@ TEST(Build, HandlesAndCornersAreThoseOfTheArrays) {
   for (std::size_t i = 0; i < box.cells.size(); ++i)
     for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(mesh.cell(CellHandle(i)).v[k].idx(), box.cells[i][k]);
   for (VertexHandle v : mesh.vertices())
-    for (CellHandle c : mesh.vertex_cells(v)) EXPECT_LE(mesh.hook(v), c) << "the hook is the smallest cell";
+    for (CellHandle c : mesh.vertex_cells(v))
+      EXPECT_LE(mesh.incident_cell(v), c) << "the incident_cell is the smallest cell";
 }
 
 TEST(Build, SameForAnyNumberOfThreads) {
@@ -66,7 +67,7 @@ TEST(Build, SameForAnyNumberOfThreads) {
       ASSERT_EQ(mesh.cell(c).v, serial.cell(c).v);
       ASSERT_EQ(mesh.cell(c).mate, serial.cell(c).mate);
     }
-    for (VertexHandle v : mesh.vertices()) ASSERT_EQ(mesh.hook(v), serial.hook(v));
+    for (VertexHandle v : mesh.vertices()) ASSERT_EQ(mesh.incident_cell(v), serial.incident_cell(v));
   }
 }
 
@@ -337,7 +338,7 @@ TEST(Build, EmptyMeshAndMeshWithoutCells) {
   EXPECT_EQ(build({}, {}).n_cells(), 0U);
   const TetMesh mesh = build({{0, 0, 0}, {1, 1, 1}}, {});
   EXPECT_EQ(mesh.n_vertices(), 2U);
-  EXPECT_FALSE(mesh.hook(VertexHandle(1)).is_valid());
+  EXPECT_FALSE(mesh.incident_cell(VertexHandle(1)).is_valid());
   EXPECT_EQ(check(mesh), Ok);
 }
 

@@ -56,7 +56,7 @@ TEST(AddCell, ToAMeshFromArrays) {
   const CellHandle c = mesh.add_cell(V(1), V(2), V(3), top);
   EXPECT_EQ(check(mesh), Ok);
   EXPECT_EQ(mesh.cell_cells(c)[0], CellHandle(0));
-  EXPECT_EQ(mesh.hook(top), c);
+  EXPECT_EQ(mesh.incident_cell(top), c);
 }
 
 TEST(AddCell, RefusesAndLeavesTheMeshAlone) {
@@ -84,8 +84,8 @@ TEST(AddCell, AfterLowLevelWritingFindsItsNeighbours) {
   mesh.delete_cell(mesh.add_cell(V(1), V(2), V(3), top));  // the table of faces is now there
   const V low = mesh.add_vertex({-1, -1, -1});
   TetMesh::Writer(mesh).cell(CellHandle(0)).v[0] = low;
-  TetMesh::Writer(mesh).set_hook(low, CellHandle(0));
-  TetMesh::Writer(mesh).set_hook(V(0), CellHandle());
+  TetMesh::Writer(mesh).set_incident_cell(low, CellHandle(0));
+  TetMesh::Writer(mesh).set_incident_cell(V(0), CellHandle());
   const CellHandle c = mesh.add_cell(low, V(2), V(1), V(0));
   EXPECT_EQ(mesh.cell_cells(c).size(), 1U);
   EXPECT_EQ(check(mesh), Ok);

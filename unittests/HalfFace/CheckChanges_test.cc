@@ -107,10 +107,10 @@ TEST(CheckChanges, EachRuleOfTheKernelIsTested) {
               const auto v = m.cell(c).v;
               m.delete_cell(c);
               m.add_cell(v[0], v[1], v[2], v[3]);
-              TetMesh::Writer(m).set_hook(v[0], CellHandle(0));
-              if (m.cell(CellHandle(0)).has(v[0])) TetMesh::Writer(m).set_hook(v[0], CellHandle());
+              TetMesh::Writer(m).set_incident_cell(v[0], CellHandle(0));
+              if (m.cell(CellHandle(0)).has(v[0])) TetMesh::Writer(m).set_incident_cell(v[0], CellHandle());
             }),
-            Rule::kHook);
+            Rule::kIncidentCell);
 }
 
 }  // namespace

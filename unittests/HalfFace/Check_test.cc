@@ -86,14 +86,14 @@ TEST(Check, RenumberedCellContradictsItsNeighbours) {
   EXPECT_EQ(check(mesh), Rule::kOrientation);
 }
 
-TEST(Check, HookThatIsNoCellOfItsVertex) {
+TEST(Check, IncidentCellThatIsNoCellOfItsVertex) {
   TetMesh mesh = kuhn_box(2);
-  TetMesh::Writer(mesh).set_hook(VertexHandle(0), mesh.hook(VertexHandle(26)));
+  TetMesh::Writer(mesh).set_incident_cell(VertexHandle(0), mesh.incident_cell(VertexHandle(26)));
   const CheckResult result = check(mesh);
-  EXPECT_EQ(result, Rule::kHook);
+  EXPECT_EQ(result, Rule::kIncidentCell);
   EXPECT_EQ(result.vertices, std::vector{VertexHandle(0)});
-  TetMesh::Writer(mesh).set_hook(VertexHandle(0), CellHandle());
-  EXPECT_EQ(check(mesh), Rule::kHook);
+  TetMesh::Writer(mesh).set_incident_cell(VertexHandle(0), CellHandle());
+  EXPECT_EQ(check(mesh), Rule::kIncidentCell);
 }
 
 TEST(Check, CellTwice) {
@@ -125,8 +125,8 @@ TEST(Check, EdgeMadeTwice) {
     TetMesh::Writer(mesh).cell(CellHandle(i)).v[0] = VertexHandle(0);
     TetMesh::Writer(mesh).cell(CellHandle(i)).v[1] = VertexHandle(1);
   }
-  TetMesh::Writer(mesh).set_hook(VertexHandle(2), CellHandle());
-  TetMesh::Writer(mesh).set_hook(VertexHandle(3), CellHandle());
+  TetMesh::Writer(mesh).set_incident_cell(VertexHandle(2), CellHandle());
+  TetMesh::Writer(mesh).set_incident_cell(VertexHandle(3), CellHandle());
   const CheckResult result = check(mesh);
   EXPECT_EQ(result, Rule::kDuplicateEdge);
   EXPECT_EQ(result.vertices, (std::vector{VertexHandle(0), VertexHandle(1)}));

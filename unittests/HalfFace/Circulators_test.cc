@@ -67,10 +67,10 @@ class Circulators : public testing::TestWithParam<NamedMesh> {
   const TetMesh& mesh() const { return GetParam().mesh; }
   const Oracle oracle{GetParam().mesh};
 
-  /// Cells of v that connect to its hook.
+  /// Cells of v that connect to its incident cell.
   Set<CellHandle> star(VertexHandle v) const {
     const Set<CellHandle> all = oracle.cells_of(v);
-    return all.empty() ? all : oracle.component<1>(all, mesh().hook(v), {v});
+    return all.empty() ? all : oracle.component<1>(all, mesh().incident_cell(v), {v});
   }
 };
 INSTANTIATE_TEST_SUITE_P(Suite, Circulators, testing::ValuesIn(test::suite()),

@@ -29,7 +29,8 @@ std::set<std::array<VertexHandle, 4>> tets(const TetMesh& mesh) {
   return all;
 }
 
-/// All vertices have hooks where the oracle finds cells, and counting starts anew: low-level writing.
+/// All vertices have incident cells where the oracle finds cells, and counting starts anew: low-level
+/// writing.
 void outdate(TetMesh& mesh) { TetMesh::Writer(mesh).cell(*mesh.cells().begin()); }
 
 TEST(SplitEdge, EveryEdgeOfEveryMeshIsCutWithItsCells) {

@@ -58,7 +58,7 @@ void expect_conforming(const Arrays& mesh) {
   EXPECT_FALSE(report.flipped);
   EXPECT_TRUE(report.reoriented.empty());
   for (std::size_t v = 0; v < built.n_vertices(); ++v)
-    ASSERT_TRUE(built.hook(VertexHandle(v)).is_valid()) << "vertex " << v << " is in no cell";
+    ASSERT_TRUE(built.incident_cell(VertexHandle(v)).is_valid()) << "vertex " << v << " is in no cell";
 }
 
 std::size_t n_boundary_faces(const Arrays& mesh) {

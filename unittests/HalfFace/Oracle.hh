@@ -15,7 +15,8 @@ namespace hfr::test {
 template <class T>
 using Set = std::set<T>;
 
-/// Neighbourhoods by comparing vertices of all cells with each other: nothing of mates, hooks or rings.
+/// Neighbourhoods by comparing vertices of all cells with each other: nothing of mates, incident cells or
+/// rings.
 class Oracle {
  public:
   explicit Oracle(const TetMesh& mesh) {

@@ -20,7 +20,7 @@ concept HandsOutItsCells = requires(Mesh& mesh, CellHandle c, VertexHandle v, Ha
 || requires(Mesh& mesh) { requires !std::is_const_v<std::remove_reference_t<decltype(mesh.free_cells())>>; }
 || requires(Mesh& mesh) { mesh.resize_cells(1); }
 || requires(Mesh& mesh, VertexHandle v) { mesh.mark_deleted(v); }
-|| requires(Mesh& mesh, VertexHandle v, CellHandle c) { mesh.set_hook(v, c); }
+|| requires(Mesh& mesh, VertexHandle v, CellHandle c) { mesh.set_incident_cell(v, c); }
 || requires(Mesh& mesh, HalfFaceHandle h) { mesh.set_mate(h, h); };
 static_assert(!HandsOutItsCells<TetMesh>);
 struct AsABuilderSeesIt {
@@ -55,8 +55,8 @@ TEST(Writer, AddingByHandSeesWhatWasWrittenInBetween) {
   writer.set_mate(mesh.opposite_halfface(mesh.vertex_opposite_halfface(other, V(4))), HalfFaceHandle());
   writer.mark_deleted(other);
   writer.free_cells().push_back(other);
-  writer.set_hook(V(4), CellHandle());
-  for (unsigned i = 0; i < 4; ++i) writer.set_hook(V(i), CellHandle(0));
+  writer.set_incident_cell(V(4), CellHandle());
+  for (unsigned i = 0; i < 4; ++i) writer.set_incident_cell(V(i), CellHandle(0));
   ASSERT_TRUE(check(mesh));
   mesh.add_cell(V(4), V(1), V(3), V(2));  // refused if the table still had the face with two cells
   EXPECT_EQ(mesh.n_logical_cells(), 2U);

@@ -13,7 +13,7 @@
 #include "Operators/StarForm.hh"
 #include "Operators/StarFromVertex.hh"
 #include "Operators/Unfold.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 
 namespace hfr::test {
 namespace {
@@ -76,16 +76,16 @@ TEST(Capacities, StarOf256CellsIsRemovedAndOneOf258LeftAlone) {
     mesh.set_point(V(0), {0.02, 0.01, 1.49});  // all but in vertex 2, above
     const auto quality = qualities(mesh, VolumeLength{});
     const auto frozen = constrained_vertices(mesh);
-    const VertexRemoval<VolumeLength> removal{{}, quality, frozen};
+    const VertexCollapse<VolumeLength> removal{{}, quality, frozen};
     const StarFromVertex<Cluster::kNode, VolumeLength> star{{}, quality, frozen, false};
-    const CellHandle hook = mesh.hook(V(0));
-    const auto corner = static_cast<std::uint8_t>(mesh.cell(hook).corner(V(0)));
+    const CellHandle incident_cell = mesh.incident_cell(V(0));
+    const auto corner = static_cast<std::uint8_t>(mesh.cell(incident_cell).corner(V(0)));
     const auto plan = removal.evaluate(mesh, V(0));
-    const auto same = star.evaluate(mesh, {hook, corner});
+    const auto same = star.evaluate(mesh, {incident_cell, corner});
     ASSERT_EQ(plan.has_value(), n == 128);
     ASSERT_EQ(same.has_value(), n == 128);
     if (!plan) continue;
-    EXPECT_EQ(plan->n_dead, 256U);
+    EXPECT_EQ(plan->n_removed, 256U);
     cavity_of(star, mesh, *same);
     replace(mesh, cavity_of(removal, mesh, *plan));
     EXPECT_EQ(check(mesh), Ok);
@@ -117,10 +117,10 @@ TEST(Capacities, CavityOf512CellsIsReplacedByAsMany) {
   const auto before = tets_of(mesh);
   Cavity cavity;
   for (std::size_t c = 0; c < Cavity::kCapacity; ++c) {
-    cavity.dead.push_back(C(c + 100));
-    cavity.born.push_back(mesh.cell(C(c + 100)).v);
+    cavity.removed.push_back(C(c + 100));
+    cavity.created.push_back(mesh.cell(C(c + 100)).v);
   }
-  EXPECT_TRUE(cavity.dead.full());
+  EXPECT_TRUE(cavity.removed.full());
   Star scratch;
   EXPECT_EQ(created_simplices(mesh, cavity).size(), 0U);
   EXPECT_TRUE(admissible(mesh, cavity, false, scratch));
@@ -133,15 +133,18 @@ TEST(Capacities, CavityOf512CellsIsReplacedByAsMany) {
 TEST(Capacities, MoreThan512NewEdgesAreAllListed) {
   TetMesh mesh = jittered(8, 0.2, 1);
   Cavity cavity;
-  cavity.dead.push_back(C(0));
-  for (Index i = 0; i < 100; ++i) cavity.born.push_back({V(4 * i), V(4 * i + 1), V(4 * i + 2), V(4 * i + 3)});
+  cavity.removed.push_back(C(0));
+  for (Index i = 0; i < 100; ++i)
+    cavity.created.push_back({V(4 * i), V(4 * i + 1), V(4 * i + 2), V(4 * i + 3)});
   std::set<Simplex> listed;
   for (const Simplex& simplex : created_simplices(mesh, cavity)) listed.insert(simplex);
-  const Tet dead = mesh.cell(C(0)).v;
+  const Tet removed = mesh.cell(C(0)).v;
   std::size_t n_edges = 0;
-  for (const Tet& t : cavity.born)
+  for (const Tet& t : cavity.created)
     for (const auto& e : kEdgeCorners) {
-      const auto has = [&](VertexHandle v) { return std::find(dead.begin(), dead.end(), v) != dead.end(); };
+      const auto has = [&](VertexHandle v) {
+        return std::find(removed.begin(), removed.end(), v) != removed.end();
+      };
       if (has(t[e[0]]) && has(t[e[1]])) continue;
       ++n_edges;
       EXPECT_TRUE(listed.contains({t[e[0]], t[e[1]], VertexHandle()}));
@@ -188,7 +191,7 @@ TEST(Capacities, ThirtyFacesAreRemovedTogetherAndNoMore) {
       const auto plan = op.evaluate(mesh, typename MultiFaceRemoval<MinSine2>::Seed(h));
       if (!plan) continue;
       cavity_of(op, mesh, *plan);
-      most = std::max<std::size_t>(most, plan->n_dead / 2);
+      most = std::max<std::size_t>(most, plan->n_removed / 2);
     }
   }
   EXPECT_LE(most, FaceTree::kMaxFaces);
@@ -214,7 +217,7 @@ TEST(Capacities, RowsOfCellsRoundAnEdgeEndAtThirteen) {
       const auto plan = op.evaluate(mesh, {c, 0, 0, 0});
       if (!plan) continue;
       cavity_of(op, mesh, *plan);
-      most = std::max<std::size_t>(most, plan->n_dead);
+      most = std::max<std::size_t>(most, plan->n_removed);
     }
   }
   EXPECT_LE(most, 13U);
@@ -239,7 +242,7 @@ TEST(Capacities, ClusterSearchAskedForMoreThan32PointsTakes32) {
     EXPECT_EQ(at->new_worst, beyond->new_worst);
     EXPECT_EQ(at->new_worst, far_beyond->new_worst);
     cavity_of(Op{{}, quality, 1.02, 32, 400}, mesh, *at);
-    most = std::max<std::size_t>(most, at->n_dead);
+    most = std::max<std::size_t>(most, at->n_removed);
     ++n;
   }
   EXPECT_GT(n, 3U);

@@ -10,7 +10,7 @@
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/PinchedStars.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 
 namespace hfr::test {
 namespace {
@@ -27,16 +27,16 @@ Cavity swap_of(const TetMesh& mesh, HalfFaceHandle h) {
   FaceSwap<VolumeLength>::Plan plan;
   plan.seed = h;
   Cavity cavity;
-  FaceSwap<VolumeLength>{}.commit(mesh, plan, cavity);
+  FaceSwap<VolumeLength>{}.cavity(mesh, plan, cavity);
   return cavity;
 }
 
 Cavity collapse_of(const TetMesh& mesh, VertexHandle v, VertexHandle onto) {
-  VertexRemoval<VolumeLength>::Plan plan;
+  VertexCollapse<VolumeLength>::Plan plan;
   plan.seed = v;
   plan.apex = onto;
   Cavity cavity;
-  VertexRemoval<VolumeLength>{}.commit(mesh, plan, cavity);
+  VertexCollapse<VolumeLength>{}.commit(mesh, plan, cavity);
   return cavity;
 }
 
@@ -163,10 +163,10 @@ TEST(Admissible, CollapseThatWouldMakeAFaceTwiceIsRefused) {
   TetMesh mesh = star_below_a_face();
   ASSERT_EQ(check(mesh), Ok);
   const Cavity onto_equator = collapse_of(mesh, V(0), V(3));
-  ASSERT_EQ(onto_equator.born.size(), 2U);
+  ASSERT_EQ(onto_equator.created.size(), 2U);
   EXPECT_FALSE(is_admissible(mesh, onto_equator));
   EXPECT_TRUE(is_admissible(mesh, onto_equator, false));
-  // Onto the far pole the born cells need an edge between the poles, which is new: allowed.
+  // Onto the far pole the created cells need an edge between the poles, which is new: allowed.
   const Cavity onto_pole = collapse_of(mesh, V(0), V(5));
   EXPECT_TRUE(is_admissible(mesh, onto_pole));
   replace(mesh, onto_equator);
@@ -179,7 +179,7 @@ TEST(Admissible, EdgeIsFoundFromItsOtherEndWhereOneEndIsPinched) {
   const TetMesh mesh = build(
       {{1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}, {0, 0, 0.2}, {0, 0, -0.2}, {1, -1, -0.5}, {0, -1.5, 0.2}},
       std::vector<Corners>{{0, 1, 2, 3}, {0, 2, 1, 4}, {0, 4, 2, 5}, {2, 4, 6, 5}, {4, 6, 5, 3}});
-  ASSERT_EQ(mesh.hook(V(3)), C(0));
+  ASSERT_EQ(mesh.incident_cell(V(3)), C(0));
   ASSERT_EQ(ring_size(mesh, V(3), V(4)), 1U);
   ASSERT_FALSE(check(mesh)) << "vertex 3 is meant to be pinched";
   EXPECT_FALSE(is_admissible(mesh, swap_of(mesh, halfface_between(mesh, C(0), C(1)))));
@@ -214,8 +214,8 @@ TEST(Admissible, LabelledEdgeStays) {
   plan.ring = 5;
   plan.apex = {1, 2, 3};  // the fan of ring vertices 0 and 4
   Cavity cavity;
-  EdgeRemoval<VolumeLength>{}.commit(mesh, plan, cavity);
-  ASSERT_EQ(cavity.born.size(), 6U);
+  EdgeRemoval<VolumeLength>{}.cavity(mesh, plan, cavity);
+  ASSERT_EQ(cavity.created.size(), 6U);
   EXPECT_TRUE(is_admissible(mesh, cavity));
   mesh.labels().edges.set({V(2), V(3)}, 1);  // of the ring: kept
   EXPECT_TRUE(is_admissible(mesh, cavity));
@@ -260,11 +260,11 @@ std::set<Key> simplices_of(const Tets& tets) {
   return all;
 }
 
-/// What the cavity makes that its dead cells do not have.
+/// What the cavity makes that its removed cells do not have.
 std::set<Key> new_simplices(const TetMesh& mesh, const Cavity& cavity) {
   std::vector<Tet> gone;
-  for (CellHandle c : cavity.dead) gone.push_back(mesh.cell(c).v);
-  std::set<Key> made = simplices_of(cavity.born);
+  for (CellHandle c : cavity.removed) gone.push_back(mesh.cell(c).v);
+  std::set<Key> made = simplices_of(cavity.created);
   for (const Key& old : simplices_of(gone)) made.erase(old);
   return made;
 }
@@ -274,8 +274,9 @@ std::size_t made_twice(const TetMesh& mesh, const Cavity& cavity, const std::set
   std::size_t found = 0;
   for (const Key& key : made) {
     for (CellHandle c : mesh.cells()) {
-      const bool is_dead = std::find(cavity.dead.begin(), cavity.dead.end(), c) != cavity.dead.end();
-      if (is_dead ||
+      const bool is_removed =
+          std::find(cavity.removed.begin(), cavity.removed.end(), c) != cavity.removed.end();
+      if (is_removed ||
           !std::all_of(key.begin(), key.end(), [&](VertexHandle v) { return mesh.cell(c).has(v); }))
         continue;
       if (found == 0 || key.size() < found) found = key.size();

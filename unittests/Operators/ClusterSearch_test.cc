@@ -160,7 +160,7 @@ TYPED_TEST(ClusterSearchMetrics, AcceptedCavitiesKeepTheMeshWhole) {
       EXPECT_GT(plan->new_worst, 0);
       if (!apply(op, mesh, Seed<TypeParam>(C(i)))) continue;
       ++accepted;
-      large += plan->n_dead > 6 ? 1 : 0;
+      large += plan->n_removed > 6 ? 1 : 0;
       const CheckResult result = check(mesh);
       ASSERT_EQ(result, Ok);
       EXPECT_TRUE(exact_volume6(mesh) == volume);

@@ -159,25 +159,25 @@ double worst_of_tets(const TetMesh& mesh, const Tets& tets, const Metric& metric
 template <class Op>
 Cavity cavity_of(const Op& op, const TetMesh& mesh, const typename Op::Plan& plan) {
   Cavity cavity;
-  op.commit(mesh, plan, cavity);
+  op.cavity(mesh, plan, cavity);
   Scope scope;
   op.scope(mesh, plan.seed, scope);
-  EXPECT_TRUE(std::equal(scope.begin(), scope.end(), cavity.dead.begin(), cavity.dead.end()))
-      << "dead cells are the scope, in its order";
-  EXPECT_EQ(plan.n_dead, cavity.dead.size());
-  EXPECT_EQ(plan.n_born, cavity.born.size());
-  EXPECT_EQ(plan.n_dead_first, cavity.n_dead_first);
-  EXPECT_EQ(plan.n_born_first, cavity.n_born_first);
+  EXPECT_TRUE(std::equal(scope.begin(), scope.end(), cavity.removed.begin(), cavity.removed.end()))
+      << "removed cells are the scope, in its order";
+  EXPECT_EQ(plan.n_removed, cavity.removed.size());
+  EXPECT_EQ(plan.n_created, cavity.created.size());
+  EXPECT_EQ(plan.n_removed_first, cavity.n_removed_first);
+  EXPECT_EQ(plan.n_created_first, cavity.n_created_first);
   EXPECT_EQ(plan.adds_vertex, cavity.new_vertex.has_value());
-  EXPECT_EQ(plan.removes_vertex, cavity.removed.is_valid());
+  EXPECT_EQ(plan.removes_vertex, cavity.removed_vertex.is_valid());
   double old_worst = std::numeric_limits<double>::infinity();
-  for (CellHandle c : cavity.dead) old_worst = std::min(old_worst, op.quality[c.idx()]);
+  for (CellHandle c : cavity.removed) old_worst = std::min(old_worst, op.quality[c.idx()]);
   EXPECT_EQ(plan.old_worst, old_worst);
   const auto at = [&](VertexHandle v) {
     return v == Cavity::kNewVertex ? *cavity.new_vertex : mesh.point(v);
   };
   double new_worst = std::numeric_limits<double>::infinity();
-  for (const Tet& t : cavity.born)
+  for (const Tet& t : cavity.created)
     new_worst = std::min(new_worst, op.metric(at(t[0]), at(t[1]), at(t[2]), at(t[3])));
   EXPECT_EQ(plan.new_worst, new_worst) << "the plan is not what it claims";
   EXPECT_GT(plan.new_worst, plan.old_worst);
@@ -226,13 +226,13 @@ inline std::set<Tet> tets_of(const TetMesh& mesh) {
   return tets;
 }
 
-/// True when cells, mates, hooks, points and the free list are the same to the last bit.
+/// True when cells, mates, incident cells, points and the free list are the same to the last bit.
 inline bool identical(const TetMesh& a, const TetMesh& b) {
   if (a.n_cells() != b.n_cells() || a.n_vertices() != b.n_vertices()) return false;
   for (std::size_t i = 0; i < a.n_cells(); ++i)
     if (a.cell(C(i)).v != b.cell(C(i)).v || a.cell(C(i)).mate != b.cell(C(i)).mate) return false;
   for (std::size_t i = 0; i < a.n_vertices(); ++i)
-    if (!(a.point(V(i)) == b.point(V(i))) || a.hook(V(i)) != b.hook(V(i)) ||
+    if (!(a.point(V(i)) == b.point(V(i))) || a.incident_cell(V(i)) != b.incident_cell(V(i)) ||
         a.is_deleted(V(i)) != b.is_deleted(V(i)))
       return false;
   return a.free_cells() == b.free_cells();

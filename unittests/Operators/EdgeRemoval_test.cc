@@ -57,7 +57,7 @@ TYPED_TEST(EdgeRemovalMetrics, ProgrammeFindsTheBestOfAllTriangulations) {
   EXPECT_GT(all_refused, 50);
 }
 
-TEST(EdgeRemoval, BornCellsFillTheSameVolumeExactly) {
+TEST(EdgeRemoval, CreatedCellsFillTheSameVolumeExactly) {
   Engine engine(2);
   int accepted = 0;
   for (int trial = 0; trial < 300; ++trial) {
@@ -105,7 +105,7 @@ TEST(EdgeRemoval, EverySeedOfTheRingGivesTheSameWorst) {
     EXPECT_EQ(op.identity(mesh, seed), (Tet{V(0), V(1), VertexHandle(), VertexHandle()}));
     worsts.insert(std::round(plan->new_worst * 1e12));
     const Cavity cavity = cavity_of(op, mesh, *plan);
-    EXPECT_EQ(std::set<CellHandle>(cavity.dead.begin(), cavity.dead.end()).size(), 7U);
+    EXPECT_EQ(std::set<CellHandle>(cavity.removed.begin(), cavity.removed.end()).size(), 7U);
   }
   EXPECT_EQ(worsts.size(), 1U);
 }
@@ -121,7 +121,7 @@ TEST(EdgeRemoval, RingOf32IsSearchedAndOf33LeftAlone) {
     const auto plan = op.evaluate(mesh, edge_between(mesh, V(0), V(1)));
     EXPECT_EQ(plan.has_value(), n == 32);
     if (!plan) continue;
-    EXPECT_EQ(cavity_of(op, mesh, *plan).born.size(), 60U);
+    EXPECT_EQ(cavity_of(op, mesh, *plan).created.size(), 60U);
   }
 }
 

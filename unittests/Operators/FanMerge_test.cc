@@ -77,7 +77,7 @@ TYPED_TEST(FanMergeMetrics, FindsTheBestOfAllRowsAndTriangulations) {
       continue;
     }
     ++accepted;
-    parts += plan->n_dead < k ? 1 : 0;
+    parts += plan->n_removed < k ? 1 : 0;
     EXPECT_NEAR(plan->new_worst, best, 1e-12 * std::abs(best));
     cavity_of(op, mesh, *plan);
   }

@@ -52,14 +52,14 @@ TEST(FrozenVertices, CornersOfFixedInnerFacesAndEdgesAreFrozen) {
   const TetMesh mesh = jittered(4, 0.0, 1);
   const VertexHandle middle = V((2 * 5 + 2) * 5 + 2);
   const HalfFaceHandle h =
-      mesh.vertex_opposite_halfface(mesh.hook(middle), mesh.cell(mesh.hook(middle)).v[0]);
+      mesh.vertex_opposite_halfface(mesh.incident_cell(middle), mesh.cell(mesh.incident_cell(middle)).v[0]);
   TetMesh with_face = mesh;
   with_face.set_fixed(mesh.face_handle(h));
   EXPECT_TRUE(with_face.is_constrained(h));
   EXPECT_FALSE(mesh.is_constrained(h));
   for (VertexHandle v : mesh.halfface_vertices(h)) EXPECT_TRUE(frozen_set(with_face).contains(v.idx()));
   TetMesh with_edge = mesh;
-  const EdgeHandle e = mesh.edge_in_cell(mesh.hook(middle), 0);
+  const EdgeHandle e = mesh.edge_in_cell(mesh.incident_cell(middle), 0);
   with_edge.set_fixed(e);
   for (VertexHandle v : mesh.edge_vertices(e)) EXPECT_TRUE(frozen_set(with_edge).contains(v.idx()));
 }

@@ -57,14 +57,14 @@ double brute_force(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces
   double best = -std::numeric_limits<double>::infinity();
   for (std::size_t set = 0; set < (std::size_t{1} << faces.size()); ++set) {
     if (!(set >> first & 1U)) continue;
-    std::vector<CellHandle> dead;
+    std::vector<CellHandle> removed;
     double worst = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < faces.size(); ++i) {
       const CellHandle up = cell_of(faces[i]);
       const CellHandle down = cell_of(mesh.opposite_halfface(faces[i]));
       if (set >> i & 1U) {
-        dead.push_back(up);
-        dead.push_back(down);
+        removed.push_back(up);
+        removed.push_back(down);
       } else {
         worst = std::min({worst, quality[up.idx()], quality[down.idx()]});
       }
@@ -72,7 +72,7 @@ double brute_force(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces
     // Each outer face at the upper apex is over an edge of the polygon, and each edge makes a new cell.
     std::size_t n_edges = 0;
     double new_volume = 0;
-    for (const auto& f : outer_faces(mesh, dead)) {
+    for (const auto& f : outer_faces(mesh, removed)) {
       const auto at = std::find(f.begin(), f.end(), V(0));
       if (at == f.end()) continue;
       ++n_edges;
@@ -83,9 +83,9 @@ double brute_force(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces
       new_volume += quality_of(mesh, tet, Volume{});
     }
     double old_volume = 0;
-    for (CellHandle c : dead) old_volume += quality_of(mesh, mesh.cell(c).v, Volume{});
+    for (CellHandle c : removed) old_volume += quality_of(mesh, mesh.cell(c).v, Volume{});
     // A set in several parts has too many edges; where the new edge leaves the lens, cells overlap.
-    if (n_edges != dead.size() / 2 + 2 || std::abs(new_volume - old_volume) > 1e-9 * old_volume) continue;
+    if (n_edges != removed.size() / 2 + 2 || std::abs(new_volume - old_volume) > 1e-9 * old_volume) continue;
     best = std::max(best, worst);
   }
   return best;
@@ -119,11 +119,11 @@ TEST(MultiFaceRemoval, ProgrammeFindsTheBestOfAllTrees) {
         continue;
       }
       ++accepted;
-      several += plan->n_dead > 2 ? 1 : 0;
+      several += plan->n_removed > 2 ? 1 : 0;
       const Cavity cavity = cavity_of(op, mesh, *plan);
       double all = plan->new_worst;
       for (CellHandle c : mesh.cells())
-        if (std::find(cavity.dead.begin(), cavity.dead.end(), c) == cavity.dead.end())
+        if (std::find(cavity.removed.begin(), cavity.removed.end(), c) == cavity.removed.end())
           all = std::min(all, quality[c.idx()]);
       EXPECT_NEAR(all, best, 1e-12) << n;
     }

@@ -8,7 +8,7 @@
 #include "Operators/FaceSwap.hh"
 #include "Operators/MultiFaceRemoval.hh"
 #include "Operators/StarFromVertex.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 
 namespace hfr::test {
 namespace {
@@ -101,9 +101,9 @@ TEST_P(OperatorProperty, MultiFaceRemovalKeepsTheMeshWhole) {
   EXPECT_GT(tally.from_inverted, GetParam() > 0.4 ? 30 : -1);
 }
 
-TEST_P(OperatorProperty, VertexRemovalKeepsTheMeshWhole) {
+TEST_P(OperatorProperty, VertexCollapseKeepsTheMeshWhole) {
   const auto make = [](const auto& quality, const auto& frozen) {
-    return VertexRemoval<VolumeLength>{{}, quality, frozen};
+    return VertexCollapse<VolumeLength>{{}, quality, frozen};
   };
   const Tally tally = apply_everywhere(GetParam(), 30, make, all_vertices);
   EXPECT_GT(tally.accepted, 40);

@@ -8,18 +8,18 @@
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Operators/WriteCells.hh"
 
 namespace hfr::test {
 namespace {
 
-TEST(Replace, BornCellsTakeTheSlotsOfTheDeadAndThenTheFreeListFromItsBack) {
+TEST(Replace, CreatedCellsTakeTheSlotsOfTheRemovedAndThenTheFreeListFromItsBack) {
   TetMesh mesh = octahedron({0.97, 0, 0});
   {  // 8 cells become 4: four slots are freed
     const auto quality = qualities(mesh, VolumeLength{});
     const auto frozen = frozen_vertices(mesh);
-    const VertexRemoval<VolumeLength> op{{}, quality, frozen};
+    const VertexCollapse<VolumeLength> op{{}, quality, frozen};
     Scope scope;
     op.scope(mesh, V(0), scope);
     ASSERT_TRUE(apply(op, mesh, V(0)));
@@ -35,7 +35,7 @@ TEST(Replace, BornCellsTakeTheSlotsOfTheDeadAndThenTheFreeListFromItsBack) {
     FaceSwap<VolumeLength>::Plan plan;
     plan.seed = h;
     Cavity cavity;
-    FaceSwap<VolumeLength>{}.commit(mesh, plan, cavity);
+    FaceSwap<VolumeLength>{}.cavity(mesh, plan, cavity);
     replace(mesh, cavity);
     break;
   }
@@ -70,11 +70,11 @@ TEST(Replace, NewVertexInheritsTheFieldsOfTheNearestOfItsCluster) {
   for (VertexHandle v : mesh.vertices()) heat[v] = 100.0 + static_cast<double>(v.idx());
   Cavity cavity;
   for (CellHandle c : mesh.cells()) {
-    cavity.dead.push_back(c);
+    cavity.removed.push_back(c);
     const auto f = mesh.halfface_vertices(mesh.vertex_opposite_halfface(c, V(0)));
-    cavity.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+    cavity.created.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
   }
-  cavity.removed = V(0);
+  cavity.removed_vertex = V(0);
   cavity.new_vertex = Vec3{0.1, -0.6, 0.2};  // next to vertex 4
   replace(mesh, cavity);
   ASSERT_EQ(check(mesh), Ok);
@@ -82,7 +82,7 @@ TEST(Replace, NewVertexInheritsTheFieldsOfTheNearestOfItsCluster) {
   EXPECT_EQ(heat[V(7)], 104.0);
 }
 
-TEST(Replace, HooksPointToLiveCellsOfTheirVertex) {
+TEST(Replace, IncidentCellsAreLiveCellsOfTheirVertex) {
   TetMesh mesh = jittered(3, 0.35, 2);
   int committed = 0;
   for (int pass = 0; pass < 2; ++pass) {
@@ -93,8 +93,8 @@ TEST(Replace, HooksPointToLiveCellsOfTheirVertex) {
         if (!apply(EdgeRemoval<VolumeLength>{{}, quality}, mesh, EdgeHandle(6 * i + e))) continue;
         ++committed;
         for (VertexHandle v : mesh.vertices()) {
-          ASSERT_FALSE(mesh.is_deleted(mesh.hook(v)));
-          ASSERT_TRUE(mesh.cell(mesh.hook(v)).has(v));
+          ASSERT_FALSE(mesh.is_deleted(mesh.incident_cell(v)));
+          ASSERT_TRUE(mesh.cell(mesh.incident_cell(v)).has(v));
         }
       }
     }
@@ -121,12 +121,12 @@ TEST(WriteCells, NeighboursAreLeftToTheCaller) {
   FaceSwap<VolumeLength>::Plan plan;
   plan.seed = seed;
   Cavity cavity;
-  FaceSwap<VolumeLength>{}.commit(mesh, plan, cavity);
+  FaceSwap<VolumeLength>{}.cavity(mesh, plan, cavity);
   std::vector<Cell> before;
   for (std::size_t i = 0; i < mesh.n_cells(); ++i) before.push_back(mesh.cell(C(i)));
   const std::size_t n = mesh.n_cells();
   TetMesh::Writer(mesh).resize_cells(n + 1);
-  const std::array<CellHandle, 3> slots = {cavity.dead[0], cavity.dead[1], C(n)};
+  const std::array<CellHandle, 3> slots = {cavity.removed[0], cavity.removed[1], C(n)};
   std::vector<OuterFace> notes;
   write_cells(mesh, cavity, slots, VertexHandle(), notes);
   EXPECT_EQ(notes.size(), 6U);

@@ -45,7 +45,7 @@ SmoothTally smooth_stars(const Search& search, const Metric& metric, double jitt
       EXPECT_GT(plan->new_worst, before);
       const Vec3 home = mesh.point(v);
       Cavity cavity;
-      op.commit(mesh, *plan, cavity);
+      op.cavity(mesh, *plan, cavity);
       replace(mesh, cavity);  // apply() may find that other cells of the star suffer
       double after = std::numeric_limits<double>::infinity();
       for (CellHandle c : mesh.vertex_cells(v))

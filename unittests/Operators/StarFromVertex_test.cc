@@ -7,7 +7,7 @@
 #include "Operators/Clusters.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 
 namespace hfr::test {
 namespace {
@@ -105,9 +105,9 @@ TEST(StarFromVertex, NodeClustersAgreeWithBruteForceAndWithVertexRemoval) {
   for (std::uint64_t s = 1; s <= 40; ++s) {
     const Sample sample(s);
     const StarFromVertex<Cluster::kNode, VolumeLength> star{{}, sample.quality, sample.frozen};
-    const VertexRemoval<VolumeLength> removal{{}, sample.quality, sample.frozen};
+    const VertexCollapse<VolumeLength> removal{{}, sample.quality, sample.frozen};
     for (VertexHandle v : all_vertices(sample.mesh)) {
-      const CellHandle c = sample.mesh.hook(v);
+      const CellHandle c = sample.mesh.incident_cell(v);
       const StarFromVertex<Cluster::kNode, VolumeLength>::Seed seed{
           c, static_cast<std::uint8_t>(sample.mesh.cell(c).corner(v))};
       if (sample.frozen[v.idx()]) {
@@ -163,7 +163,7 @@ TEST(StarFromVertex, NewVertexInTheMiddleOfAnEdgeClusterJoinsTheMesh) {
     ++accepted;
     ASSERT_EQ(check(mesh), Ok);
     EXPECT_EQ(mesh.n_vertices(), n + 1);
-    EXPECT_TRUE(mesh.hook(V(n)).is_valid());
+    EXPECT_TRUE(mesh.incident_cell(V(n)).is_valid());
     EXPECT_EQ(mesh.n_logical_cells(), 2 * (n - 2));
     EXPECT_NEAR(volume(mesh), before, 1e-12);
     EXPECT_TRUE(boundary_of(mesh) == boundary);

@@ -81,16 +81,16 @@ TYPED_TEST(VertexInsertionMetrics, AcceptedCavitiesKeepVolumeAndRaiseTheWorst) {
       Star scratch;
       if (!admissible(mesh, cavity, true, scratch)) continue;
       ++accepted;
-      dug += plan->n_dead > 1 ? 1 : 0;
+      dug += plan->n_removed > 1 ? 1 : 0;
       replace(mesh, cavity);
       double new_worst = std::numeric_limits<double>::infinity();
-      std::size_t n_born = 0;
+      std::size_t n_created = 0;
       for (CellHandle c : mesh.cells()) {
         if (!mesh.cell(c).has(fresh)) continue;
-        ++n_born;
+        ++n_created;
         new_worst = std::min(new_worst, quality_of(mesh, mesh.cell(c).v, metric));
       }
-      EXPECT_EQ(n_born, plan->n_born);
+      EXPECT_EQ(n_created, plan->n_created);
       EXPECT_EQ(new_worst, plan->new_worst) << "the plan is not what it claims";
       const CheckResult result = check(mesh);
       EXPECT_EQ(result, Ok);
@@ -247,7 +247,7 @@ TEST(VertexInsertion, PoorCellsDoNotMultiply) {
       if (!plan) continue;
       TetMesh mesh = first;
       Cavity cavity;
-      op.commit(mesh, *plan, cavity);
+      op.cavity(mesh, *plan, cavity);
       Star scratch;
       if (!admissible(mesh, cavity, true, scratch)) continue;
       replace(mesh, cavity);

@@ -5,8 +5,8 @@
 
 #include "Operators/Metrics.hh"
 #include "Operators/Replace.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Operators/VertexInsertion.hh"
-#include "Operators/VertexRemoval.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Refine.hh"
@@ -91,7 +91,7 @@ TEST(Patch, WhatCameWentAndMovedArrives) {
         const VertexHandle v = V(engine() % changed.n_vertices());
         const CellHandle c = C(engine() % changed.n_cells());
         if (!changed.is_deleted(v) && !frozen[v.idx()])
-          went += apply(VertexRemoval<MinSine2>{{}, quality, frozen}, changed, v) ? 1 : 0;
+          went += apply(VertexCollapse<MinSine2>{{}, quality, frozen}, changed, v) ? 1 : 0;
         else if (!changed.is_deleted(c))
           came += apply(VertexInsertion<MinSine2>{{}, quality}, changed, VertexInsertion<MinSine2>::Seed(c));
       }

@@ -15,12 +15,12 @@ namespace {
 void cut(TetMesh& mesh, CellHandle c) {
   Cavity cavity;
   const auto v = mesh.cell(c).v;
-  cavity.dead.push_back(c);
+  cavity.removed.push_back(c);
   cavity.new_vertex = 0.25 * ((mesh.point(v[0]) + mesh.point(v[1])) + (mesh.point(v[2]) + mesh.point(v[3])));
   for (std::size_t k = 0; k < 4; ++k) {
-    Tet born = {v[0], v[1], v[2], v[3]};
-    born[k] = Cavity::kNewVertex;
-    cavity.born.push_back(born);
+    Tet created = {v[0], v[1], v[2], v[3]};
+    created[k] = Cavity::kNewVertex;
+    cavity.created.push_back(created);
   }
   replace(mesh, cavity);
 }
@@ -51,9 +51,9 @@ TEST(Trial, CellsThatRaiseTheWorstStay) {
     const double before = smallest_dihedral(bench.mesh, {});
     Trial trial(bench.stage.run, goal);
     Cavity cavity;
-    cavity.dead.push_back(C(0));
-    cavity.dead.push_back(C(1));
-    for (std::size_t i = 0; i < 3; ++i) cavity.born.push_back(Tet{V(4), V(3), V(i), V((i + 1) % 3)});
+    cavity.removed.push_back(C(0));
+    cavity.removed.push_back(C(1));
+    for (std::size_t i = 0; i < 3; ++i) cavity.created.push_back(Tet{V(4), V(3), V(i), V((i + 1) % 3)});
     replace(bench.mesh, cavity);
     ASSERT_EQ(check(bench.mesh), Ok);
     ASSERT_GT(smallest_dihedral(bench.mesh, {}), before + 1);

@@ -74,7 +74,7 @@ TEST(Untangle, FoldedBoundaryLeavesOnlyWhatTouchesIt) {
     EXPECT_FALSE(result.goal_reached);
     for (const StuckCell& stuck : result.stuck)
       if (stuck.degrees <= 0) {
-        EXPECT_EQ(stuck.limit, Limit::kFoldedSurface);
+        EXPECT_EQ(stuck.reason, StuckReason::kFoldedSurface);
       }
   }
   EXPECT_GT(with_folds, 3U);

@@ -42,18 +42,18 @@ struct SplitCell {
     plan.seed = seed;
     plan.old_worst = 0;
     plan.new_worst = 1;  // wanted for its own sake
-    plan.n_dead = 1;
-    plan.n_born = 4;
+    plan.n_removed = 1;
+    plan.n_created = 4;
     plan.adds_vertex = true;
     for (VertexHandle v : mesh.cell(seed).v) plan.middle = plan.middle + 0.25 * mesh.point(v);
     return plan;
   }
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
     out.clear();
-    out.dead.push_back(plan.seed);
+    out.removed.push_back(plan.seed);
     for (int k = 0; k < 4; ++k) {
       const auto f = mesh.halfface_vertices(halfface_of(plan.seed, k));
-      out.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+      out.created.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
     }
     out.new_vertex = plan.middle;
   }
@@ -69,7 +69,7 @@ struct NoIdentity {
   VolumeLength metric;
   void scope(const TetMesh&, Seed, Scope&) const;
   std::optional<Plan> evaluate(const TetMesh&, Seed) const;
-  void commit(const TetMesh&, const Plan&, Cavity&) const;
+  void cavity(const TetMesh&, const Plan&, Cavity&) const;
 };
 static_assert(!LocalOperator<NoIdentity>);
 
@@ -82,7 +82,7 @@ struct PlanThatAllocates {
   VolumeLength metric;
   void scope(const TetMesh&, Seed, Scope&) const;
   std::optional<Plan> evaluate(const TetMesh&, Seed) const;
-  void commit(const TetMesh&, const Plan&, Cavity&) const;
+  void cavity(const TetMesh&, const Plan&, Cavity&) const;
   Tet identity(const TetMesh&, Seed) const;
 };
 static_assert(!LocalOperator<PlanThatAllocates>);
@@ -158,20 +158,20 @@ struct SplitBoundaryEdge {
     Plan plan;
     plan.seed = seed;
     plan.new_worst = 1;  // wanted for its own sake
-    for (CellHandle c : mesh.edge_cells(seed)) plan.n_dead += c.is_valid() ? 1 : 0;
-    plan.n_born = 2 * plan.n_dead;
+    for (CellHandle c : mesh.edge_cells(seed)) plan.n_removed += c.is_valid() ? 1 : 0;
+    plan.n_created = 2 * plan.n_removed;
     plan.adds_vertex = true;
     return plan;
   }
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
     out.clear();
     const auto [a, b] = mesh.edge_vertices(plan.seed);
-    for (CellHandle c : mesh.edge_cells(plan.seed)) out.dead.push_back(c);
-    for (CellHandle c : out.dead)
+    for (CellHandle c : mesh.edge_cells(plan.seed)) out.removed.push_back(c);
+    for (CellHandle c : out.removed)
       for (VertexHandle end : {a, b}) {
         Tet half = mesh.cell(c).v;
         std::replace(half.begin(), half.end(), end, Cavity::kNewVertex);
-        out.born.push_back(half);
+        out.created.push_back(half);
       }
     out.new_vertex = 0.5 * (mesh.point(a) + mesh.point(b));
   }
@@ -285,22 +285,22 @@ struct SwapOnBoundary {
     Plan plan;
     plan.seed = seed;
     plan.new_worst = 1;
-    plan.n_dead = plan.n_born = 2;
+    plan.n_removed = plan.n_created = 2;
     return plan;
   }
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
     Scope cells;
     scope(mesh, plan.seed, cells);
     const auto [a, b] = mesh.edge_vertices(plan.seed);
     out.clear();
-    for (CellHandle c : cells) out.dead.push_back(c);
+    for (CellHandle c : cells) out.removed.push_back(c);
     VertexHandle far;
     for (VertexHandle v : mesh.cell(cells[1]).v)
       if (!mesh.cell(cells[0]).has(v)) far = v;
     for (VertexHandle end : {a, b}) {
       Tet t = mesh.cell(cells[0]).v;
       std::replace(t.begin(), t.end(), end, far);
-      out.born.push_back(t);
+      out.created.push_back(t);
     }
   }
   Tet identity(const TetMesh& mesh, Seed seed) const { return edge_identity(mesh, seed); }

@@ -15,7 +15,7 @@
 #include "Operators/Metrics.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/StarFromVertex.hh"
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Quality/Damage.hh"
 #include "Scheduler/Rank.hh"
 #include "Scheduler/Seeds.hh"
@@ -47,7 +47,7 @@ struct Marker {
     plan.new_worst = plan.old_worst + 1;
     return plan;
   }
-  void commit(const TetMesh&, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh&, const Plan& plan, Cavity& out) const {
     out.clear();
     out.moved = plan.seed;
     out.target = kMark;
@@ -62,8 +62,8 @@ struct Candidate {
   std::uint64_t key = 0;
   Tet identity{};
   std::set<CellHandle> scope;
-  std::vector<Tet> dead, born;
-  std::set<std::vector<VertexHandle>> made;  ///< edges and faces that the dead cells do not have
+  std::vector<Tet> removed, created;
+  std::set<std::vector<VertexHandle>> made;  ///< edges and faces that the removed cells do not have
 };
 
 template <class T>
@@ -169,8 +169,8 @@ bool damages_more(const TetMesh& mesh, const Cavity& cavity) {
     std::get<1>(sum[side]) += invalid;
     std::get<2>(sum[side]) += overlap;
   };
-  for (CellHandle c : cavity.dead) add(0, mesh.cell(c).v);
-  for (const Tet& t : cavity.born) add(1, t);
+  for (CellHandle c : cavity.removed) add(0, mesh.cell(c).v);
+  for (const Tet& t : cavity.created) add(1, t);
   const auto& [inverted, invalid, overlap] = sum[0];
   const auto& [new_inverted, new_invalid, new_overlap] = sum[1];
   if (new_inverted > inverted || new_invalid > invalid) return true;
@@ -183,12 +183,12 @@ std::optional<Candidate> candidate_of(const TetMesh& mesh, const Op& op, typenam
   const auto plan = op.evaluate(mesh, seed);
   if (!plan) return std::nullopt;
   Cavity cavity;
-  op.commit(mesh, *plan, cavity);
+  op.cavity(mesh, *plan, cavity);
   Star scratch;
   if (!admissible(mesh, cavity, true, scratch)) return std::nullopt;
   std::ptrdiff_t more_invalid = 0;
-  for (const Tet& t : cavity.born) more_invalid += quality_of(mesh, t, op.metric) > 0 ? 0 : 1;
-  for (CellHandle c : cavity.dead) more_invalid -= quality_of(mesh, mesh.cell(c).v, op.metric) > 0 ? 0 : 1;
+  for (const Tet& t : cavity.created) more_invalid += quality_of(mesh, t, op.metric) > 0 ? 0 : 1;
+  for (CellHandle c : cavity.removed) more_invalid -= quality_of(mesh, mesh.cell(c).v, op.metric) > 0 ? 0 : 1;
   if (more_invalid > 0 || damages_more(mesh, cavity)) return std::nullopt;
   Candidate candidate;
   candidate.identity = op.identity(mesh, seed);
@@ -199,10 +199,10 @@ std::optional<Candidate> candidate_of(const TetMesh& mesh, const Op& op, typenam
   Scope scope;
   op.scope(mesh, seed, scope);
   candidate.scope.insert(scope.begin(), scope.end());
-  for (CellHandle c : cavity.dead) candidate.dead.push_back(sorted(mesh.cell(c).v));
-  for (const Tet& t : cavity.born) candidate.born.push_back(sorted(t));
-  candidate.made = edges_and_faces(candidate.born);
-  for (const auto& old : edges_and_faces(candidate.dead)) candidate.made.erase(old);
+  for (CellHandle c : cavity.removed) candidate.removed.push_back(sorted(mesh.cell(c).v));
+  for (const Tet& t : cavity.created) candidate.created.push_back(sorted(t));
+  candidate.made = edges_and_faces(candidate.created);
+  for (const auto& old : edges_and_faces(candidate.removed)) candidate.made.erase(old);
   return candidate;
 }
 
@@ -217,15 +217,15 @@ int adjacent_pairs(const TetMesh& mesh, const std::vector<Candidate>& winners) {
   return pairs;
 }
 
-/// After a round: whole, cached values right, nothing claimed, hooks live.
+/// After a round: whole, cached values right, nothing claimed, incident cells live.
 void expect_sound(const TetMesh& mesh, const Workspace& work) {
   ASSERT_EQ(check(mesh), Ok);
   EXPECT_EQ(work.quality, qualities(mesh, VolumeLength{}));
   EXPECT_EQ(work.star_size, star_sizes(mesh));
   for (std::uint32_t claim : work.claim) ASSERT_EQ(claim, kUnclaimed);
   for (VertexHandle v : mesh.vertices()) {
-    ASSERT_TRUE(mesh.hook(v).is_valid());
-    ASSERT_TRUE(mesh.cell(mesh.hook(v)).has(v));
+    ASSERT_TRUE(mesh.incident_cell(v).is_valid());
+    ASSERT_TRUE(mesh.cell(mesh.incident_cell(v)).has(v));
   }
   std::set<CellHandle> free(mesh.free_cells().begin(), mesh.free_cells().end());
   EXPECT_EQ(free.size(), mesh.free_cells().size());
@@ -242,8 +242,8 @@ int round_against_brute_force(TetMesh& mesh, Workspace& work, const Op& op, cons
   const auto winners = first_independent_set(candidates);
   std::set<Tet> expected = tets_of(mesh);
   for (const Candidate& winner : winners) {
-    for (const Tet& t : winner.dead) expected.erase(t);
-    for (const Tet& t : winner.born) expected.insert(t);
+    for (const Tet& t : winner.removed) expected.erase(t);
+    for (const Tet& t : winner.created) expected.insert(t);
   }
   const int adjacent = adjacent_pairs(mesh, winners);
   const std::vector<double> quality = work.quality;
@@ -296,13 +296,13 @@ TEST(Round, RingOfFaceAdjacentSwapsInOneRoundLeavesValidMates) {
   EXPECT_GT(adjacent, 30);
 }
 
-TEST(Round, VertexRemovalsGiveTheirSlotsAndVerticesBack) {
+TEST(Round, VertexCollapsesGiveTheirSlotsAndVerticesBack) {
   std::size_t removed = 0;
   for (std::uint64_t s = 1; s <= 10; ++s) {
     Bench bench(0.45, s);
     const auto seeds = vertex_seeds(bench.mesh, bench.everything(), bench.work.frozen, {});
     const std::size_t before = bench.mesh.n_logical_vertices();
-    const VertexRemoval<VolumeLength> op{{}, bench.work.quality, bench.work.frozen};
+    const VertexCollapse<VolumeLength> op{{}, bench.work.quality, bench.work.frozen};
     round_against_brute_force(bench.mesh, bench.work, op, seeds, {s % 2 ? 1 : 3, 1});
     removed += before - bench.mesh.n_logical_vertices();
   }
@@ -316,8 +316,8 @@ TEST(Round, RemovalsThatWouldTakeAwayTooManyCellsAreGivenUpLastRanksFirst) {
     const auto run = [](Bench& bench, std::size_t may_lose, std::vector<VertexHandle>& removed) {
       RoundOptions options{{}, true, 1};
       options.may_lose = may_lose;
-      const VertexRemoval<VolumeLength> op{{}, bench.work.quality, bench.work.frozen};
-      Round<VertexRemoval<VolumeLength>> round(bench.mesh, bench.work, options);
+      const VertexCollapse<VolumeLength> op{{}, bench.work.quality, bench.work.frozen};
+      Round<VertexCollapse<VolumeLength>> round(bench.mesh, bench.work, options);
       const auto seeds = vertex_seeds(bench.mesh, bench.everything(), bench.work.frozen, {});
       const RoundCounts counts = round.run(op, seeds);
       round.for_committed([&](const auto& plan, VertexHandle) { removed.push_back(plan.seed); });
@@ -350,12 +350,12 @@ TEST(Round, RemovalsThatWouldTakeAwayTooManyCellsAreGivenUpLastRanksFirst) {
   EXPECT_GT(committed, 5U);
 }
 
-using EdgeFaceOrNode = AnyOf<EdgeRemoval<VolumeLength>, FaceSwap<VolumeLength>, VertexRemoval<VolumeLength>>;
+using EdgeFaceOrNode = AnyOf<EdgeRemoval<VolumeLength>, FaceSwap<VolumeLength>, VertexCollapse<VolumeLength>>;
 static_assert(LocalOperator<EdgeFaceOrNode>);
 
 EdgeFaceOrNode edge_face_or_node(const Workspace& work) {
   return {{EdgeRemoval<VolumeLength>{{}, work.quality}, FaceSwap<VolumeLength>{{}, work.quality},
-           VertexRemoval<VolumeLength>{{}, work.quality, work.frozen}}};
+           VertexCollapse<VolumeLength>{{}, work.quality, work.frozen}}};
 }
 
 std::vector<EdgeFaceOrNode::Seed> seeds_of_all_kinds(const Bench& bench) {
@@ -439,8 +439,8 @@ TEST(Round, WorstFirstCommitsTheWorstOfEveryNeighbourhood) {
     }
     std::set<Tet> expected = tets_of(bench.mesh);
     for (const Candidate& winner : first_independent_set(ranked)) {
-      for (const Tet& t : winner.dead) expected.erase(t);
-      for (const Tet& t : winner.born) expected.insert(t);
+      for (const Tet& t : winner.removed) expected.erase(t);
+      for (const Tet& t : winner.created) expected.insert(t);
     }
     Bench by_buckets(0.45, s);
     for (const int threads : {1, 3}) {
@@ -510,7 +510,7 @@ TetMesh run_rounds(double jitter, std::uint64_t seed, par::Policy policy, std::s
     run(EdgeRemoval<VolumeLength>{{}, bench.work.quality},
         edge_seeds(bench.mesh, bench.everything(), policy));
     run(FaceSwap<VolumeLength>{{}, bench.work.quality}, face_seeds(bench.mesh, bench.everything(), policy));
-    run(VertexRemoval<VolumeLength>{{}, bench.work.quality, bench.work.frozen},
+    run(VertexCollapse<VolumeLength>{{}, bench.work.quality, bench.work.frozen},
         vertex_seeds(bench.mesh, bench.everything(), bench.work.frozen, policy));
     run(edge_face_or_node(bench.work), seeds_of_all_kinds(bench));
   }
@@ -530,7 +530,7 @@ TEST(Round, SameBitsForAnyNumberOfThreads) {
   }
 }
 
-TEST(Round, HooksOfTouchedVerticesAreTheSmallestCellMade) {
+TEST(Round, IncidentCellsOfTouchedVerticesAreTheSmallestCellMade) {
   Bench bench(0.35, 6);
   const TetMesh before = bench.mesh;
   Round<EdgeRemoval<VolumeLength>> round(bench.mesh, bench.work, {{3, 1}, true, 1});
@@ -543,7 +543,7 @@ TEST(Round, HooksOfTouchedVerticesAreTheSmallestCellMade) {
   EXPECT_GT(smallest.size(), 20U);
   for (VertexHandle v : before.vertices()) {
     const auto at = smallest.find(v);
-    EXPECT_EQ(bench.mesh.hook(v), at == smallest.end() ? before.hook(v) : at->second);
+    EXPECT_EQ(bench.mesh.incident_cell(v), at == smallest.end() ? before.incident_cell(v) : at->second);
   }
 }
 
@@ -670,7 +670,7 @@ TEST(Round, InvertedAndFlatCellsNeverBecomeMore) {
             50U);
   EXPECT_GT(expect_no_more_damage(
                 [](Workspace& w) {
-                  return VertexRemoval<VolumeLength>{{}, w.quality, w.frozen};
+                  return VertexCollapse<VolumeLength>{{}, w.quality, w.frozen};
                 },
                 vertices),
             10U);

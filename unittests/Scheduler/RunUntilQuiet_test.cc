@@ -61,15 +61,15 @@ struct SplitAny {
     out.push_back(c);
   }
   std::optional<Plan> evaluate(const TetMesh&, Seed c) const {
-    return Plan{{.old_worst = 0, .new_worst = 1, .n_dead = 1, .n_born = 4, .adds_vertex = true}, c};
+    return Plan{{.old_worst = 0, .new_worst = 1, .n_removed = 1, .n_created = 4, .adds_vertex = true}, c};
   }
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
     out.clear();
-    out.dead.push_back(plan.seed);
+    out.removed.push_back(plan.seed);
     Vec3 middle;
     for (HalfFaceHandle h : mesh.cell_halffaces(plan.seed)) {
       const auto f = mesh.halfface_vertices(h);
-      out.born.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
+      out.created.push_back({f[0], f[1], f[2], Cavity::kNewVertex});
       middle = middle + 0.25 * mesh.point(mesh.halfface_opposite_vertex(h));
     }
     out.new_vertex = middle;

@@ -14,8 +14,8 @@
 #include "Operators/SmoothLaplacian.hh"
 #include "Operators/SmoothMaxMin.hh"
 #include "Operators/SmoothNewton.hh"
+#include "Operators/VertexCollapse.hh"
 #include "Operators/VertexInsertion.hh"
-#include "Operators/VertexRemoval.hh"
 #include "Parallel/Sort.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Statistics.hh"
@@ -95,8 +95,9 @@ TEST(ShuffledAlgorithms, StarsAndColoursAreThoseOfOneThread) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
     const TetMesh mesh =
-        seed % 8 == 0 ? built(neighbourly(70))
-                      : limit_mesh(static_cast<Limit>(seed % static_cast<int>(Limit::kLimits)), engine);
+        seed % 8 == 0
+            ? built(neighbourly(70))
+            : limit_mesh(static_cast<StuckReason>(seed % static_cast<int>(StuckReason::kLimits)), engine);
     const double share = seed % 3 == 0 ? 0.03 : uniform(engine, 0.3, 1.0);
     std::vector<VertexHandle> vertices;
     const auto sizes = star_sizes(mesh);
@@ -205,7 +206,7 @@ std::size_t run_kind(State& state, std::uint64_t kind, const Metric& metric, con
       Worklist list(state.mesh, options.policy, [](CellHandle) { return true; });
       auto seeds = vertex_seeds(state.mesh, list, state.work.frozen, options.policy);
       drop_pinched(state.mesh, state.work.star_size, seeds, options.policy);
-      Round<VertexRemoval<Metric>> round(state.mesh, state.work, options);
+      Round<VertexCollapse<Metric>> round(state.mesh, state.work, options);
       return round.run({metric, state.work.quality, state.work.frozen}, seeds).winners;
     }
   }
@@ -216,8 +217,10 @@ TEST(ShuffledAlgorithms, RoundsOfEachOperatorAreThoseOfOneThread) {
   for_seeds(kSeeds, [&](std::uint64_t seed) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
-    State one{limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine),
-              {}};
+    State one{
+        limit_mesh(static_cast<StuckReason>(engine() % static_cast<std::uint64_t>(StuckReason::kLimits)),
+                   engine),
+        {}};
     one.work.attach(one.mesh, kOneThread);
     one.work.set_qualities(one.mesh, MinSine2{}, kOneThread);
     State many = one;
@@ -239,8 +242,10 @@ TEST(ShuffledAlgorithms, SmoothingPassesAreThoseOfOneThread) {
   for_seeds(kSeeds, [&](std::uint64_t seed) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
-    State one{limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine),
-              {}};
+    State one{
+        limit_mesh(static_cast<StuckReason>(engine() % static_cast<std::uint64_t>(StuckReason::kLimits)),
+                   engine),
+        {}};
     one.work.attach(one.mesh, kOneThread);
     std::vector<VertexHandle> vertices;
     for (VertexHandle v : one.mesh.vertices())
@@ -300,8 +305,8 @@ TEST(ShuffledAlgorithms, BuildingMeasuringAndReorderingGiveOneResult) {
   for_seeds(kSeeds, [](std::uint64_t seed) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
-    TetMesh mesh =
-        limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine);
+    TetMesh mesh = limit_mesh(
+        static_cast<StuckReason>(engine() % static_cast<std::uint64_t>(StuckReason::kLimits)), engine);
     std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
     std::vector<Corners> cells;
     for (CellHandle c : mesh.cells()) {

@@ -72,7 +72,8 @@ std::string story(const Result& result) {
       all += " " + std::to_string(n);
   }
   for (const StuckCell& cell : result.stuck)
-    all += "\n" + std::to_string(cell.cell.idx()) + " " + kLimitNames[static_cast<std::size_t>(cell.limit)];
+    all += "\n" + std::to_string(cell.cell.idx()) + " " +
+           kStuckReasonNames[static_cast<std::size_t>(cell.reason)];
   return all;
 }
 
@@ -91,10 +92,10 @@ TEST_P(ShuffledDrivers, EveryPipelineGivesTheBitsOfOneThread) {
     const std::size_t which = seed % all.size();
     ImproveOptions options = all[which].options;
     SCOPED_TRACE(all[which].name);
-    const auto kind = engine() % (static_cast<std::uint64_t>(Limit::kLimits) + 1);
-    TetMesh one = kind == static_cast<std::uint64_t>(Limit::kLimits)
+    const auto kind = engine() % (static_cast<std::uint64_t>(StuckReason::kLimits) + 1);
+    TetMesh one = kind == static_cast<std::uint64_t>(StuckReason::kLimits)
                       ? labelled_box(3, 0.35, seed)
-                      : limit_mesh(static_cast<Limit>(kind), engine);
+                      : limit_mesh(static_cast<StuckReason>(kind), engine);
     TetMesh many = one;
     options.seed = seed;
     options.policy = kOneThread;

@@ -95,7 +95,7 @@ TEST(InterfacesProperty, SwapsAndCollapsesChangeBothSidesAndKeepTheirVolumes) {
       const auto plan = try_on(InterfaceSwap<VolumeLength>{{}, quality, &surface}, mesh, e);
       if (!plan) continue;
       ++n_swaps;
-      surface.swapped(plan->edge[0], plan->edge[1]);
+      surface.on_swap(plan->edge[0], plan->edge[1]);
       surface.write_labels(mesh);
       expect_sound(worst_before);
     }
@@ -109,9 +109,9 @@ TEST(InterfacesProperty, SwapsAndCollapsesChangeBothSidesAndKeepTheirVolumes) {
       const SurfaceCollapse<VolumeLength> op{{}, quality, &surface, targets};
       const auto plan = try_on(op, mesh, {v, 0, static_cast<std::uint32_t>(targets.size())});
       if (!plan) continue;
-      EXPECT_GT(plan->n_dead_first, 0U);
+      EXPECT_GT(plan->n_removed_first, 0U);
       ++n_collapses;
-      surface.collapsed(v, plan->onto);
+      surface.on_collapse(v, plan->onto);
       surface.write_labels(mesh);
       expect_sound(worst_before);
     }

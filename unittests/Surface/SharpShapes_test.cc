@@ -71,7 +71,7 @@ struct Sharp {
       for (std::size_t k = 0; k < 3; ++k)
         faces_of[AnyOrder::key(std::array{v[k], v[(k + 1) % 3]})].push_back(f);
       for (VertexHandle w : v)
-        if (surface.freedom(w).kind == SurfaceKind::kFixed) corners.insert(place_of(mesh, w));
+        if (surface.motion_constraint(w).kind == SurfaceKind::kFixed) corners.insert(place_of(mesh, w));
     }
     std::vector<std::size_t> group(surface.n_faces(), surface.n_faces());
     for (const auto& [e, pair] : faces_of)

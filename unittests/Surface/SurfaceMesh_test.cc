@@ -155,8 +155,8 @@ TEST(SurfaceMesh, PatchBordersAreFeatures) {
   }
   const SurfaceMesh surface(mesh, flat());
   EXPECT_EQ(surface.n_feature_edges(), 12U * 4 + 4);
-  EXPECT_EQ(surface.freedom(at(mesh, {0.5, 0.5, 0})).kind, SurfaceKind::kCurve);
-  EXPECT_EQ(surface.freedom(at(mesh, {0.5, 0, 0})).kind, SurfaceKind::kFixed);
+  EXPECT_EQ(surface.motion_constraint(at(mesh, {0.5, 0.5, 0})).kind, SurfaceKind::kCurve);
+  EXPECT_EQ(surface.motion_constraint(at(mesh, {0.5, 0, 0})).kind, SurfaceKind::kFixed);
 }
 
 TEST(SurfaceMesh, WhatTheUserHasLockedStays) {
@@ -165,7 +165,7 @@ TEST(SurfaceMesh, WhatTheUserHasLockedStays) {
   const auto kind_with = [&](auto&& lock) {
     SurfaceOptions options = flat();
     lock(options);
-    return SurfaceMesh(mesh, options).freedom(middle).kind;
+    return SurfaceMesh(mesh, options).motion_constraint(middle).kind;
   };
   const VertexHandle next = at(mesh, {0.75, 0.5, 0});
   EXPECT_EQ(kind_with([](SurfaceOptions&) {}), SurfaceKind::kFacet);
@@ -192,7 +192,7 @@ TEST(SurfaceMesh, InterfaceBelongsToTheSurfaceAndIsSwappedUnlessFixed) {
   EXPECT_EQ(surface.n_faces(), 6U * 16 * 2 + 16 * 2);
   EXPECT_TRUE(surface.in_step(mesh));
   const VertexHandle inside = at(mesh, {0.5, 0.5, 0.5});
-  EXPECT_EQ(surface.freedom(inside).kind, SurfaceKind::kFacet);
+  EXPECT_EQ(surface.motion_constraint(inside).kind, SurfaceKind::kFacet);
   const auto n_swappable = [&](const SurfaceMesh& of) {
     std::size_t n = 0;
     for (EdgeHandle e : mesh.edges()) {

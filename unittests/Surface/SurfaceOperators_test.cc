@@ -61,8 +61,8 @@ Counts work_on(TetMesh& mesh, SurfaceMesh& surface) {
     const auto plan = try_on(op, mesh, e);
     if (!plan) continue;
     ++counts.swaps;
-    counts.peels += plan->n_born + 1 == plan->n_dead ? 1 : 0;
-    surface.swapped(plan->edge[0], plan->edge[1]);
+    counts.peels += plan->n_created + 1 == plan->n_removed ? 1 : 0;
+    surface.on_swap(plan->edge[0], plan->edge[1]);
     expect_sound(before);
   }
   std::vector<VertexHandle> vertices;
@@ -80,7 +80,7 @@ Counts work_on(TetMesh& mesh, SurfaceMesh& surface) {
     if (!plan) continue;
     EXPECT_TRUE(may_gain) << "vertex " << v.idx();
     ++counts.collapses;
-    surface.collapsed(v, plan->onto);
+    surface.on_collapse(v, plan->onto);
     expect_sound(before);
   }
   return counts;
@@ -148,7 +148,7 @@ TEST(SurfaceSwap, DiagonalThatFlattensACellGivesWay) {
   const auto plan =
       try_on(SurfaceSwap<VolumeLength>{{}, quality, &surface}, mesh, mesh.find_edge(V(0), V(2)));
   ASSERT_TRUE(plan);
-  surface.swapped(V(0), V(2));
+  surface.on_swap(V(0), V(2));
   EXPECT_TRUE(surface.in_step(mesh));
   EXPECT_EQ(check(mesh), Ok);
   EXPECT_FALSE(mesh.find_edge(V(0), V(2)).is_valid());
@@ -166,9 +166,9 @@ TEST(SurfaceSwap, FlatCellUnderTwoFacesIsPeeledOff) {
   const auto plan =
       try_on(SurfaceSwap<VolumeLength>{{}, quality, &surface}, mesh, mesh.find_edge(V(0), V(2)));
   ASSERT_TRUE(plan);
-  EXPECT_EQ(plan->n_dead, 3U);
-  EXPECT_EQ(plan->n_born, 2U);
-  surface.swapped(V(0), V(2));
+  EXPECT_EQ(plan->n_removed, 3U);
+  EXPECT_EQ(plan->n_created, 2U);
+  surface.on_swap(V(0), V(2));
   EXPECT_TRUE(surface.in_step(mesh));
   EXPECT_EQ(check(mesh), Ok);
   EXPECT_GT(worst(mesh), 0);
@@ -193,11 +193,12 @@ TEST(SurfaceSplitProperty, NewVerticesLieWhereTheEdgeWasAndRaiseTheWorst) {
       const auto plan = try_on(op, mesh, SurfaceSplit<VolumeLength>::Seed(e));
       if (!plan) continue;
       const VertexHandle middle(mesh.n_vertices() - 1);
-      surface.was_split(a, b, middle, plan->place);
+      surface.on_split(a, b, middle, plan->place);
       ASSERT_EQ(check(mesh), Ok);
       ASSERT_TRUE(surface.in_step(mesh));
       EXPECT_GE(worst(mesh), worst_before);
-      EXPECT_EQ(surface.freedom(middle).kind, is_feature ? SurfaceKind::kCurve : SurfaceKind::kFacet);
+      EXPECT_EQ(surface.motion_constraint(middle).kind,
+                is_feature ? SurfaceKind::kCurve : SurfaceKind::kFacet);
       EXPECT_EQ(surface.is_feature(a, middle), is_feature);
       (is_feature ? n_curve : n_facet) += 1;
     }
@@ -218,7 +219,7 @@ TEST(SurfaceSmooth, VertexOfAFacetStaysInItAndOneOfAnEdgeOnIt) {
     const SurfaceSmooth<VolumeLength> op{{}, quality, none, {&surface}};
     const auto plan = op.evaluate(mesh, v);
     if (!plan) continue;
-    const SurfaceKind kind = surface.freedom(v).kind;
+    const SurfaceKind kind = surface.motion_constraint(v).kind;
     ASSERT_TRUE(kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve);
     (kind == SurfaceKind::kFacet ? n_facet : n_curve) += 1;
     int n_kept = 0;

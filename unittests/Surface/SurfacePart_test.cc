@@ -55,11 +55,12 @@ TEST(SurfacePart, MayDoWhatTheWholeMayAwayFromTheOtherCells) {
     for (VertexHandle v : here.boundary_vertices()) {
       const bool own = is_whole(mesh, there(v), patch);
       n_cut += own ? 0 : 1;
-      EXPECT_EQ(part.freedom(v).kind, own ? whole.freedom(there(v)).kind : SurfaceKind::kFixed);
+      EXPECT_EQ(part.motion_constraint(v).kind,
+                own ? whole.motion_constraint(there(v)).kind : SurfaceKind::kFixed);
       if (!own) continue;
-      ++n_alike[part.freedom(v).kind];
-      EXPECT_EQ(part.freedom(v).axis, whole.freedom(there(v)).axis);
-      EXPECT_EQ(part.freedom(v).anchor, whole.freedom(there(v)).anchor);
+      ++n_alike[part.motion_constraint(v).kind];
+      EXPECT_EQ(part.motion_constraint(v).axis, whole.motion_constraint(there(v)).axis);
+      EXPECT_EQ(part.motion_constraint(v).anchor, whole.motion_constraint(there(v)).anchor);
     }
     EXPECT_GT(n_cut, 10);
     EXPECT_GT(n_alike[SurfaceKind::kFacet], 0);
@@ -112,7 +113,7 @@ TEST(SurfacePart, WhatIsLockedPeriodicOrAnInterfaceStays) {
       if (!interface && !in_plane(2, 0)) continue;
       ++(interface ? n_interface : n_locked);
       for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_EQ(part.freedom(f[k]).kind, SurfaceKind::kFixed);
+        EXPECT_EQ(part.motion_constraint(f[k]).kind, SurfaceKind::kFixed);
         EXPECT_FALSE(part.may_swap(f[k], f[(k + 1) % 3]));
         EXPECT_FALSE(part.may_split(f[k], f[(k + 1) % 3]));
       }

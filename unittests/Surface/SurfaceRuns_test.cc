@@ -221,7 +221,7 @@ Sharp sharp_of(const TetMesh& mesh, SurfaceMode mode) {
   Sharp sharp;
   sharp.n_edges = surface.n_feature_edges();
   for (VertexHandle v : mesh.boundary_vertices())
-    if (surface.freedom(v).kind == SurfaceKind::kFixed) sharp.corners.insert(place_of(mesh, v));
+    if (surface.motion_constraint(v).kind == SurfaceKind::kFixed) sharp.corners.insert(place_of(mesh, v));
   return sharp;
 }
 
@@ -280,11 +280,11 @@ TEST(SurfaceRuns, CellAtANarrowSharpEdgeIsBlamedOnIt) {
     const auto counts = count_limits(result.stuck);
     // In free mode the faces may tilt, so that is no proof.
     if (mode == SurfaceMode::kFlat) {
-      EXPECT_GE(counts[static_cast<std::size_t>(Limit::kSurfaceFeature)], 1U);
+      EXPECT_GE(counts[static_cast<std::size_t>(StuckReason::kSurfaceFeature)], 1U);
     } else {
-      EXPECT_EQ(counts[static_cast<std::size_t>(Limit::kSurfaceFeature)], 0U);
+      EXPECT_EQ(counts[static_cast<std::size_t>(StuckReason::kSurfaceFeature)], 0U);
     }
-    EXPECT_EQ(counts[static_cast<std::size_t>(Limit::kSurfaceCeiling)], 0U);
+    EXPECT_EQ(counts[static_cast<std::size_t>(StuckReason::kSurfaceCeiling)], 0U);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 namespace hfr::test {
 namespace {
 
-static_assert(LocalOperator<VertexRemoval<VolumeLength>>);
+static_assert(LocalOperator<VertexCollapse<VolumeLength>>);
 
-TEST(VertexRemoval, VertexNextToItsNeighbourCollapsesOntoIt) {
+TEST(VertexCollapse, VertexNextToItsNeighbourCollapsesOntoIt) {
   TetMesh mesh = octahedron({0.97, 0, 0});
   const auto quality = qualities(mesh, VolumeLength{});
   const std::vector<std::uint8_t> frozen = frozen_vertices(mesh);
   const double before = volume(mesh);
-  const VertexRemoval<VolumeLength> op{{}, quality, frozen};
+  const VertexCollapse<VolumeLength> op{{}, quality, frozen};
   const auto plan = op.evaluate(mesh, V(0));
   ASSERT_TRUE(plan);
   EXPECT_TRUE(plan->removes_vertex);
@@ -28,7 +28,7 @@ TEST(VertexRemoval, VertexNextToItsNeighbourCollapsesOntoIt) {
   EXPECT_NEAR(volume(mesh), before, 1e-15);
 }
 
-TEST(VertexRemoval, EveryLinkVertexIsTried) {
+TEST(VertexCollapse, EveryLinkVertexIsTried) {
   Engine engine(6);
   std::set<Index> apexes;
   int accepted = 0;
@@ -43,7 +43,7 @@ TEST(VertexRemoval, EveryLinkVertexIsTried) {
     for (CellHandle c : mesh.cells()) star.push_back(c);
     const double best = best_star(mesh, star, VolumeLength{});
     const auto frozen = frozen_vertices(mesh);
-    const VertexRemoval<VolumeLength> op{{}, quality, frozen};
+    const VertexCollapse<VolumeLength> op{{}, quality, frozen};
     const auto plan = op.evaluate(mesh, V(0));
     ASSERT_EQ(plan.has_value(), best > old_worst);
     if (!plan) continue;
@@ -57,12 +57,12 @@ TEST(VertexRemoval, EveryLinkVertexIsTried) {
   EXPECT_EQ(apexes.size(), 6U) << "some link vertex is never chosen";
 }
 
-TEST(VertexRemoval, FrozenAndLabelledVerticesStay) {
+TEST(VertexCollapse, FrozenAndLabelledVerticesStay) {
   TetMesh mesh = octahedron({0.97, 0, 0});
   const auto quality = qualities(mesh, VolumeLength{});
   std::vector<std::uint8_t> frozen(mesh.n_vertices(), 0);
   const auto accepts = [&] {
-    return VertexRemoval<VolumeLength>{{}, quality, frozen}.evaluate(mesh, V(0)).has_value();
+    return VertexCollapse<VolumeLength>{{}, quality, frozen}.evaluate(mesh, V(0)).has_value();
   };
   ASSERT_TRUE(accepts());
   frozen[0] = 1;
@@ -73,7 +73,7 @@ TEST(VertexRemoval, FrozenAndLabelledVerticesStay) {
   EXPECT_FALSE(accepts());
 }
 
-TEST(VertexRemoval, StarTooLargeToHoldIsRefused) {
+TEST(VertexCollapse, StarTooLargeToHoldIsRefused) {
   // Vertex 0 in the middle of a spindle of 150: 300 cells.
   const Index n = 150;
   std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -87,7 +87,7 @@ TEST(VertexRemoval, StarTooLargeToHoldIsRefused) {
   const TetMesh mesh = build(points, cells);
   const std::vector<double> quality(mesh.n_cells(), -1.0);
   const std::vector<std::uint8_t> frozen(mesh.n_vertices(), 0);
-  EXPECT_FALSE((VertexRemoval<VolumeLength>{{}, quality, frozen}.evaluate(mesh, V(0))));
+  EXPECT_FALSE((VertexCollapse<VolumeLength>{{}, quality, frozen}.evaluate(mesh, V(0))));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Remesh/Limits.hh"
+#include "Remesh/StuckCells.hh"
 
 #include <numbers>
 #include <optional>
@@ -12,7 +12,7 @@
 namespace hfr::test {
 namespace {
 
-std::size_t n_of(const std::vector<StuckCell>& cells, Limit limit) {
+std::size_t n_of(const std::vector<StuckCell>& cells, StuckReason limit) {
   return count_limits(cells)[static_cast<std::size_t>(limit)];
 }
 
@@ -54,7 +54,7 @@ TEST(StuckCells, NarrowWedgeOfTheSurfaceIsACeiling) {
   const auto narrow = stuck_cells(wedge(20), 25, {});
   ASSERT_GE(narrow.size(), 1U);
   EXPECT_EQ(narrow[0].cell, C(0));
-  EXPECT_EQ(narrow[0].limit, Limit::kSurfaceCeiling);
+  EXPECT_EQ(narrow[0].limit, StuckReason::kSurfaceCeiling);
   EXPECT_EQ(narrow[0].n_frozen_vertices, 4);
   EXPECT_NEAR(narrow[0].degrees, 20, 1e-9);
 }
@@ -67,9 +67,9 @@ TEST(StuckCells, WedgeThatOneCellHasToFillIsACeilingWhereThisCellIsPoor) {
   const auto stuck = stuck_cells(mesh, 25, {});
   for (const StuckCell& cell : stuck)
     if (cell.cell == C(0)) {
-      EXPECT_EQ(cell.limit, Limit::kSurfaceCeiling);
+      EXPECT_EQ(cell.reason, StuckReason::kSurfaceCeiling);
     }
-  EXPECT_EQ(n_of(stuck_cells(mesh, 15, {}), Limit::kSurfaceCeiling), 0U);
+  EXPECT_EQ(n_of(stuck_cells(mesh, 15, {}), StuckReason::kSurfaceCeiling), 0U);
 }
 
 TEST(StuckCells, WedgeAtAnInterfaceIsAnInputFeature) {
@@ -80,9 +80,9 @@ TEST(StuckCells, WedgeAtAnInterfaceIsAnInputFeature) {
   // Bring two outer corners of cell 0 close to each other: its wedge at the edge to the third is narrow.
   mesh.set_point(cell.v[1], mesh.point(cell.v[2]) + 0.15 * (mesh.point(cell.v[1]) - mesh.point(cell.v[2])));
   const auto stuck = stuck_cells(mesh, 20, {});
-  EXPECT_GE(n_of(stuck, Limit::kInputFeature), 1U);
+  EXPECT_GE(n_of(stuck, StuckReason::kInputFeature), 1U);
   mesh.set_region(C(0), 0);
-  EXPECT_EQ(n_of(stuck_cells(mesh, 20, {}), Limit::kInputFeature), 0U);
+  EXPECT_EQ(n_of(stuck_cells(mesh, 20, {}), StuckReason::kInputFeature), 0U);
 }
 
 TEST(StuckCells, FoldsAreNamedBeforeAnythingElse) {
@@ -91,8 +91,8 @@ TEST(StuckCells, FoldsAreNamedBeforeAnythingElse) {
   for (HalfFaceHandle h : mesh.boundary_halffaces()) boundary.push_back(h);
   const auto folded = unfillable_faces(mesh, boundary);
   ASSERT_FALSE(folded.empty());
-  EXPECT_GT(n_of(stuck_cells(mesh, 5, folded), Limit::kFoldedSurface), 0U);
-  EXPECT_EQ(n_of(stuck_cells(mesh, 5, {}), Limit::kFoldedSurface), 0U);
+  EXPECT_GT(n_of(stuck_cells(mesh, 5, folded), StuckReason::kFoldedSurface), 0U);
+  EXPECT_EQ(n_of(stuck_cells(mesh, 5, {}), StuckReason::kFoldedSurface), 0U);
 }
 
 TEST(StuckCells, CellWithoutAVertexThatMayMoveIsNotThereforeStuck) {
@@ -100,9 +100,9 @@ TEST(StuckCells, CellWithoutAVertexThatMayMoveIsNotThereforeStuck) {
   const TetMesh mesh = jittered(2, 0.3, 4);
   std::size_t n_frozen = 0;
   for (const StuckCell& stuck : stuck_cells(mesh, 40, {})) {
-    if (stuck.n_frozen_vertices < 4 || is_proof(stuck.limit)) continue;
+    if (stuck.n_frozen_vertices < 4 || is_proof(stuck.reason)) continue;
     ++n_frozen;
-    EXPECT_EQ(stuck.limit, Limit::kNotFound);
+    EXPECT_EQ(stuck.reason, StuckReason::kNotFound);
   }
   EXPECT_GT(n_frozen, 0U);
 }
@@ -112,7 +112,7 @@ TEST(StuckCells, InvertedCellInANarrowWedgeOfTheSurfaceIsHeldByIt) {
   TetMesh mesh = wedge(20);
   mesh.set_point(V(4), {0, 0, 0.5});
   ASSERT_FALSE(invalid_cells(mesh, {}).empty());
-  EXPECT_EQ(stuck_cells(mesh, 25, {})[0].limit, Limit::kSurfaceCeiling);
+  EXPECT_EQ(stuck_cells(mesh, 25, {})[0].limit, StuckReason::kSurfaceCeiling);
 }
 
 /// Cells round an upright edge, with outer vertices at these degrees about it; the first is a region.
@@ -135,14 +135,14 @@ TEST(StuckCells, InterfaceFoldedOverAnotherIsAnInputFeature) {
   const auto stuck = stuck_cells(mesh, 15, {});
   ASSERT_FALSE(stuck.empty());
   EXPECT_EQ(stuck[0].cell, C(0));
-  EXPECT_EQ(stuck[0].limit, Limit::kInputFeature);
+  EXPECT_EQ(stuck[0].reason, StuckReason::kInputFeature);
   EXPECT_NEAR(stuck[0].ceiling, -0.063, 1e-9);
   EXPECT_EQ(stuck[0].a.idx() + stuck[0].b.idx(), 1U);
   const Result result = improve(mesh, serial());
   ASSERT_FALSE(result.invalid_cells.empty());
   for (const StuckCell& left : result.stuck)  // the boundary is folded there as well
     if (left.degrees <= 0) {
-      EXPECT_TRUE(is_proof(left.limit));
+      EXPECT_TRUE(is_proof(left.reason));
     }
 }
 
@@ -190,7 +190,7 @@ TEST(StuckCellsProperty, NoOptionLiftsTheCellsOfAnEdgeBeyondItsCeiling) {
     improve(others[2], more);
     others.push_back(mesh);
     for (const StuckCell& stuck : result.stuck) {
-      if (!is_proof(stuck.limit) || stuck.limit == Limit::kFoldedSurface) continue;
+      if (!is_proof(stuck.reason) || stuck.reason == StuckReason::kFoldedSurface) continue;
       ++n_proofs;
       ASSERT_TRUE(stuck.a.is_valid());
       EXPECT_LT(stuck.ceiling, 30);
@@ -215,13 +215,13 @@ TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelp) {
     options.min_dihedral = 30;
     options.max_cells = mesh.n_cells();
     const Result result = improve(mesh, options);
-    const std::size_t n = n_of(result.stuck, Limit::kMaxCells);
+    const std::size_t n = n_of(result.stuck, StuckReason::kMaxCells);
     n_blamed += n;
     ImproveOptions roomy = options;
     roomy.max_cells = 10 * mesh.n_cells();
     TetMesh more = mesh;
     const Result next = improve(more, roomy);
-    EXPECT_EQ(n_of(next.stuck, Limit::kMaxCells), 0U);
+    EXPECT_EQ(n_of(next.stuck, StuckReason::kMaxCells), 0U);
     if (n > 0) {
       EXPECT_LT(next.stuck.size(), result.stuck.size()) << s;
     }
@@ -236,11 +236,11 @@ TEST(StuckCells, IterationsAreBlamedOnlyWhereTheyRanOut) {
   options.min_dihedral = 40;
   TetMesh early = mesh;
   const Result one = improve(early, options);
-  EXPECT_GT(n_of(one.stuck, Limit::kIterations), 0U);
-  EXPECT_EQ(n_of(one.stuck, Limit::kNotFound), 0U);
+  EXPECT_GT(n_of(one.stuck, StuckReason::kIterations), 0U);
+  EXPECT_EQ(n_of(one.stuck, StuckReason::kNotFound), 0U);
   options.iterations = 100'000;
   const Result all = improve(mesh, options);
-  EXPECT_EQ(n_of(all.stuck, Limit::kIterations), 0U);
+  EXPECT_EQ(n_of(all.stuck, StuckReason::kIterations), 0U);
 }
 
 TEST(StuckCells, RunThatWasEndedSaysByWhat) {
@@ -249,11 +249,11 @@ TEST(StuckCells, RunThatWasEndedSaysByWhat) {
   options.cancel = [] { return true; };
   TetMesh cancelled = mesh;
   const Result result = improve(cancelled, options);
-  EXPECT_EQ(n_of(result.stuck, Limit::kNotFound), 0U);
-  EXPECT_GT(n_of(result.stuck, Limit::kCancelled), 0U);
+  EXPECT_EQ(n_of(result.stuck, StuckReason::kNotFound), 0U);
+  EXPECT_GT(n_of(result.stuck, StuckReason::kCancelled), 0U);
   options.cancel = nullptr;
   options.time_limit = 1e-9;
-  EXPECT_GT(n_of(improve(mesh, options).stuck, Limit::kTimeLimit), 0U);
+  EXPECT_GT(n_of(improve(mesh, options).stuck, StuckReason::kTimeLimit), 0U);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Operators/VertexRemoval.hh"
+#include "Operators/VertexCollapse.hh"
 
 #include <algorithm>
 #include <limits>
@@ -9,7 +9,7 @@
 namespace hfr {
 
 template <class Metric>
-void VertexRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
+void VertexCollapse<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
   Star star;
   out.clear();
   mesh.gather_star(seed, star);
@@ -17,8 +17,8 @@ void VertexRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) co
 }
 
 template <class Metric>
-std::optional<typename VertexRemoval<Metric>::Plan> VertexRemoval<Metric>::evaluate(const TetMesh& mesh,
-                                                                                    Seed seed) const {
+std::optional<typename VertexCollapse<Metric>::Plan> VertexCollapse<Metric>::evaluate(const TetMesh& mesh,
+                                                                                      Seed seed) const {
   if (frozen[seed.idx()] || mesh.labels().vertex(seed) != 0) return std::nullopt;
   Star star;
   if (!mesh.gather_star(seed, star)) return std::nullopt;
@@ -43,42 +43,42 @@ std::optional<typename VertexRemoval<Metric>::Plan> VertexRemoval<Metric>::evalu
   for (VertexHandle apex : link) {
     const Vec3 p = mesh.point(apex);
     double worst = std::numeric_limits<double>::infinity();
-    std::uint32_t n_born = 0;
+    std::uint32_t n_created = 0;
     for (std::size_t k = 0; k < n && worst > plan.new_worst; ++k) {
       const std::size_t i = k == 0 ? killer : k <= killer ? k - 1 : k;
       const auto& f = faces[i];
       if (f[0] == apex || f[1] == apex || f[2] == apex) continue;
-      ++n_born;
+      ++n_created;
       worst = std::min(worst, metric(corners[i][0], corners[i][1], corners[i][2], p));
       if (!(worst > plan.new_worst)) killer = i;
     }
-    if (!(worst > plan.new_worst) || n_born == 0) continue;
+    if (!(worst > plan.new_worst) || n_created == 0) continue;
     plan.new_worst = worst;
     plan.apex = apex;
-    plan.n_born = n_born;
+    plan.n_created = n_created;
   }
   if (!plan.apex.is_valid()) return std::nullopt;
   plan.old_worst = old_worst;
-  plan.n_dead = static_cast<std::uint32_t>(n);
+  plan.n_removed = static_cast<std::uint32_t>(n);
   plan.removes_vertex = true;
   plan.seed = seed;
   return plan;
 }
 
 template <class Metric>
-void VertexRemoval<Metric>::commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+void VertexCollapse<Metric>::cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
   Star star;
   mesh.gather_star(plan.seed, star);
   out.clear();
-  out.removed = plan.seed;
+  out.removed_vertex = plan.seed;
   for (std::size_t i = 0; i < static_cast<std::size_t>(star.size); ++i) {
-    out.dead.push_back(star.cells[i]);
+    out.removed.push_back(star.cells[i]);
     const auto f = mesh.halfface_vertices(halfface_of(star.cells[i], star.corners[i]));
     if (f[0] != plan.apex && f[1] != plan.apex && f[2] != plan.apex)
-      out.born.push_back({f[0], f[1], f[2], plan.apex});
+      out.created.push_back({f[0], f[1], f[2], plan.apex});
   }
 }
 
-HFR_INSTANTIATE_FOR_METRICS(VertexRemoval)
+HFR_INSTANTIATE_FOR_METRICS(VertexCollapse)
 
 }  // namespace hfr

@@ -14,7 +14,7 @@ namespace hfr {
 /// The paper's NODE operator: removes an inner vertex by joining one vertex of its link to all faces of the
 /// link, which is the collapse of the edge between the two. Every link vertex is tried.
 template <class Metric>
-struct VertexRemoval {
+struct VertexCollapse {
   using Seed = VertexHandle;
   struct Plan : PlanBase {
     VertexHandle seed;
@@ -27,7 +27,7 @@ struct VertexRemoval {
 
   void scope(const TetMesh& mesh, Seed seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, Seed seed) const;
-  void commit(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh&, Seed seed) const {
     return {seed, VertexHandle(), VertexHandle(), VertexHandle()};
   }

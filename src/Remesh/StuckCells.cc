@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Remesh/Limits.hh"
+#include "Remesh/StuckCells.hh"
 
 #include <algorithm>
 
@@ -71,13 +71,13 @@ void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
       const double ceiling = ceiling_of(mesh, a, b, wedge);
       if (!(ceiling < degrees - kRounding)) continue;
       const bool surface = mesh.is_boundary(wedge.first) && mesh.is_boundary(wedge.last);
-      const Limit limit = surface ? Limit::kSurfaceCeiling : Limit::kInputFeature;
-      const bool first = !is_proof(stuck.limit) || limit < stuck.limit ||
-                         (limit == stuck.limit &&
+      const StuckReason limit = surface ? StuckReason::kSurfaceCeiling : StuckReason::kInputFeature;
+      const bool first = !is_proof(stuck.reason) || limit < stuck.reason ||
+                         (limit == stuck.reason &&
                           (ceiling < stuck.ceiling ||
                            (ceiling == stuck.ceiling && std::pair(a, b) < std::pair(stuck.a, stuck.b))));
       if (!first) continue;
-      stuck.limit = limit;
+      stuck.reason = limit;
       stuck.ceiling = ceiling;
       stuck.a = a;
       stuck.b = b;
@@ -111,7 +111,7 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
       folds = folds || (!on_fold.empty() && on_fold[v.idx()]);
     }
     if (folds && orientation(p[0], p[1], p[2], p[3]) <= 0)
-      stuck.limit = Limit::kFoldedSurface;
+      stuck.reason = StuckReason::kFoldedSurface;
     else
       prove(mesh, degrees, stuck);
   });
@@ -130,26 +130,26 @@ void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double 
   op.poor_below = dihedral_decision(degrees);
   const std::size_t n_cells = mesh.n_logical_cells();
   par::for_each_dynamic(policy.for_items_of(Op::kSeedNanoseconds), stuck.size(), 1, [&](std::size_t i) {
-    if (stuck[i].limit != Limit::kNotFound) return;
+    if (stuck[i].reason != StuckReason::kNotFound) return;
     const auto plan = op.evaluate(mesh, typename Op::Seed(stuck[i].cell));
     if (!plan) return;
     Cavity cavity;
-    op.commit(mesh, *plan, cavity);
-    const std::size_t n_after = n_cells + cavity.born.size() - cavity.dead.size();
-    if (n_after > max_cells || n_cells + kLeastRoom > max_cells) stuck[i].limit = Limit::kMaxCells;
+    op.cavity(mesh, *plan, cavity);
+    const std::size_t n_after = n_cells + cavity.created.size() - cavity.removed.size();
+    if (n_after > max_cells || n_cells + kLeastRoom > max_cells) stuck[i].reason = StuckReason::kMaxCells;
   });
 }
 
-std::array<std::size_t, kLimitNames.size()> count_limits(const std::vector<StuckCell>& cells) {
-  std::array<std::size_t, kLimitNames.size()> counts{};
-  for (const StuckCell& stuck : cells) ++counts[static_cast<std::size_t>(stuck.limit)];
+std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells) {
+  std::array<std::size_t, kStuckReasonNames.size()> counts{};
+  for (const StuckCell& stuck : cells) ++counts[static_cast<std::size_t>(stuck.reason)];
   return counts;
 }
 
 std::vector<CellHandle> cells_held_back(const std::vector<StuckCell>& stuck) {
   std::vector<CellHandle> cells;
   for (const StuckCell& cell : stuck)
-    if (is_proof(cell.limit) || (cell.limit == Limit::kNotFound && cell.n_frozen_vertices == 4))
+    if (is_proof(cell.reason) || (cell.reason == StuckReason::kNotFound && cell.n_frozen_vertices == 4))
       cells.push_back(cell.cell);
   return cells;
 }
