@@ -45,7 +45,7 @@ def work(run):
     vertices = items(run, "smooth", "seeds")
     stars, collapsed = items(run, "node", "seeds"), items(run, "node", "winners")
     triangles = RING * (RING - 1) * (RING - 2) // 6
-    born = 2 * (RING - 2)
+    created = 2 * (RING - 2)
     newton = 3 * STAR * (60 + 2 * 25) + STAR * (40 + DECISION)
     smooth = (vertices, STAR * (4 + CELL + 3 * POINT + QUALITY) + STAR * (QUALITY + 1 + 4 * 4),
               newton)
@@ -65,9 +65,9 @@ def work(run):
         "gather_links": (None, CELL + 4 * 4, 0),
         "prepare_colours": (vertices, STAR * (2 * 4 + CELL + 4 * 4), 0),
         "colour_level": (vertices, STAR * (4 + CELL + 4 * (1 + 4 + 4)), 0),
-        "commit_edges": (removed, (RING + born) * CELL + 4 * 2 * RING * 4 + 12 * RING * 4, 0),
+        "commit_edges": (removed, (RING + created) * CELL + 4 * 2 * RING * 4 + 12 * RING * 4, 0),
         "commit_faces": (swapped, 5 * CELL + 6 * 4 + 7 * 8, 0),
-        "commit_mates": (removed, born * (CELL + 4 * POINT + 4 * 12 + QUALITY + 1), born * DECISION),
+        "commit_mates": (removed, created * (CELL + 4 * POINT + 4 * 12 + QUALITY + 1), created * DECISION),
         "tally_qualities": (None, QUALITY, 1),
         "tally_dihedrals": (None, CELL + 4 * POINT, 180),
     }

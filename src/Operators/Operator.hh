@@ -33,7 +33,7 @@ struct PlanBase {
 ///  - evaluate: pure; nothing when the cluster would not get better. Reads cells of the scope, points, and
 ///  what
 ///    the operator itself was given. No allocation.
-///  - commit: says in full what the plan does; cannot fail. Its removed cells are the scope, in the scope's
+///  - cavity: says in full what the plan does; cannot fail. Its removed cells are the scope, in the scope's
 ///  order.
 ///    The writing is the scheduler's, because the mates of a cavity's outer faces depend on the other
 ///    cavities of the same round.

@@ -19,7 +19,7 @@ struct Move {
   double new_worst = 0;  ///< and after; > old_worst
 };
 
-/// What all smoothing operators share: seed, scope, commit. `Search` finds the place:
+/// What all smoothing operators share: seed, scope, cavity. `Search` finds the place:
 /// std::optional<Move> search(mesh, v, link, metric, quality), where `link` holds the half-face opposite v of
 /// each cell of the star, of any size, and `quality` the decision value per cell. As an operator of a round
 /// it leaves a vertex of more than Star::kCapacity cells alone; smooth_pass() moves that, too.

@@ -72,7 +72,7 @@ void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort) {
   if (effort.most_of_hundred > 0) bounds.max = whole.mesh.n_logical_cells() * effort.most_of_hundred / 100;
   whole.findings.forget_cell_bound();
   Run run = whole.within(bounds);
-  run.spares_nothing = true;
+  run.may_add_poor_cells = true;
   Climb climb(run, effort);
   climb.search_worst();
   if (effort.refine) refine(run, *effort.refine);

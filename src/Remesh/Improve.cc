@@ -34,7 +34,7 @@ bool settle(const Run& run, bool known_to_meet) {
   const auto mend = [&] {
     if (run.control.stopped() || run.strategy.course == Course::kCompat) return;
     Run mending = run.within(run.strategy.bounds_asked);
-    mending.spares_nothing = run.strategy.course == Course::kAnyCost;
+    mending.may_add_poor_cells = run.strategy.course == Course::kAnyCost;
     polish_to(mending, run.strategy.mending(), checkpoint.input().worst);
   };
   if (!checkpoint.settle(run.mesh, known_to_meet, mend)) return true;

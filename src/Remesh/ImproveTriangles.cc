@@ -18,8 +18,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Degrees; where no goal is given, the worst triangles are raised from one of these to the next.
-constexpr std::array<double, 8> kLadder = {2, 5, 10, 15, 20, 25, 30, 35};
-/// Where more triangles than this share lie below a rung nobody asked for, the mesh as a whole is beyond it.
+constexpr std::array<double, 8> kTargets = {2, 5, 10, 15, 20, 25, 30, 35};
+/// Where more triangles than this share lie below a target nobody asked for, the mesh as a whole is beyond
+/// it.
 constexpr double kLargestShare = 0.25;
 constexpr int kMaxIterations = 30;
 constexpr int kBulkIterations = 4;
@@ -42,12 +43,12 @@ class TriangleRun {
       polish(*options_.min_angle);
     } else {
       bulk();
-      for (double rung : kLadder) {
+      for (double target : kTargets) {
         if (stopped()) break;
-        sweep_.focus(dihedral_decision(rung));
+        sweep_.focus(dihedral_decision(target));
         const auto n = static_cast<double>(sweep_.n_below());
         if (n > kLargestShare * static_cast<double>(result_.before.triangles)) break;
-        if (n > 0) polish(rung);
+        if (n > 0) polish(target);
       }
     }
     restore_volume();

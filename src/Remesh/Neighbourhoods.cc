@@ -20,7 +20,7 @@ bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
     if (left.empty()) return true;
     if (left.size() > effort->few || run.control.stopped()) return false;
     const auto around = vertices_within(run.mesh, left, attempt.layers);
-    PassRunner<MinSine2> runner(run, MinSine2{}, "relief");
+    PassRunner<MinSine2> runner(run, MinSine2{}, "neighbourhoods");
     const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, effort->largest)), around};
     for (int i = 1; i <= effort->iterations && !run.control.stopped(); ++i) {
       const Turn turn{i, focus};

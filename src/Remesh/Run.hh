@@ -47,7 +47,7 @@ struct Run {
   Checkpoint* checkpoint = nullptr;  ///< null where the caller sees to the mesh, as for tries on a copy
   CellBounds bounds = {};
   /// Whether a new vertex may leave as many poor cells as it takes.
-  bool spares_nothing = false;
+  bool may_add_poor_cells = false;
 
   par::Policy policy() const { return strategy.pass.policy; }
   /// The same run within other bounds on cells.

@@ -262,7 +262,7 @@ TEST(Refine, LetsPoorCellsMultiplyOnlyWhereNothingIsSpared) {
     ImproveOptions options = serial();
     options.ops = Ops::kInsert;
     StageBench bench(mesh, options);
-    bench.run.spares_nothing = !spare;
+    bench.run.may_add_poor_cells = !spare;
     insert_where_poor(bench.run, {.below = 45, .gain = 1.05});
     const std::size_t n_new = mesh.n_logical_vertices() - first.n_logical_vertices();
     ASSERT_GT(n_new, 20U);

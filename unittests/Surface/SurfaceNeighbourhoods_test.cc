@@ -29,7 +29,7 @@ std::size_t most_insertion_seeds(TetMesh mesh, SurfaceMode mode) {
   return most;
 }
 
-TEST(SurfaceRelief, WhereManyAreAlmostAsPoorFreeInsertsNothing) {
+TEST(SurfaceNeighbourhoods, WhereManyAreAlmostAsPoorFreeInsertsNothing) {
   // All cells are alike but for a few: where a dozen are poor, hundreds are within two degrees of them.
   const TetMesh mesh = jittered(12, 0.03, 1);
   const double goal = degrees_with_few_below(mesh, 60, NeighbourhoodEffort{}.few, {});
