@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "HalfFace/Errors.hh"
+#include "IO/Hash.hh"
+#include "Remesh/Improve.hh"
+#include "Remesh/Meshes.hh"
+
+namespace hfr::test {
+namespace {
+
+/// Whether the texts stand in the plan in that order.
+::testing::AssertionResult says(const std::string& plan, const std::vector<std::string>& wanted) {
+  std::size_t at = 0;
+  for (const std::string& text : wanted) {
+    at = plan.find(text, at);
+    if (at == std::string::npos)
+      return ::testing::AssertionFailure() << "'" << text << "' is not there, or too early:\n" << plan;
+  }
+  return ::testing::AssertionSuccess();
+}
+
+TEST(Plan, NamesStagesInTheirOrderAndLeavesTheMeshAsItIs) {
+  const TetMesh mesh = small_cavity(6);
+  const std::uint64_t before = io::mesh_hash(mesh);
+  const std::string text = plan(mesh, serial());
+  EXPECT_TRUE(says(text, {"default", "edge,face,node,smooth,insert", "untangle", "first polish", "bulk",
+                          "refine", "targets", "refine again", "last cells"}));
+  EXPECT_EQ(io::mesh_hash(mesh), before);
+  EXPECT_FALSE(says(plan(jittered(4, 0.1, 1), serial()), {"untangle"})) << "nothing is inverted there";
+}
+
+TEST(Plan, HasTheNumbersOfTheOptions) {
+  const TetMesh mesh = jittered(5, 0.2, 1);
+  ImproveOptions options = serial();
+  options.min_dihedral = 21.5;
+  options.max_cells = 1234;
+  options.ops = Ops::kEdge | Ops::kSmooth;
+  EXPECT_TRUE(says(plan(mesh, options), {"goal", "edge,smooth", "above 1234 cells", "21.5"}));
+  options = serial();
+  options.raise_min_dihedral = true;
+  EXPECT_TRUE(
+      says(plan(mesh, options), {"any cost", "last cells", "150 of 100 cells", "42.5 (from 30), 45"}));
+  options = serial();
+  options.compat = Compat::kJpdc2013;
+  options.iterations = 7;
+  EXPECT_TRUE(says(plan(mesh, options), {"jpdc2013", "7 iterations"}));
+}
+
+TEST(Plan, RefusesOptionsThatARunRefuses) {
+  ImproveOptions options = serial();
+  options.min_dihedral = 71;
+  EXPECT_THROW(static_cast<void>(plan(bipyramid(0.2), options)), InvalidInput);
+}
+
+}  // namespace
+}  // namespace hfr::test
