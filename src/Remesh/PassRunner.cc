@@ -287,7 +287,7 @@ std::size_t PassRunner<Metric>::insert_pass(const Turn& turn) {
   const Run& run = this->run();
   const PassEffort& effort = this->effort();
   const Row& row = PassRunner::row(PassKind::kInsert);
-  if (run.bounds.max > 0 && run.mesh.n_logical_cells() + effort.room > run.bounds.max) {
+  if (run.bounds.max > 0 && run.mesh.n_logical_cells() + effort.cells_of_vertex > run.bounds.max) {
     run.findings.note_cell_bound(run.bounds);
     return 0;
   }
@@ -326,7 +326,7 @@ std::size_t PassRunner<Metric>::cluster_pass(const Turn& turn) {
   using Op = ClusterSearch<Metric>;
   const PassEffort& effort = this->effort();
   return rounds<Op>(PassKind::kCluster, turn, [&](auto& round, const Worklist& list) {
-    const Op op{metric_, run().work.quality, effort.least_gain, effort.search_cells, effort.search_nodes};
+    const Op op{metric_, run().work.quality, effort.least_gain, effort.search_points, effort.search_nodes};
     return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
       visit(typename Op::Seed(CellHandle(list.cells()[i])));
     });

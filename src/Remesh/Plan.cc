@@ -20,11 +20,6 @@ std::string say(const Words&... words) {
   return text.str();
 }
 
-template <class Integer>
-std::string counted(Integer n) {
-  return n == static_cast<Integer>(kNoLimit) ? "any number of" : say(n);
-}
-
 std::string percent(double share) { return say(100 * share, " %"); }
 
 std::string listed(const std::vector<TargetAngle>& targets) {

@@ -67,10 +67,10 @@ struct PassEffort {
   std::size_t little = 200;  ///< a pass ends with a round that commits less than 1/little of its first one
   /// Factor by which a new vertex or a searched cluster has to raise the worst decision value.
   double least_gain = 1.02;
-  int insert_rounds = 200;         ///< of insertion, which takes seeds that lie apart
-  std::size_t room = 4;            ///< cells that a new vertex takes, about
-  std::size_t search_cells = 14;   ///< points of a cavity whose fillings are searched (ClusterSearch)
-  std::size_t search_nodes = 300;  ///< of each search: more found little more on the test meshes
+  int insert_rounds = 200;          ///< of insertion, which takes seeds that lie apart
+  std::size_t cells_of_vertex = 4;  ///< that a new one takes, about
+  std::size_t search_points = 14;   ///< points of a cavity whose fillings are searched (ClusterSearch)
+  std::size_t search_nodes = 300;   ///< of each search: more found little more on the test meshes
   /// Where more cells than this wait for a vertex, only the most promising sites are followed up for each:
   /// `sites_of_many` find the same as all on the test meshes, in half the time; for the last ones each
   /// counts.
