@@ -11,7 +11,7 @@ using namespace hfr;
 
 struct SplitLargeCell {
   using Seed = CellHandle;
-  struct Plan : PlanBase {  // a small value: what was found out, enough for commit() to say it again in full
+  struct Plan : PlanBase {  // a small value: what was found out, enough for cavity() to say it again in full
     CellHandle seed;
     Vec3 middle;
   };

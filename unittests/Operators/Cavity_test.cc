@@ -36,7 +36,7 @@ Cavity collapse_of(const TetMesh& mesh, VertexHandle v, VertexHandle onto) {
   plan.seed = v;
   plan.apex = onto;
   Cavity cavity;
-  VertexCollapse<VolumeLength>{}.commit(mesh, plan, cavity);
+  VertexCollapse<VolumeLength>{}.cavity(mesh, plan, cavity);
   return cavity;
 }
 

@@ -51,7 +51,7 @@ TEST(VertexCollapse, EveryLinkVertexIsTried) {
     apexes.insert(plan->apex.idx());
     EXPECT_EQ(plan->old_worst, old_worst);
     EXPECT_EQ(plan->new_worst, best);
-    EXPECT_EQ(cavity_of(op, mesh, *plan).removed, V(0));
+    EXPECT_EQ(cavity_of(op, mesh, *plan).removed_vertex, V(0));
   }
   EXPECT_GT(accepted, 50);
   EXPECT_EQ(apexes.size(), 6U) << "some link vertex is never chosen";

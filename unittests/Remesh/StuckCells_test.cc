@@ -54,7 +54,7 @@ TEST(StuckCells, NarrowWedgeOfTheSurfaceIsACeiling) {
   const auto narrow = stuck_cells(wedge(20), 25, {});
   ASSERT_GE(narrow.size(), 1U);
   EXPECT_EQ(narrow[0].cell, C(0));
-  EXPECT_EQ(narrow[0].limit, StuckReason::kSurfaceCeiling);
+  EXPECT_EQ(narrow[0].reason, StuckReason::kSurfaceCeiling);
   EXPECT_EQ(narrow[0].n_frozen_vertices, 4);
   EXPECT_NEAR(narrow[0].degrees, 20, 1e-9);
 }
@@ -112,7 +112,7 @@ TEST(StuckCells, InvertedCellInANarrowWedgeOfTheSurfaceIsHeldByIt) {
   TetMesh mesh = wedge(20);
   mesh.set_point(V(4), {0, 0, 0.5});
   ASSERT_FALSE(invalid_cells(mesh, {}).empty());
-  EXPECT_EQ(stuck_cells(mesh, 25, {})[0].limit, StuckReason::kSurfaceCeiling);
+  EXPECT_EQ(stuck_cells(mesh, 25, {})[0].reason, StuckReason::kSurfaceCeiling);
 }
 
 /// Cells round an upright edge, with outer vertices at these degrees about it; the first is a region.

@@ -39,7 +39,7 @@ TEST(RunUntilQuiet, LeavesNoEdgeThatWouldBeRemoved) {
     for (EdgeHandle e : mesh.edges()) {
       const auto plan = op().evaluate(mesh, e);
       if (!plan || !(plan->old_worst > 0)) continue;  // rounds hold more against clusters with inverted cells
-      op().commit(mesh, *plan, cavity);
+      op().cavity(mesh, *plan, cavity);
       EXPECT_FALSE(admissible(mesh, cavity, true, scratch)) << "edge " << e.idx() << " could still go";
     }
     if (threads == 1)

@@ -97,7 +97,7 @@ TEST(ShuffledAlgorithms, StarsAndColoursAreThoseOfOneThread) {
     const TetMesh mesh =
         seed % 8 == 0
             ? built(neighbourly(70))
-            : limit_mesh(static_cast<StuckReason>(seed % static_cast<int>(StuckReason::kLimits)), engine);
+            : limit_mesh(static_cast<Limit>(seed % static_cast<int>(Limit::kLimits)), engine);
     const double share = seed % 3 == 0 ? 0.03 : uniform(engine, 0.3, 1.0);
     std::vector<VertexHandle> vertices;
     const auto sizes = star_sizes(mesh);
@@ -218,7 +218,7 @@ TEST(ShuffledAlgorithms, RoundsOfEachOperatorAreThoseOfOneThread) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
     State one{
-        limit_mesh(static_cast<StuckReason>(engine() % static_cast<std::uint64_t>(StuckReason::kLimits)),
+        limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)),
                    engine),
         {}};
     one.work.attach(one.mesh, kOneThread);
@@ -243,7 +243,7 @@ TEST(ShuffledAlgorithms, SmoothingPassesAreThoseOfOneThread) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
     State one{
-        limit_mesh(static_cast<StuckReason>(engine() % static_cast<std::uint64_t>(StuckReason::kLimits)),
+        limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)),
                    engine),
         {}};
     one.work.attach(one.mesh, kOneThread);
@@ -306,7 +306,7 @@ TEST(ShuffledAlgorithms, BuildingMeasuringAndReorderingGiveOneResult) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
     TetMesh mesh = limit_mesh(
-        static_cast<StuckReason>(engine() % static_cast<std::uint64_t>(StuckReason::kLimits)), engine);
+        static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine);
     std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
     std::vector<Corners> cells;
     for (CellHandle c : mesh.cells()) {

@@ -92,10 +92,10 @@ TEST_P(ShuffledDrivers, EveryPipelineGivesTheBitsOfOneThread) {
     const std::size_t which = seed % all.size();
     ImproveOptions options = all[which].options;
     SCOPED_TRACE(all[which].name);
-    const auto kind = engine() % (static_cast<std::uint64_t>(StuckReason::kLimits) + 1);
-    TetMesh one = kind == static_cast<std::uint64_t>(StuckReason::kLimits)
+    const auto kind = engine() % (static_cast<std::uint64_t>(Limit::kLimits) + 1);
+    TetMesh one = kind == static_cast<std::uint64_t>(Limit::kLimits)
                       ? labelled_box(3, 0.35, seed)
-                      : limit_mesh(static_cast<StuckReason>(kind), engine);
+                      : limit_mesh(static_cast<Limit>(kind), engine);
     TetMesh many = one;
     options.seed = seed;
     options.policy = kOneThread;

@@ -42,7 +42,7 @@ inline par::Policy policy_of(Engine& engine) {
 }
 inline constexpr par::Policy kOneThread = {1, 0};
 
-enum class StuckReason {
+enum class Limit {
   kManyEqual,  ///< a regular box: many equal keys
   kJittered,   ///< a box, some of its cells inverted
   kFolded,     ///< a deformed cavity
@@ -57,24 +57,24 @@ inline TetMesh limit_mesh(Limit kind, Engine& engine) {
   const std::uint64_t seed = engine();
   const auto n = static_cast<Index>(2 + engine() % 3);
   switch (kind) {
-    case StuckReason::kManyEqual:
+    case Limit::kManyEqual:
       return built(generate::box({n, n + 1, 3}));
-    case StuckReason::kJittered:
+    case Limit::kJittered:
       return jittered(n, uniform(engine, 0.2, 0.5), seed);
-    case StuckReason::kFolded: {
+    case Limit::kFolded: {
       generate::CavityOptions options;
       options.counts = {5, 5, 5};
       options.amplitude = uniform(engine, 0.3, 0.6);
       options.seed = seed;
       return built(generate::cavity(options));
     }
-    case StuckReason::kPinched:
+    case Limit::kPinched:
       return built(pinched(2, uniform(engine, 0.1, 0.4), seed));
     default: {
       constexpr std::array<Index, 6> kRings = {31, 32, 33, 63, 64, 65};
       constexpr std::array<Index, 4> kStars = {86, 128, 129, 150};  // 2 and 3 cells a vertex of the ring
       const Index ring =
-          kind == StuckReason::kHub ? kStars[engine() % kStars.size()] : kRings[engine() % kRings.size()];
+          kind == Limit::kHub ? kStars[engine() % kStars.size()] : kRings[engine() % kRings.size()];
       TetMesh mesh = built(hub(ring));
       shake_inner(mesh, uniform(engine, 0.0, 0.4) / static_cast<double>(engine() % 2 == 0 ? 1 : ring / 6),
                   seed);
