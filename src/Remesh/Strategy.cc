@@ -88,7 +88,6 @@ PassEffort pass_effort(const Asked& asked) {
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) pass.device_from = 0;
   pass.device_only_smooths = options.hybrid;
   if (asked.is_frozen()) pass.promise_of_many = 0.5;
-  if (asked.is_free()) pass.move_gain = 1.05;
   return pass;
 }
 

@@ -84,7 +84,7 @@ struct PassEffort {
   /// inside, and each calls for others.
   std::size_t many_moves = 300;
   std::size_t many_moves_share = 8;
-  double move_gain = 0;  ///< 0: any rise will do
+  double move_gain = 1.05;
 };
 
 /// Mending inverted and flat cells.

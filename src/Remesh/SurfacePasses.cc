@@ -204,7 +204,8 @@ std::size_t SurfacePasses<Metric>::moves(const Turn& turn, const Worklist& list)
     const PassEffort& effort = run.strategy.pass;
     const bool many =
         vertices.size() > std::min(effort.many_moves, run.mesh.n_vertices() / effort.many_moves_share);
-    if (many && effort.move_gain > 0) search.gain = effort.move_gain;
+    // By the surface's own mode: one that may move by nothing is flat.
+    if (many && surface.options().mode == SurfaceMode::kFree) search.gain = effort.move_gain;
     counts += hfr::smooth_pass(run.mesh, run.work, search, metric_, vertices, run.policy());
     surface.on_move(run.mesh, vertices);
   }

@@ -24,7 +24,7 @@ namespace {
 }
 
 TEST(Plan, NamesStagesInTheirOrderAndLeavesTheMeshAsItIs) {
-  const TetMesh mesh = small_cavity(6);
+  const TetMesh mesh = jittered(5, 0.6, 3);
   const std::uint64_t before = io::mesh_hash(mesh);
   const std::string text = plan(mesh, serial());
   EXPECT_TRUE(says(text, {"default", "edge,face,node,smooth,insert", "untangle", "first polish", "bulk",
