@@ -29,11 +29,12 @@ Survey survey(const TetMesh& mesh, par::Policy policy) {
   std::vector<Survey> found(static_cast<std::size_t>(n_parts));
   par::parts(n_parts, [&](int part) {
     Survey mine{std::numeric_limits<double>::infinity(), 0};
-    // The smallest sine is the cheaper form and never above the smallest dihedral's, which therefore only
-    // cells that may set a new record are asked for.
+    // The smallest sine is the cheaper form and, of positive cells, never above the smallest dihedral's,
+    // which therefore only cells that may set a new record are asked for. Of an inverted cell both are
+    // negative, and the smallest sine, which may be an obtuse angle's, is the nearer one to 0.
     for_decisions(mesh, MinSine2{}, par::part_begin(n, n_parts, part), par::part_begin(n, n_parts, part + 1),
                   [&](std::size_t i, double value) {
-                    if (value < mine.worst)
+                    if (value < mine.worst || !(value > 0))
                       mine.worst = std::min(mine.worst, min_dihedral_of(mesh, CellHandle(i)));
                     if (!(value > 0) && is_invalid(mesh, CellHandle(i))) ++mine.n_invalid;
                   });

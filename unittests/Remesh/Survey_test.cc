@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "Quality/CellQuality.hh"
+#include "Remesh/DamagedMeshes.hh"
 #include "Remesh/Meshes.hh"
 
 namespace hfr::test {
@@ -18,6 +20,25 @@ TEST(Survey, SmallestDihedralIsThatOfTheWorstCell) {
   }
   for (const int threads : {1, 3}) EXPECT_NEAR(smallest_dihedral(mesh, {threads, 1}), smallest, 1e-9);
   EXPECT_LT(smallest_dihedral(jittered(5, 0.6, 1), {}), 0);
+}
+
+TEST(Survey, WorstOfInvertedCellsDoesNotDependOnThreadsOrOrder) {
+  std::vector<TetMesh> meshes = {parts_at_vertices(), tangle_of_parts(), eleven_cells(), inverted_and_flat()};
+  Engine engine(1);
+  for (int i = 0; i < 60; ++i) {
+    meshes.push_back(built(generate::box({3, 3, 3})));
+    for (VertexHandle v : meshes.back().vertices()) meshes.back().set_point(v, random_point(engine, -1, 1));
+  }
+  std::size_t n_sines_above = 0;
+  for (const TetMesh& mesh : meshes) {
+    double worst = std::numeric_limits<double>::infinity();
+    for (CellHandle c : mesh.cells()) {
+      worst = std::min(worst, quality(mesh, c, MinDihedral{}));
+      n_sines_above += quality(mesh, c, MinSine2{}) > quality(mesh, c, MinDihedral{}) ? 1 : 0;
+    }
+    for (const int threads : {1, 2, 3, 5, 16}) EXPECT_EQ(survey(mesh, {threads, 0}).worst, worst);
+  }
+  EXPECT_GT(n_sines_above, 20U) << "the generator no longer makes cells whose smallest sine tells nothing";
 }
 
 TEST(Survey, InvalidCellsAreTheInvertedAndTheFlatOnes) {
