@@ -17,6 +17,9 @@ target_compile_features(hfr_flags INTERFACE cxx_std_20)
 # g++ 12 sees an overlap in "text" + std::to_string(n) that is not there (its bug 105651).
 target_compile_options(hfr_flags INTERFACE ${HFR_PUBLIC_OPTIONS} -Wall -Wextra -Wpedantic -Wshadow
   -Wnon-virtual-dtor $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> $<$<BOOL:${HFR_WERROR}>:-Werror>)
+if(HFR_PARANOID)
+  target_compile_definitions(hfr_flags INTERFACE HFR_PARANOID)
+endif()
 set(HFR_INSTRUMENT_FLAGS "")
 if(HFR_COVERAGE)
   list(APPEND HFR_INSTRUMENT_FLAGS --coverage)

@@ -13,6 +13,9 @@
 #include "Parallel/Interleave.hh"
 #include "Scheduler/Rank.hh"
 #include "Scheduler/Select.hh"
+#ifdef HFR_PARANOID
+#include "Scheduler/Paranoid.hh"
+#endif
 
 namespace hfr::detail {
 namespace {
@@ -427,7 +430,17 @@ RoundCore::RoundCore(TetMesh& mesh, Workspace& work, RoundOptions options, bool 
     : mesh_(mesh), work_(work), options_(options), state_(new State(*this, ranks_by_gain)) {}
 RoundCore::~RoundCore() = default;
 
-RoundCounts RoundCore::run() { return state_->run(); }
+RoundCounts RoundCore::run() {
+#ifdef HFR_PARANOID
+  const Paranoid paranoid(mesh_, work_, "round", typeid(*this),
+                          [this](Vec3 a, Vec3 b, Vec3 c, Vec3 d) { return quality(a, b, c, d); });
+  const RoundCounts counts = state_->run();
+  paranoid.look_again();
+  return counts;
+#else
+  return state_->run();
+#endif
+}
 bool RoundCore::needs_admission() { return state_->needs_admission(); }
 bool RoundCore::may_be_committed(const PlanBase& plan, bool check, Cavity& cavity, Star& scratch) const {
   return state_->may_be_committed(plan, check, cavity, scratch);

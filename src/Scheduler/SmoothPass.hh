@@ -13,6 +13,9 @@
 #include "Scheduler/StarTable.hh"
 #include "Scheduler/VertexColours.hh"
 #include "Scheduler/Workspace.hh"
+#ifdef HFR_PARANOID
+#include "Scheduler/Paranoid.hh"
+#endif
 
 namespace hfr {
 
@@ -52,6 +55,9 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
   const auto since = [](Clock::time_point t) {
     return std::chrono::duration<double>(Clock::now() - t).count();
   };
+#ifdef HFR_PARANOID
+  const detail::Paranoid paranoid(mesh, work, "pass", typeid(Search), metric);
+#endif
   RoundCounts counts;
   counts.rounds = 1;
   counts.seeds = vertices.size();
@@ -98,6 +104,9 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
   }
   counts.candidates = counts.winners;
   counts.seconds_evaluate = since(start);
+#ifdef HFR_PARANOID
+  paranoid.look_again();
+#endif
   return counts;
 }
 
