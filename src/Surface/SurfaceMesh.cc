@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Surface/SurfaceMesh.hh"
 
+#include <limits>
 #include <unordered_set>
 
 #include "Parallel/DisjointSets.hh"
@@ -16,6 +17,9 @@ using namespace surface;  // what SurfaceMesh is made of
 constexpr double kDetail = 0.1;
 /// How far apart the points of a triangle are by which its distance is judged, of the mean edge.
 constexpr double kSpacing = 0.3;
+/// How far apart those between them are, of the distance allowed; so many at most on the input.
+constexpr double kCloseSpacing = 2;
+constexpr double kMostBetween = 1 << 20;
 constexpr std::uint32_t kNoOrbit = ~0U;
 
 std::array<VertexHandle, 3> sorted(std::array<VertexHandle, 3> f) {
@@ -101,22 +105,46 @@ void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& fea
   }
 }
 
+/// Twice the distance allowed, or more where that would make too many points.
+double SurfaceMesh::Impl::spacing_between(std::span<const Triangle> input) const {
+  const auto count = [&](double apart) {  // about
+    double n = 0;
+    for (const Triangle& t : input) {
+      const double longest2 = surface::longest_edge2(t);
+      if (longest2 > apart * apart)
+        n += 2 * std::sqrt(longest2) / apart + 2 * norm(scaled_normal(t)) / (apart * apart);
+    }
+    return n;
+  };
+  double apart = std::max(kCloseSpacing * hausdorff, std::numeric_limits<double>::min());
+  while (count(apart) > kMostBetween && std::isfinite(apart)) apart *= 2;
+  return apart;
+}
+
 void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features& features) {
   std::vector<Triangle> triangles;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<std::uint8_t> is_sampled(arrays.points.size(), 0);
   if (!arrays.faces.empty()) origin = arrays.points[arrays.faces[0][0].idx()];
+  for (const auto& f : arrays.faces) triangles.push_back(surface::corners(arrays.points, f));
+  between = spacing_between(triangles);
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
-    const Triangle t = surface::corners(arrays.points, arrays.faces[i]);
-    triangles.push_back(t);
+    const Triangle& t = triangles[i];
     faces[i].beneath = static_cast<std::uint32_t>(i);
     surface::all_inner_points(t, cuts_of(t), [&](Vec3 x) {  // edges and corners are shared
-      faces[i].samples.push_back(x);
+      faces[i].samples[0].points.push_back(x);
       return true;
     });
+    if (has_between(t)) {
+      samples_between = true;
+      surface::bisect(t, between, [&](const Triangle&, Vec3 middle) {
+        faces[i].samples[1].points.push_back(middle);
+        return false;
+      });
+    }
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint8_t& done = is_sampled[arrays.faces[i][k].idx()];
-      if (!done) faces[i].samples.push_back(t[k]);
+      if (!done) faces[i].samples[0].points.push_back(t[k]);
       done = 1;
     }
     const double volume = surface::six_volume(t, origin);
@@ -130,7 +158,7 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
     const std::array<Vec3, 2> ends = {arrays.points[e.a.idx()], arrays.points[e.b.idx()]};
     const int cuts = cuts_of({ends[0], ends[1], ends[1]});
     for (int i = 1; i < cuts; ++i)
-      faces[e.f[0]].samples.push_back(ends[0] + (1.0 * i / cuts) * (ends[1] - ends[0]));
+      faces[e.f[0]].samples[0].points.push_back(ends[0] + (1.0 * i / cuts) * (ends[1] - ends[0]));
     if (e.feature) segments.push_back(ends);
   }
   if (!triangles.empty()) shape = std::make_shared<const InputSurface>(triangles);

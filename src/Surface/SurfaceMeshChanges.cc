@@ -7,6 +7,18 @@
 namespace hfr {
 using namespace surface;  // what SurfaceMesh is made of
 
+namespace {
+
+void take_samples(FaceRecord& face, std::array<std::vector<Vec3>, 2>& out) {
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    auto& points = face.samples[kind].points;
+    out[kind].insert(out[kind].end(), points.begin(), points.end());
+    points.clear();
+  }
+}
+
+}  // namespace
+
 void SurfaceMesh::Impl::account(const std::vector<OmFace>& some, double sign) {
   double sum = 0;
   for (OmFace f : some) {
@@ -20,7 +32,8 @@ void SurfaceMesh::Impl::account(const std::vector<OmFace>& some, double sign) {
   six_gain += sign * sum;
 }
 
-void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among, std::vector<Vec3> homeless) {
+void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among,
+                                      std::array<std::vector<Vec3>, 2> homeless) {
   constexpr double kNearEnough = 0.25;  // of what is allowed
   const double enough = kNearEnough * hausdorff;
   std::vector<Triangle> triangles;
@@ -29,27 +42,32 @@ void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among, std::vec
     triangles.push_back(corners(f));
     beneath.push_back(record(f).beneath);
     const NearTriangle now(triangles.back());
-    std::erase_if(record(f).samples, [&](Vec3 s) {
-      const bool leaves = !now.is_within(s, enough);
-      if (leaves) homeless.push_back(s);
-      return leaves;
-    });
-    record(f).reach = record(f).samples.empty() ? 0.0 : enough;
-  }
-  for (Vec3 s : homeless) {
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < among.size() && least > 0; ++i) {
-      const double d = norm2(nearest_point(triangles[i], s) - s);
-      if (d < least) {
-        least = d;
-        nearest = i;
-      }
+    for (std::size_t kind = 0; kind < 2; ++kind) {
+      Samples& of_f = record(f).samples[kind];
+      std::erase_if(of_f.points, [&](Vec3 s) {
+        const bool leaves = !now.is_within(s, enough);
+        if (leaves) homeless[kind].push_back(s);
+        return leaves;
+      });
+      of_f.reach = of_f.points.empty() ? 0.0 : enough;
     }
-    if (!(least < std::numeric_limits<double>::infinity())) continue;
-    FaceRecord& home = record(among[nearest]);
-    home.samples.push_back(s);
-    home.reach = std::max(home.reach, std::sqrt(least));
+  }
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    for (Vec3 s : homeless[kind]) {
+      std::size_t nearest = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < among.size() && least > 0; ++i) {
+        const double d = norm2(nearest_point(triangles[i], s) - s);
+        if (d < least) {
+          least = d;
+          nearest = i;
+        }
+      }
+      if (!(least < std::numeric_limits<double>::infinity())) continue;
+      Samples& home = record(among[nearest]).samples[kind];
+      home.points.push_back(s);
+      home.reach = std::max(home.reach, std::sqrt(least));
+    }
   }
   for (std::size_t i = 0; i < among.size(); ++i) {
     const Vec3 middle = (1.0 / 3) * (triangles[i][0] + triangles[i][1] + triangles[i][2]);
@@ -109,14 +127,12 @@ void SurfaceMesh::on_collapse(VertexHandle v, VertexHandle onto) {
     is_feature.push_back(om.status(om.edge_handle(next)).feature() ||
                          om.status(om.edge_handle(last)).feature());
   }
-  std::vector<Vec3> samples;
+  std::array<std::vector<Vec3>, 2> samples;
   std::vector<OmFace> old = impl_->faces_round(from);
   impl_->account(old, -1);
   for (OmFace f : old) {
     impl_->note_gone(f);
-    auto& of_f = impl_->record(f).samples;
-    samples.insert(samples.end(), of_f.begin(), of_f.end());
-    of_f.clear();
+    take_samples(impl_->record(f), samples);
   }
   om.collapse(h);
   std::erase_if(old, [&](OmFace f) { return om.status(f).deleted(); });
@@ -158,10 +174,10 @@ void SurfaceMesh::on_split(VertexHandle a, VertexHandle b, VertexHandle middle, 
   for (OmFace f : halves) impl_->note_gone(f);
   impl_->account(halves, -1);
   std::vector<FaceRecord> was;
-  std::vector<Vec3> samples;
+  std::array<std::vector<Vec3>, 2> samples;
   for (OmFace f : halves) {
+    take_samples(impl_->record(f), samples);
     was.push_back(impl_->record(f));
-    samples.insert(samples.end(), was.back().samples.begin(), was.back().samples.end());
   }
   const OmVertex m = impl_->add_vertex(middle, place);
   om.split_edge(e, m);
@@ -171,7 +187,6 @@ void SurfaceMesh::on_split(VertexHandle a, VertexHandle b, VertexHandle middle, 
     const auto v = impl_->vertices(f);
     const bool first = v[0] == apex || v[1] == apex || v[2] == apex;
     impl_->record(f) = was[first ? 0 : 1];
-    impl_->record(f).samples.clear();
     impl_->note_fresh(f);
   }
   impl_->account(round, 1);

@@ -54,6 +54,34 @@ bool all_inner_points(const Triangle& t, int cuts, F&& f) {
   return true;
 }
 
+inline double longest_edge2(const Triangle& t) {
+  return std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
+}
+
+/// Bisects a triangle at its longest edge, then its halves, until no edge is longer than `spacing`: f(piece,
+/// middle) is told each piece that is cut, with the point that is new. True returned leaves the piece whole.
+template <class F>
+void bisect(const Triangle& t, double spacing, F&& f, int depth = 0) {
+  constexpr int kDeepest = 20;
+  std::size_t k = 0;  // where the longest edge begins
+  for (std::size_t i = 1; i < 3; ++i)
+    if (norm2(t[(i + 1) % 3] - t[i]) > norm2(t[(k + 1) % 3] - t[k])) k = i;
+  const Vec3 p = t[k];
+  const Vec3 q = t[(k + 1) % 3];
+  const Vec3 apex = t[(k + 2) % 3];
+  if (!(norm2(q - p) > spacing * spacing) || depth == kDeepest) return;
+  const Vec3 middle = p + 0.5 * (q - p);
+  if (f(t, middle)) return;
+  bisect(Triangle{apex, p, middle}, spacing, f, depth + 1);
+  bisect(Triangle{apex, middle, q}, spacing, f, depth + 1);
+}
+
+/// Points of the input that travel with the face that they are near to.
+struct Samples {
+  std::vector<Vec3> points;
+  double reach = 0;  // none of them is further from the face
+};
+
 /// What is known of a face of the surface.
 struct FaceRecord {
   int patch = 0;
@@ -63,8 +91,7 @@ struct FaceRecord {
   std::array<std::uint32_t, 2> sides{};  // places of its regions in Impl::regions; the second of interfaces
   HalfFaceHandle inside;                 // where it was when last asked for
   std::uint32_t facet = 0;               // flat mode
-  std::vector<Vec3> samples;             // of the input, free mode: points that were nearest to this face
-  double reach = 0;                      // and none of them is further from it
+  std::array<Samples, 2> samples;        // free mode: those `spacing` apart, and those between them
   std::uint32_t beneath = 0;             // free mode: a triangle of the input that lies about there
 };
 
@@ -79,8 +106,10 @@ struct SurfaceMesh::Impl {
 
   SurfaceOptions options;
   double hausdorff = 0;
-  double detail = 0;   // what is no larger is noise
-  double spacing = 0;  // of points by which distances are judged
+  double detail = 0;             // what is no larger is noise
+  double spacing = 0;            // of points by which distances are judged
+  double between = 0;            // and of those between them, where they are further apart than that
+  bool samples_between = false;  // some face has such
   Om om;
   std::vector<VertexHandle> vertex;              // of the volume, per OpenMesh vertex
   std::vector<OmVertex> first;                   // OpenMesh's per vertex of the volume; invalid inside
@@ -176,6 +205,7 @@ struct SurfaceMesh::Impl {
   using Guesses = FixedVector<std::uint32_t, 64>;
   bool are_near(std::span<const Triangle> created, std::span<const Triangle> removed, Guesses& beneath,
                 double distance) const;
+  bool are_near_between(std::span<const Triangle> created, Guesses& beneath, double distance) const;
   bool turn_little(std::span<const Triangle> created, std::span<const Triangle> removed,
                    const Guesses& beneath, double distance) const;
 
@@ -204,14 +234,19 @@ struct SurfaceMesh::Impl {
   bool keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_removed,
                      std::span<const Triangle> removed, std::span<const Triangle> created) const;
   int cuts_of(const Triangle& t) const {
-    const double longest2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
-    const double cuts = std::ceil(std::sqrt(longest2) / spacing);
+    const double cuts = std::ceil(std::sqrt(surface::longest_edge2(t)) / spacing);
     return cuts < surface::kMostCuts ? std::max(static_cast<int>(cuts), surface::kLeastCuts)
                                      : surface::kMostCuts;  // also where it is no number
   }
+  /// Are the points by which a triangle is judged so far apart that others between them have to be asked?
+  bool has_between(const Triangle& t) const {
+    const double apart = cuts_of(t) * between;
+    return surface::longest_edge2(t) > apart * apart;
+  }
+  double spacing_between(std::span<const Triangle> input) const;
   /// A sample stays where it is while that face is near enough, and goes to the nearest of these faces
   /// otherwise; so do those that have no face.
-  void share_samples(const std::vector<OmFace>& among, std::vector<Vec3> homeless);
+  void share_samples(const std::vector<OmFace>& among, std::array<std::vector<Vec3>, 2> homeless);
   std::vector<OmFace> faces_round(OmVertex v) const {
     std::vector<OmFace> round;
     for (auto it = om.cvf_iter(v); it.is_valid(); ++it) round.push_back(*it);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The shape that must be kept: distances from the input and of it, normals, volumes.
+#include <limits>
 #include <numbers>
 
 #include "Surface/SurfaceMeshImpl.hh"
@@ -12,6 +13,8 @@ using namespace surface;  // what SurfaceMesh is made of
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// The samples are judged by somewhat less than what is allowed, for what lies between them.
 constexpr double kBetween = 0.7;
+/// Those between them by less, since they are nearer to one another.
+constexpr double kCloseBetween = 0.85;
 /// What is less than this share of a distance is so beyond rounding.
 constexpr double kSurely = 1 - 1e-9;
 /// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
@@ -22,6 +25,13 @@ constexpr double kVolume = 5e-4;
 constexpr double kRegionVolume = 9e-4;
 /// Regions whose volume one change may touch; one that would touch more is refused.
 constexpr std::size_t kMostRegions = 16;
+
+/// The square of the distance from the nearest of the triangles.
+double distance2_of(Vec3 x, std::span<const Triangle> triangles) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : triangles) least = std::min(least, norm2(nearest_point(t, x) - x));
+  return least;
+}
 
 }  // namespace
 
@@ -79,6 +89,33 @@ bool SurfaceMesh::Impl::are_near(std::span<const Triangle> created, std::span<co
   return true;
 }
 
+/// Where the points of are_near() are far apart: are those between them no further than `distance` from the
+/// input? A piece whose corners are all so near to the same triangle of the input is so as a whole.
+bool SurfaceMesh::Impl::are_near_between(std::span<const Triangle> created, Guesses& beneath,
+                                         double distance) const {
+  bool near = true;
+  const auto item_near = [&](Vec3 x) -> std::optional<std::size_t> {
+    for (std::size_t i = 0; i < beneath.size(); ++i) {
+      if (!shape->is_within(x, distance, beneath[i])) continue;
+      std::swap(beneath[i], beneath[i / 2]);  // the next point is likely to be there, too
+      return beneath[i / 2];
+    }
+    const auto item = shape->any_within(x, distance);
+    if (item && !beneath.full()) beneath.push_back(static_cast<std::uint32_t>(*item));
+    return item;
+  };
+  const auto look = [&](const Triangle& piece, Vec3 middle) {
+    if (!near) return true;
+    const auto item = item_near(middle);
+    near = item.has_value();
+    return !near || std::all_of(piece.begin(), piece.end(),
+                                [&](Vec3 x) { return shape->is_within(x, distance, *item); });
+  };
+  for (const Triangle& t : created)
+    if (near && has_between(t)) surface::bisect(t, between, look);
+  return near;
+}
+
 /// Are the normals of the new triangles near those of the input no further than `distance` beneath them? The
 /// normals of triangles no larger than noise say little, but they must not turn back. What is worse already
 /// must not get worse still: a surface that folds over has to be mended somehow.
@@ -93,8 +130,7 @@ bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> created, std::span
   const double bound = std::cos(options.normal_angle * kDegree);
   double worst_removed = 2;  // not known yet
   for (const Triangle& t : created) {
-    const double size2 = std::max({norm2(t[1] - t[0]), norm2(t[2] - t[1]), norm2(t[0] - t[2])});
-    const bool small = size2 < 4 * detail * detail;
+    const bool small = surface::longest_edge2(t) < 4 * detail * detail;
     const double now = turned(t);
     if (now >= (small ? kNotBack : bound)) continue;
     if (worst_removed == 2)
@@ -127,31 +163,46 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   thread_local std::vector<NearTriangle> now;  // of this thread, so that it is allocated once
   now.clear();
   for (const Triangle& t : created) now.emplace_back(t);
-  for (std::size_t i = 0; i < faces_removed.size(); ++i) {
-    const OmFace face = impl_->find(faces_removed[i]);
-    if (!face.is_valid()) return false;
-    const FaceRecord& record = impl_->record(face);
-    if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
-      beneath.push_back(record.beneath);
+  const auto keep_their_distance = [&](const Samples& samples, std::size_t i, double distance,
+                                       bool unless_as_far) {
     if (created.size() == faces_removed.size()) {
       // Each point of the face as it was told last, which a move that has not been told yet may have changed,
       // has one of the new triangle as near as the furthest that a corner goes.
       double step2 = 0;
       for (std::size_t k = 0; k < 3; ++k)
         step2 = std::max(step2, norm2(created[i][k] - point(faces_removed[i][k])));
-      if (record.reach + std::sqrt(step2) <= kSurely * h) continue;
+      if (samples.reach + std::sqrt(step2) <= kSurely * distance) return true;
       last = i;
     }
-    for (Vec3 s : record.samples) {
-      const auto is_near = [&](const NearTriangle& t) { return t.is_within(s, h); };
+    for (Vec3 s : samples.points) {
+      const auto is_near = [&](const NearTriangle& t) { return t.is_within(s, distance); };
       if (is_near(now[last])) continue;
       const auto at = std::find_if(now.begin(), now.end(), is_near);
-      if (at == now.end()) return false;
+      if (at == now.end()) {
+        // Moves that have not been told yet may have taken it out of these triangles.
+        if (unless_as_far && kSurely * distance2_of(s, created) <= distance2_of(s, removed)) continue;
+        return false;
+      }
       last = static_cast<std::size_t>(at - now.begin());
     }
+    return true;
+  };
+  for (std::size_t i = 0; i < faces_removed.size(); ++i) {
+    const OmFace face = impl_->find(faces_removed[i]);
+    if (!face.is_valid()) return false;
+    const FaceRecord& record = impl_->record(face);
+    if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
+      beneath.push_back(record.beneath);
+    if (!keep_their_distance(record.samples[0], i, h, /*unless_as_far=*/false)) return false;
   }
-  return impl_->are_near(created, removed, beneath, h) &&
-         impl_->turn_little(created, removed, beneath, 2 * h);
+  if (!impl_->are_near(created, removed, beneath, h) || !impl_->turn_little(created, removed, beneath, 2 * h))
+    return false;
+  const double close = kCloseBetween * impl_->hausdorff;
+  for (std::size_t i = 0; i < faces_removed.size() && impl_->samples_between; ++i)
+    if (!keep_their_distance(impl_->record(impl_->find(faces_removed[i])).samples[1], i, close,
+                             /*unless_as_far=*/true))
+      return false;
+  return impl_->are_near_between(created, beneath, close);
 }
 
 bool SurfaceMesh::Impl::is_too_much(const Region& region, double six_more, double share) {

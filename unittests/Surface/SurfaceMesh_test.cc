@@ -223,6 +223,48 @@ TEST(SurfaceMesh, PinchedSurfacesAreTakenApart) {
   }
 }
 
+/// The faces at the rim of a thin plate, and the same with a notch that lies between the points by which such
+/// large triangles are judged. What is left of the plate is nowhere far from the input.
+TEST(SurfaceMesh, NotchInTheRimOfAThinPlateBetweenPointsFarApartIsRefused) {
+  constexpr double kThin = 0.005;
+  generate::Arrays arrays = generate::box({1, 1, 1});
+  for (Vec3& p : arrays.points) p.z *= kThin;
+  const TetMesh mesh = built(arrays);
+  SurfaceOptions options = free_within(0.02);
+  options.feature_angle = options.normal_angle = 180;  // only distances count
+  const SurfaceMesh surface(mesh, options);
+  const auto at = [&](Vec3 x) {
+    for (VertexHandle v : mesh.vertices())
+      if (mesh.point(v) == x) return v;
+    return VertexHandle();
+  };
+  const VertexHandle a = at({0, 0, 0}), b = at({1, 0, 0}), c = at({1, 0, kThin}), d = at({0, 0, kThin});
+  const VertexHandle below = surface.across(a, b)[1];
+  const VertexHandle above = surface.across(d, c)[0];
+  ASSERT_EQ(surface.across(a, b)[0], c);
+  ASSERT_TRUE(below.is_valid() && above.is_valid());
+  const std::array<std::array<VertexHandle, 3>, 4> faces = {
+      {{a, b, c}, {a, c, d}, {b, a, below}, {d, c, above}}};
+  std::vector<Triangle> removed;
+  for (const auto& f : faces) removed.push_back({mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])});
+  const auto keeps_notch = [&](double depth) {
+    const std::array<Vec3, 5> rim = {{{0, 0, 0}, {0.22, 0, 0}, {0.3, depth, 0}, {0.38, 0, 0}, {1, 0, 0}}};
+    const Vec3 up = {0, 0, kThin};
+    std::vector<Triangle> created;
+    for (std::size_t i = 0; i + 1 < rim.size(); ++i) {
+      const Vec3 p = rim[i];
+      const Vec3 q = rim[i + 1];
+      created.push_back({p, q, q + up});
+      created.push_back({p, q + up, p + up});
+      created.push_back({q, p, mesh.point(below)});
+      created.push_back({p + up, q + up, mesh.point(above)});
+    }
+    return surface.keeps_shape(faces, removed, created);
+  };
+  EXPECT_TRUE(keeps_notch(0.01));
+  EXPECT_FALSE(keeps_notch(0.05));
+}
+
 TEST(SurfaceMesh, OptionsOutOfRangeAreRefused) {
   const TetMesh mesh = built(generate::box({1, 1, 1}));
   SurfaceOptions options = free_within(-1);
