@@ -95,9 +95,8 @@ TEST(ShuffledAlgorithms, StarsAndColoursAreThoseOfOneThread) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
     const TetMesh mesh =
-        seed % 8 == 0
-            ? built(neighbourly(70))
-            : limit_mesh(static_cast<Limit>(seed % static_cast<int>(Limit::kLimits)), engine);
+        seed % 8 == 0 ? built(neighbourly(70))
+                      : limit_mesh(static_cast<Limit>(seed % static_cast<int>(Limit::kLimits)), engine);
     const double share = seed % 3 == 0 ? 0.03 : uniform(engine, 0.3, 1.0);
     std::vector<VertexHandle> vertices;
     const auto sizes = star_sizes(mesh);
@@ -217,10 +216,8 @@ TEST(ShuffledAlgorithms, RoundsOfEachOperatorAreThoseOfOneThread) {
   for_seeds(kSeeds, [&](std::uint64_t seed) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
-    State one{
-        limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)),
-                   engine),
-        {}};
+    State one{limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine),
+              {}};
     one.work.attach(one.mesh, kOneThread);
     one.work.set_qualities(one.mesh, MinSine2{}, kOneThread);
     State many = one;
@@ -242,10 +239,8 @@ TEST(ShuffledAlgorithms, SmoothingPassesAreThoseOfOneThread) {
   for_seeds(kSeeds, [&](std::uint64_t seed) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
-    State one{
-        limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)),
-                   engine),
-        {}};
+    State one{limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine),
+              {}};
     one.work.attach(one.mesh, kOneThread);
     std::vector<VertexHandle> vertices;
     for (VertexHandle v : one.mesh.vertices())
@@ -305,8 +300,8 @@ TEST(ShuffledAlgorithms, BuildingMeasuringAndReorderingGiveOneResult) {
   for_seeds(kSeeds, [](std::uint64_t seed) {
     Engine engine(seed);
     const par::Policy policy = policy_of(engine);
-    TetMesh mesh = limit_mesh(
-        static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine);
+    TetMesh mesh =
+        limit_mesh(static_cast<Limit>(engine() % static_cast<std::uint64_t>(Limit::kLimits)), engine);
     std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
     std::vector<Corners> cells;
     for (CellHandle c : mesh.cells()) {
