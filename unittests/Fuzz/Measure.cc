@@ -129,6 +129,7 @@ class Measurer {
     std::sort(angles.begin(), angles.end());
     out_.worst = angles.front();
     out_.p1 = angles[angles.size() / 100];
+    out_.angles = std::move(angles);
   }
 
   void measure_constraints() {

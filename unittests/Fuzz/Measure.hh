@@ -38,6 +38,7 @@ struct Measure {
   std::size_t inverted = 0, flat = 0;
   double worst = 0;                 ///< smallest dihedral of all, degrees; negative in inverted cells
   double p1 = 0;                    ///< 1st percentile of the cells' smallest dihedrals
+  std::vector<double> angles;       ///< these, ascending
   long double inverted_volume = 0;  ///< sum of |V| of the inverted cells
   long double absolute_volume = 0;
   std::map<int, long double> region_volume;  ///< signed

@@ -32,7 +32,8 @@ class Judge {
     distance(before, surface);
     constraints(before, after);
     if (after.worst <= before.worst + kAngleRounding && after.p1 <= before.p1 + kAngleRounding &&
-        after.inverted + after.flat >= before.inverted + before.flat && after.cells > 2 * before.cells + 30)
+        after.inverted + after.flat >= before.inverted + before.flat &&
+        below_goal(after) >= below_goal(before) && after.cells > 2 * before.cells + 30)
       find("cells for nothing", "{} -> {} cells, worst {:.4f} -> {:.4f}, p1 {:.4f} -> {:.4f}", before.cells,
            after.cells, before.worst, after.worst, before.p1, after.p1);
   }
@@ -61,6 +62,12 @@ class Judge {
   }
 
  private:
+  /// What a run towards a goal has fewer of has been gained, whatever became of the worst.
+  std::ptrdiff_t below_goal(const Measure& m) const {
+    const double goal = options_.min_dihedral.value_or(0) - kAngleRounding;
+    return std::lower_bound(m.angles.begin(), m.angles.end(), goal) - m.angles.begin();
+  }
+
   void structure(const Measure& before, const Measure& after) {
     if (after.rule != Ok) find("check", "{}: {}", rule_name(after.rule), after.rule_message);
     if (after.extra_fans > before.extra_fans)

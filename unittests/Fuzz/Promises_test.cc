@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "HalfFace/Generate.hh"
 
 namespace hfr::fuzz {
@@ -62,6 +64,27 @@ TEST(Promises, AreBrokenByAnAngleThatFallsALittle) {
   worse.set_point(VertexHandle(kInside), {0.25, 0.51, 0.5});
   EXPECT_THAT(broken(good, worse), Contains("worst angle"));
   EXPECT_THAT(broken(worse, good), IsEmpty());
+}
+
+TEST(Promises, AreBrokenByCellsForNothingButNotByThoseThatLeaveFewerBelowTheGoal) {
+  Measure before = measure(box());
+  before.worst = before.p1 = 5;
+  before.angles = {5, 10, 20};
+  Measure after = before;
+  after.cells = 3 * before.cells + 30;
+  RandomOptions options;
+  options.improve.min_dihedral = 15;
+  const auto n_findings = [&] {
+    std::vector<Finding> findings;
+    compare_meshes(before, after, options, {}, findings);
+    return std::count_if(findings.begin(), findings.end(),
+                         [](const Finding& f) { return f.promise == "cells for nothing"; });
+  };
+  EXPECT_EQ(n_findings(), 1);
+  after.angles = {5, 15, 20};
+  EXPECT_EQ(n_findings(), 0);
+  options.improve.min_dihedral.reset();
+  EXPECT_EQ(n_findings(), 1) << "there is no goal";
 }
 
 TEST(Promises, AreBrokenByABoundaryThatMoves) {
