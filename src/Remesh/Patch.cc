@@ -11,7 +11,7 @@
 
 namespace hfr {
 
-Patch::Patch(const TetMesh& whole, CellHandle centre, int layers)
+Patch::Patch(const TetMesh& whole, CellHandle centre, int layers, std::span<const std::uint8_t> pinched)
     : cells_(cells_within(whole, centre, layers)) {
   std::unordered_map<VertexHandle, Index> local;
   std::vector<Vec3> points;
@@ -29,16 +29,17 @@ Patch::Patch(const TetMesh& whole, CellHandle centre, int layers)
     }
   }
   mesh_ = build(std::move(points), tets);
-  copy_constraints(whole);
+  copy_constraints(whole, pinched);
 }
 
 /// Fixed and labelled vertices stay what they are; an edge or a face that may not change is a labelled one
 /// here.
-void Patch::copy_constraints(const TetMesh& whole) {
+void Patch::copy_constraints(const TetMesh& whole, std::span<const std::uint8_t> pinched) {
   Labels& labels = mesh_.labels();
   if (!whole.labels().vertices.empty()) labels.vertices.resize(vertices_.size());
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    mesh_.set_fixed(VertexHandle(i), whole.is_fixed(vertices_[i]));
+    const bool is_pinched = !pinched.empty() && pinched[vertices_[i].idx()] != 0;
+    mesh_.set_fixed(VertexHandle(i), is_pinched || whole.is_fixed(vertices_[i]));
     if (!labels.vertices.empty()) labels.vertices[i] = whole.labels().vertex(vertices_[i]);
   }
   for (std::size_t i = 0; i < cells_.size(); ++i) {

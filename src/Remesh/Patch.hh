@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_PATCH_HH
 #define HFR_REMESH_PATCH_HH
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,9 @@ class Patch {
  public:
   /// The cells within `layers` of cell `centre`, which comes first: those of its region that share a vertex
   /// with it, those that share one with them, and so on. All of them must be positive.
-  Patch(const TetMesh& whole, CellHandle centre, int layers);
+  /// `pinched`: as Workspace has it. Such a vertex has cells that no walk within the patch comes to, although
+  /// it may look like an inner one there: it stays.
+  Patch(const TetMesh& whole, CellHandle centre, int layers, std::span<const std::uint8_t> pinched = {});
 
   const TetMesh& mesh() const { return mesh_; }
   const std::vector<CellHandle>& cells() const { return cells_; }
@@ -29,7 +32,7 @@ class Patch {
   void put_back(TetMesh& whole, const TetMesh& changed) const;
 
  private:
-  void copy_constraints(const TetMesh& whole);
+  void copy_constraints(const TetMesh& whole, std::span<const std::uint8_t> pinched);
 
   std::vector<CellHandle> cells_;
   std::vector<VertexHandle> vertices_;

@@ -172,17 +172,20 @@ Outcome search(const Patch& patch, const Run& whole, Room room, double goal, con
   return best;
 }
 
-/// Patches round the worst of the cells that share none.
-std::vector<Patch> disjoint_patches(const TetMesh& mesh, std::span<const CellHandle> worst,
+/// Patches round the worst of the cells that share none. One that has two pinched vertices is left out: an
+/// edge between them may exist elsewhere, where the patch does not see it.
+std::vector<Patch> disjoint_patches(const Run& run, std::span<const CellHandle> worst,
                                     const PatchEffort& effort) {
+  const TetMesh& mesh = run.mesh;
   std::vector<Patch> patches;
   std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
   for (CellHandle c : worst) {
     if (patches.size() == effort.patches) break;
     if (taken[c.idx()]) continue;
-    Patch patch(mesh, c, effort.layers);
+    Patch patch(mesh, c, effort.layers, run.work.pinched);
     const auto& cells = patch.cells();
     if (std::any_of(cells.begin(), cells.end(), [&](CellHandle d) { return taken[d.idx()] != 0; })) continue;
+    if (run.work.has_two_pinched(mesh, cells)) continue;
     for (CellHandle d : cells) taken[d.idx()] = 1;
     patches.push_back(std::move(patch));
   }
@@ -225,7 +228,7 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     const auto worst = worst_cells_below(run.mesh, next, std::max(effort.few + 1, n_centres), run.policy());
     if (worst.size() > effort.few) break;
     const std::vector<Patch> patches =
-        disjoint_patches(run.mesh, std::span(worst).first(std::min(n_centres, worst.size())), effort);
+        disjoint_patches(run, std::span(worst).first(std::min(n_centres, worst.size())), effort);
     if (patches.empty()) break;
     std::vector<Outcome> outcomes(patches.size());
     par::for_each_dynamic(run.policy().for_items_of(kPatchNanoseconds), patches.size(), 1,

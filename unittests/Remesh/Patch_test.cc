@@ -68,6 +68,45 @@ TEST(Patch, PutBackUnchangedIsTheSameMesh) {
   EXPECT_TRUE(cells_by_place(mesh) == before);
 }
 
+/// A vertex in the middle of eight cells, and one cell more that has only this vertex in common with them.
+TetMesh inner_vertex_with_a_cell_apart() {
+  return build({{0, 0, 0},
+                {1, 0, 0},
+                {-1, 0, 0},
+                {0, 1, 0},
+                {0, -1, 0},
+                {0, 0, 1},
+                {0, 0, -1},
+                {3, 0, 0},
+                {3, 1, 0},
+                {3, 0, 1}},
+               std::vector<Corners>{{0, 1, 3, 5},
+                                    {0, 3, 2, 5},
+                                    {0, 2, 4, 5},
+                                    {0, 4, 1, 5},
+                                    {0, 3, 1, 6},
+                                    {0, 2, 3, 6},
+                                    {0, 4, 2, 6},
+                                    {0, 1, 4, 6},
+                                    {0, 7, 8, 9}});
+}
+
+TEST(Patch, VertexWithCellsThatThePatchDoesNotSeeStays) {
+  const TetMesh mesh = inner_vertex_with_a_cell_apart();
+  ASSERT_EQ(mesh.n_cells(), 9U);
+  const auto pinched = pinched_vertices(mesh, star_sizes(mesh));
+  ASSERT_FALSE(pinched.empty());
+  ASSERT_TRUE(pinched[0] != 0);
+  const Patch blind(mesh, C(0), 2);
+  const Patch patch(mesh, C(0), 2, pinched);
+  ASSERT_EQ(patch.cells().size(), 8U) << "the cell apart is in it";
+  for (std::size_t i = 0; i < patch.vertices().size(); ++i)
+    EXPECT_EQ(patch.mesh().is_fixed(VertexHandle(i)), patch.vertices()[i] == V(0));
+  const VertexHandle middle(static_cast<std::size_t>(
+      std::find(patch.vertices().begin(), patch.vertices().end(), V(0)) - patch.vertices().begin()));
+  EXPECT_FALSE(blind.mesh().is_boundary(middle)) << "it no longer looks like an inner one";
+}
+
 TEST(Patch, WhatCameWentAndMovedArrives) {
   int came = 0;
   int went = 0;
