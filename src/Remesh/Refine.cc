@@ -28,14 +28,14 @@ bool refine(const Run& run, const RefineEffort& effort) {
   if (run.control.stopped() || smallest_dihedral(run.mesh, run.policy()) >= effort.below) return false;
   const double share = share_below(run.mesh, effort.below, run.policy());
   if (share <= effort.least_share || share >= effort.largest_share) return false;
-  const Findings before = run.findings;
+  const bool met_before = run.findings.met_cell_bound;
   CellBounds bounds = run.bounds;
   if (bounds.max > 0) bounds.max = std::max<std::size_t>(bounds.max * effort.of_hundred / 100, 1);
   const Run part = run.within(bounds);
   Trial trial(part, effort.below);
   insert_where_poor(part, effort);
   trial.settle();
-  if (!before.met_cell_bound) run.findings.forget_cell_bound();
+  if (!met_before) run.findings.forget_cell_bound();
   return true;
 }
 

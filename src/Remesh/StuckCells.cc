@@ -7,14 +7,15 @@
 #include "Operators/VertexInsertion.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/Wedges.hh"
+#include "Remesh/Strategy.hh"
 
 namespace hfr {
 namespace {
 
 /// Degrees by which a wedge may exceed what its cells need by rounding alone.
 constexpr double kRounding = 1e-9;
-/// Cells that a new vertex takes, about; where there is no room for them, none is tried.
-constexpr std::size_t kLeastRoom = 4;
+/// Where there is no room for them, no vertex is tried.
+constexpr std::size_t kLeastRoom = PassEffort{}.cells_of_vertex;
 
 std::array<Vec3, 4> corners(const TetMesh& mesh, CellHandle c) {
   const auto& v = mesh.cell(c).v;
