@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # A layer is one folder below src/. Layers depend on those before them in this list and on no other, so each
 # is an object library of its own that tests can link without what stands above it.
-set(HFR_LAYERS Parallel HalfFace Quality IO Operators Surface Scheduler Device Remesh)
+set(HFR_LAYERS Parallel HalfFace Quality IO Transfer Operators Surface Scheduler Device Remesh)
 
 # Where users find the headers: they include <hfremesh/LAYER/NAME.hh>, so that no folder of ours (IO, Device) lands
 # in anybody's include path.
@@ -32,15 +32,24 @@ endif()
 target_compile_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 target_link_options(hfr_flags INTERFACE ${HFR_INSTRUMENT_FLAGS})
 
-# Most of what the compiler reads of a source of ours is the standard library: parsed once for all layers.
+# g++ 12 knows no system headers in a precompiled one, and warns of copies in std::string that it takes for larger
+# than memory or than the text.
+set(HFR_PCH_OPTIONS "")
 if(HFR_PCH)
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cc CONTENT "" @ONLY)
+  set(HFR_PCH_OPTIONS "$<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow;-Wno-array-bounds>")
+endif()
+
+# Most of what the compiler reads of a source of ours is the standard library: parsed once for all layers, and once
+# more, with GoogleTest, for all tests (unittests/CMakeLists.txt).
+set(HFR_STANDARD_HEADERS <algorithm> <array> <atomic> <bit> <cmath> <cstdint> <cstring> <filesystem> <functional>
+  <limits> <map> <memory> <numeric> <optional> <ranges> <set> <span> <string> <string_view> <type_traits>
+  <unordered_map> <unordered_set> <utility> <vector>)
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled.cc CONTENT "" @ONLY)
+if(HFR_PCH_OF_LIBRARY)
   add_library(hfr_precompiled OBJECT ${PROJECT_BINARY_DIR}/precompiled.cc)
   set_target_properties(hfr_precompiled PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(hfr_precompiled PRIVATE hfr_flags)
-  target_precompile_headers(hfr_precompiled PRIVATE <algorithm> <array> <atomic> <bit> <cmath> <cstdint> <cstring>
-    <filesystem> <functional> <limits> <map> <memory> <numeric> <optional> <ranges> <set> <span> <string>
-    <string_view> <type_traits> <unordered_map> <unordered_set> <utility> <vector>)
+  target_precompile_headers(hfr_precompiled PRIVATE ${HFR_STANDARD_HEADERS})
 endif()
 
 # hfr_public_headers(FOLDER NAME FILES ...): headers of FOLDER that users include as <hfremesh/NAME/FILE>. Installed
@@ -60,7 +69,8 @@ endfunction()
 
 # hfr_layer(NAME [SOURCES ...] [HEADERS ...] [PRIVATE_HEADERS ...] [PRIVATE_LIBRARIES ...])
 # HEADERS are public: see hfr_public_headers(). They include each other by the names that users have for them, and
-# nothing else of the project. PRIVATE_HEADERS stay here. All are verified to compile alone.
+# nothing else of the project. PRIVATE_HEADERS stay here. All are verified to compile alone: by the source of their
+# name that includes them first, or, where there is none, by themselves (src/CMakeLists.txt).
 # PRIVATE_LIBRARIES appear in no public header; cmake/HfrInstall.cmake knows how users of a static library
 # find them.
 function(hfr_layer NAME)
@@ -80,17 +90,40 @@ function(hfr_layer NAME)
   target_include_directories(${target}_headers INTERFACE ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/include)
   target_link_libraries(${target}_headers INTERFACE hfr_kernels ${below})
   hfr_public_headers(${CMAKE_CURRENT_SOURCE_DIR} ${NAME} FILES ${ARG_HEADERS})
+  foreach(source IN LISTS ARG_SOURCES)
+    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+      continue()  # made by the build
+    endif()
+    string(REGEX REPLACE "\\.cc$" ".hh" header ${source})
+    file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/${source} first REGEX "^#include" LIMIT_COUNT 1)
+    if(first MATCHES "/${header}\"$" AND NOT HFR_PCH_OF_LIBRARY)
+      set_property(GLOBAL APPEND PROPERTY HFR_VERIFIED_HEADERS ${CMAKE_CURRENT_SOURCE_DIR}/${header}
+        ${PROJECT_BINARY_DIR}/include/hfremesh/${NAME}/${header})
+    endif()
+  endforeach()
   list(TRANSFORM ARG_PRIVATE_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   set_property(GLOBAL APPEND PROPERTY HFR_PRIVATE_HEADERS ${ARG_PRIVATE_HEADERS})
   if(ARG_SOURCES)
     add_library(${target} OBJECT ${ARG_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_link_libraries(${target} PRIVATE hfr_flags ${ARG_PRIVATE_LIBRARIES} PUBLIC ${target}_headers)
-    if(HFR_PCH AND NOT NAME STREQUAL "Parallel")  # which alone is compiled with flags of its own
+    if(HFR_PCH_OF_LIBRARY AND NOT NAME STREQUAL "Parallel")  # which alone is compiled with flags of its own
       target_precompile_headers(${target} REUSE_FROM hfr_precompiled)
     endif()
     set_property(GLOBAL APPEND PROPERTY HFR_OBJECT_LAYERS ${target})
     set_property(GLOBAL APPEND PROPERTY HFR_PRIVATE_LIBRARIES ${ARG_PRIVATE_LIBRARIES})
+  endif()
+endfunction()
+
+# How sources of tests are compiled: GoogleTest's macros are many lines for each that is written, and nobody waits
+# for them to run. What the library decides is compiled as ever.
+set(HFR_TEST_OPTIONS $<$<CONFIG:Release,RelWithDebInfo>:-O1> ${HFR_PCH_OPTIONS})
+
+# hfr_test_flags(TARGET): such a target, which links the private libraries of the layers, too.
+function(hfr_test_flags TARGET)
+  target_compile_options(${TARGET} PRIVATE ${HFR_TEST_OPTIONS})
+  if(HFR_PCH)
+    target_precompile_headers(${TARGET} REUSE_FROM hfr_precompiled_tests)
   endif()
 endfunction()
 
@@ -115,6 +148,7 @@ function(hfr_test FOLDER)
   endforeach()
   target_link_libraries(test_${FOLDER} PRIVATE ${private_libraries})
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/unittests)
+  hfr_test_flags(test_${FOLDER})
   target_compile_definitions(test_${FOLDER} PRIVATE HFR_TEST_MESHES="${HFR_TEST_MESHES}")
   gtest_discover_tests(test_${FOLDER} TEST_PREFIX ${FOLDER}. DISCOVERY_TIMEOUT 60)
 endfunction()

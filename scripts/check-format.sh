@@ -13,7 +13,7 @@ if ! command -v "$format" > /dev/null; then
   echo "check-format: $format is missing; scripts/install-deps.sh --dev installs it" >&2
   exit 1
 fi
-mapfile -t files < <(find src kernels apps unittests examples bench -type f \
+mapfile -t files < <(find src kernels apps bindings unittests examples bench -type f \
   \( -name '*.cc' -o -name '*.hh' -o -name '*.h' -o -name '*.cl' \) | LC_ALL=C sort)
 printf '%s\0' "${files[@]}" | xargs -0 -n 16 -P "$(nproc)" "$format" "${mode[@]}"
 echo "check-format: ${#files[@]} files"

@@ -6,14 +6,15 @@
 #   - nothing in src/ prints, exits or aborts;
 #   - every header in kernels/ is listed in kernels/CMakeLists.txt, every source and header in its folder's
 #     CMakeLists.txt;
-#   - public headers, apps/ and examples/ include public headers only, by the names that users have for them:
-#     hfremesh/LAYER/NAME.hh.
+#   - nor does anything in bindings/;
+#   - public headers, apps/, bindings/ and examples/ include public headers only, by the names that users have for
+#     them: hfremesh/LAYER/NAME.hh.
 # Usage: scripts/check-layers.sh [ROOT]     prints one line for each fault; exit 1 when there is one.
 set -euo pipefail
 root=${1:-$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)}
 cd "$root"
 
-order=(Parallel HalfFace Quality IO Operators Surface Scheduler Device Remesh)
+order=(Parallel HalfFace Quality IO Transfer Operators Surface Scheduler Device Remesh)
 any_layer=$(IFS='|'; echo "${order[*]}")
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT
@@ -45,7 +46,7 @@ for file in $(sources kernels); do
     sed -E "s|^([0-9]+):(.*)|$file:\1: kernels stand below what they include: \2|" >> "$faults"
 done
 
-for file in $(sources src kernels apps); do
+for file in $(sources src kernels apps bindings); do
   case $file in src/Parallel/*) continue ;; esac
   { grep -nE '^ *# *(include *[<"](omp\.h|tbb/|oneapi/tbb)|pragma +omp)|omp_[a-z_]+\(|tbb::' "$file" || true; } |
     sed -E "s|^([0-9]+):(.*)|$file:\1: only src/Parallel knows the thread library: \2|" >> "$faults"
@@ -53,9 +54,9 @@ done
 
 prints='(std::|[^A-Za-z0-9_:.>]|^)(cout|cerr|clog|printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror)[^A-Za-z0-9_]|fmt::print'
 ends='(std::|[^A-Za-z0-9_:.>]|^)(exit|_Exit|quick_exit|abort|terminate)[[:space:]]*\('
-for file in $(sources src kernels); do
+for file in $(sources src kernels bindings); do
   code "$file" | { grep -E "^[0-9]+:.*($prints|$ends)" || true; } |
-    sed -E "s|^([0-9]+):(.*)|$file:\1: src/ neither prints nor ends the program: \2|" >> "$faults"
+    sed -E "s|^([0-9]+):(.*)|$file:\1: ${file%%/*}/ neither prints nor ends the program: \2|" >> "$faults"
 done
 
 for file in kernels/*.h; do
@@ -92,7 +93,7 @@ only_public() {
       fi
     done >> "$faults"
 }
-for file in $(sources apps examples); do only_public "$file"; done
+for file in $(sources apps bindings examples); do only_public "$file"; done
 while read -r header; do
   if [ -e "src/$header" ]; then only_public "src/$header"; fi
 done < "$public"
@@ -102,4 +103,4 @@ if [ -s "$faults" ]; then
   echo "check-layers: $(wc -l < "$faults") faults" >&2
   exit 1
 fi
-echo "check-layers: no fault in $(sources src kernels apps examples | wc -l) files"
+echo "check-layers: no fault in $(sources src kernels apps bindings examples | wc -l) files"

@@ -24,7 +24,7 @@ done
 cd "$root"
 read -ra flags <<< "${HFR_LIBCXX:--stdlib=libc++}"
 sources=()
-for file in src/Parallel/*.cc src/HalfFace/*.cc src/Quality/*.cc src/Operators/*.cc src/Scheduler/*.cc; do
+for file in src/Parallel/*.cc src/HalfFace/*.cc src/Quality/*.cc src/Transfer/*.cc src/Operators/*.cc src/Scheduler/*.cc; do
   case $file in */BackendOpenMp.cc | */BackendTbb.cc) continue ;; esac
   sources+=("$file")
 done

@@ -3,7 +3,6 @@
 // --min-dihedral, 4 when it is not, 2 when no mesh can be made of the file at all.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -135,27 +134,24 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
 
 }  // namespace
 
-Run add_check(CLI::App& app, CommonOptions& common) {
+Subcommand add_check(Command program, CommonOptions& common) {
   const auto line = std::make_shared<CommandLine>();
-  CLI::App* command =
-      app.add_subcommand("check", "Fail on inverted, flat, renumbered, overlapping or broken cells");
-  command->add_option("IN", line->input, "Mesh to read")
-      ->required()
-      ->type_name("FILE")
-      ->transform(stream_name());
-  command->add_option("--ids", line->ids, "Write kind and index of every bad cell; - is stdout")
-      ->type_name("FILE")
-      ->transform(stream_name());
-  command->add_option("--min-dihedral", line->min_dihedral, "Fail on a smaller dihedral angle too")
-      ->type_name("DEG")
-      ->check(real_number(0, 180));
-  command->add_flag("--manifold", line->manifold,
-                    "Fail on edges and vertices at which parts only touch, too");
-  add_format_options(*command, common, true, false);
-  add_split_option(*command, common);
-  add_common_options(*command, common);
+  Command command =
+      program.subcommand("check", "Fail on inverted, flat, renumbered, overlapping or broken cells");
+  command.option("IN", line->input, "Mesh to read").required().type_name("FILE").transform(stream_name());
+  command.option("--ids", line->ids, "Write kind and index of every bad cell; - is stdout")
+      .type_name("FILE")
+      .transform(stream_name());
+  command.option("--min-dihedral", line->min_dihedral, "Fail on a smaller dihedral angle too")
+      .type_name("DEG")
+      .check(real_number(0, 180));
+  command.flag("--manifold", line->manifold, "Fail on edges and vertices at which parts only touch, too");
+  add_format_options(command, common, true, false);
+  add_split_option(command, common);
+  add_common_options(command, common);
   using Kind = FileUse::Kind;
   return {
+      command,
       [line] {
         return std::vector<FileUse>{{Kind::kInput, "IN", line->input}, {Kind::kReport, "--ids", line->ids}};
       },

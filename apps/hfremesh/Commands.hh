@@ -8,29 +8,28 @@
 
 #include "ExitCode.hh"
 #include "Options.hh"
+#include "Parser.hh"
 #include "Paths.hh"
-
-namespace CLI {
-class App;
-}
 
 namespace hfr::app {
 
-/// A subcommand whose options are parsed.
-struct Run {
+/// A subcommand; the two functions count once its options are parsed.
+struct Subcommand {
+  Command command;
   /// What it reads and writes beside the JSON report.
   std::function<std::vector<FileUse>()> files;
   /// Does it; adds what was done to the report.
   std::function<ExitCode(nlohmann::ordered_json& report)> run;
 };
 
-/// Each adds its subcommand to `app`. `common` must outlive what is returned.
-Run add_improve(CLI::App& app, CommonOptions& common);
-Run add_check(CLI::App& app, CommonOptions& common);
-Run add_stats(CLI::App& app, CommonOptions& common);
-Run add_convert(CLI::App& app, CommonOptions& common);
-Run add_generate(CLI::App& app, CommonOptions& common);
-Run add_devices(CLI::App& app, CommonOptions& common);
+/// Each adds its own to `program`. `common` must outlive what is returned.
+Subcommand add_improve(Command program, CommonOptions& common);
+Subcommand add_check(Command program, CommonOptions& common);
+Subcommand add_stats(Command program, CommonOptions& common);
+Subcommand add_convert(Command program, CommonOptions& common);
+Subcommand add_generate(Command program, CommonOptions& common);
+Subcommand add_move(Command program, CommonOptions& common);
+Subcommand add_devices(Command program, CommonOptions& common);
 
 }  // namespace hfr::app
 

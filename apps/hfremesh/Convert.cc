@@ -3,7 +3,6 @@
 // reordered or mended, unless it is to be split where it is not manifold.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -49,22 +48,20 @@ ExitCode run(const ConvertOptions& options, const CommonOptions& common, Json& r
 
 }  // namespace
 
-Run add_convert(CLI::App& app, CommonOptions& common) {
+Subcommand add_convert(Command program, CommonOptions& common) {
   const auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command = app.add_subcommand("convert", "Write a mesh in another format");
-  command->add_option("A", options->input, "Mesh to read")
-      ->required()
-      ->type_name("FILE")
-      ->transform(stream_name());
-  command->add_option("B,-o,--output", options->output, "Mesh to write; its extension gives the format")
-      ->required()
-      ->transform(stream_name());
-  add_format_options(*command, common, true, true);
-  add_split_option(*command, common);
-  add_write_options(*command, options->write);
-  add_common_options(*command, common);
+  Command command = program.subcommand("convert", "Write a mesh in another format");
+  command.option("A", options->input, "Mesh to read").required().type_name("FILE").transform(stream_name());
+  command.option("B,-o,--output", options->output, "Mesh to write; its extension gives the format")
+      .required()
+      .transform(stream_name());
+  add_format_options(command, common, true, true);
+  add_split_option(command, common);
+  add_write_options(command, options->write);
+  add_common_options(command, common);
   using Kind = FileUse::Kind;
   return {
+      command,
       [options] {
         return std::vector<FileUse>{{Kind::kInput, "A", options->input}, {Kind::kMesh, "B", options->output}};
       },

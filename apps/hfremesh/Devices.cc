@@ -2,8 +2,6 @@
 // hfremesh devices: the OpenCL devices that --device can name.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
 #include "Commands.hh"
 #include "Console.hh"
 #include "Json.hh"
@@ -60,10 +58,11 @@ ExitCode run(const CommonOptions& common, Json& report) {
 
 }  // namespace
 
-Run add_devices(CLI::App& app, CommonOptions& common) {
-  CLI::App* command = app.add_subcommand("devices", "List the OpenCL devices that improve --device can use");
-  add_common_options(*command, common);
-  return {[] { return std::vector<FileUse>(); }, [&common](Json& report) { return run(common, report); }};
+Subcommand add_devices(Command program, CommonOptions& common) {
+  Command command = program.subcommand("devices", "List the OpenCL devices that improve --device can use");
+  add_common_options(command, common);
+  return {command, [] { return std::vector<FileUse>(); },
+          [&common](Json& report) { return run(common, report); }};
 }
 
 }  // namespace hfr::app

@@ -2,8 +2,6 @@
 // hfremesh generate SHAPE: meshes of simple shapes, and the cavity that the paper's figures are measured on.
 #include "hfremesh/HalfFace/Generate.hh"
 
-#include <CLI/CLI.hpp>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -22,6 +20,7 @@ struct GenerateOptions {
   std::string output;
   io::WriteOptions write;
   generate::CavityOptions cavity;
+  std::string field;          ///< of the cavity's deformation
   std::vector<Index> counts;  ///< as many as the shape has directions, or none
   std::vector<double> low = {0, 0, 0};
   std::vector<double> high = {1, 1, 1};
@@ -44,6 +43,7 @@ std::array<Index, N> counts(const GenerateOptions& options, std::array<Index, N>
 generate::Arrays make_cavity(const GenerateOptions& options) {
   generate::CavityOptions cavity = options.cavity;
   cavity.counts = counts<3>(options, cavity.counts);
+  if (options.field == "bulk-shear") cavity.field = generate::CavityField::kBulkShear;
   return generate::cavity(cavity);
 }
 
@@ -142,95 +142,83 @@ ExitCode run(const std::string& shape, const GenerateOptions& options, const Com
   return ExitCode::kDone;
 }
 
-void add_cavity_options(CLI::App& shape, generate::CavityOptions& cavity) {
-  static const std::map<std::string, generate::CavityField> kFields = {
-      {"gaussians", generate::CavityField::kGaussians}, {"bulk-shear", generate::CavityField::kBulkShear}};
-  shape.add_option("--jitter", cavity.jitter, "Random move of inner coordinates, in cube widths")
-      ->check(real_number());
-  shape.add_option("--sigma", cavity.sigma, "Width of the Gaussians")->check(positive_number());
-  shape.add_option("--amplitude", cavity.amplitude, "Strength of the deformation; 0 for none")
-      ->check(real_number());
-  shape.add_option("--seed", cavity.seed, "Seed of the jitter")->check(whole_number());
-  shape.add_option("--field", cavity.field, "Deformation: gaussians or bulk-shear")
-      ->type_name("NAME")
-      ->transform(CLI::Transformer(kFields).description(""));
+void add_cavity_options(Command shape, GenerateOptions& options) {
+  generate::CavityOptions& cavity = options.cavity;
+  shape.option("--jitter", cavity.jitter, "Random move of inner coordinates, in cube widths")
+      .check(real_number());
+  shape.option("--sigma", cavity.sigma, "Width of the Gaussians").check(positive_number());
+  shape.option("--amplitude", cavity.amplitude, "Strength of the deformation; 0 for none")
+      .check(real_number());
+  shape.option("--seed", cavity.seed, "Seed of the jitter").check(whole_number());
+  shape.option("--field", options.field, "Deformation").type_name("NAME").one_of({"gaussians", "bulk-shear"});
 }
 
-void add_box_options(CLI::App& shape, GenerateOptions& options) {
-  shape.add_option("--low", options.low, "Lower corner")
-      ->type_name("X Y Z")
-      ->expected(3)
-      ->check(real_number());
-  shape.add_option("--high", options.high, "Upper corner")
-      ->type_name("X Y Z")
-      ->expected(3)
-      ->check(real_number());
-  shape.add_option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths")
-      ->check(real_number());
-  shape.add_option("--seed", options.seed, "Seed of the jitter")->check(whole_number());
-  shape.add_option("--regions", options.regions, "1, or 2 for two halves along x")->check(whole_number(1, 2));
+void add_box_options(Command shape, GenerateOptions& options) {
+  shape.option("--low", options.low, "Lower corner").type_name("X Y Z").expected(3).check(real_number());
+  shape.option("--high", options.high, "Upper corner").type_name("X Y Z").expected(3).check(real_number());
+  shape.option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths")
+      .check(real_number());
+  shape.option("--seed", options.seed, "Seed of the jitter").check(whole_number());
+  shape.option("--regions", options.regions, "1, or 2 for two halves along x").check(whole_number(1, 2));
 }
 
 }  // namespace
 
-Run add_generate(CLI::App& app, CommonOptions& common) {
+Subcommand add_generate(Command program, CommonOptions& common) {
   const auto options = std::make_shared<GenerateOptions>();
-  CLI::App* command = app.add_subcommand("generate", "Make a mesh: cavity, box, ball, cylinder or fandisk");
-  command->require_subcommand(1);
-  const CLI::Validator count = whole_number(0, std::numeric_limits<Index>::max());
-  CLI::App* cavity = command->add_subcommand("cavity", "Unit cube, deformed inside until cells invert");
-  add_cavity_options(*cavity, options->cavity);
-  CLI::App* box = command->add_subcommand("box", "Box of cubes cut into six cells each");
-  add_box_options(*box, *options);
-  CLI::App* ball = command->add_subcommand("ball", "Ball round the origin, 20 n^3 cells");
-  ball->add_option("--radius", options->radius, "Radius")->check(positive_number());
-  CLI::App* cylinder = command->add_subcommand("cylinder", "Upright cylinder, 18 nr^2 nz cells");
-  cylinder->add_option("--radius", options->radius, "Radius")->check(positive_number());
-  cylinder->add_option("--height", options->height, "Height")->check(positive_number());
-  cylinder->add_option("--twist", options->twist, "Degrees by which the top is turned")->check(real_number());
+  Command command = program.subcommand("generate", "Make a mesh: cavity, box, ball, cylinder or fandisk");
+  command.require_subcommand();
+  const ValueCheck count = whole_number(0, std::numeric_limits<Index>::max());
+  Command cavity = command.subcommand("cavity", "Unit cube, deformed inside until cells invert");
+  add_cavity_options(cavity, *options);
+  Command box = command.subcommand("box", "Box of cubes cut into six cells each");
+  add_box_options(box, *options);
+  Command ball = command.subcommand("ball", "Ball round the origin, 20 n^3 cells");
+  ball.option("--radius", options->radius, "Radius").check(positive_number());
+  Command cylinder = command.subcommand("cylinder", "Upright cylinder, 18 nr^2 nz cells");
+  cylinder.option("--radius", options->radius, "Radius").check(positive_number());
+  cylinder.option("--height", options->height, "Height").check(positive_number());
+  cylinder.option("--twist", options->twist, "Degrees by which the top is turned").check(real_number());
   cylinder
-      ->add_option("--wring", options->wring,
-                   "Degrees by which the side is turned back and forth; from 58 on it folds over")
-      ->check(real_number());
-  CLI::App* fandisk =
-      command->add_subcommand("fandisk", "Quarter of a ring with a step: planes, cylinders, sharp edges");
-  fandisk->add_option("--n", options->counts, "Grid cubes along the radius, each half of the arc, each level")
-      ->type_name("NR NA NZ")
-      ->expected(3)
-      ->check(count);
-  fandisk->add_option("--jitter", options->jitter, "Random move within faces and inside, in cube widths")
-      ->check(real_number());
-  fandisk->add_option("--seed", options->seed, "Seed of the jitter")->check(whole_number());
-  for (CLI::App* shape : {ball, cylinder}) {
-    shape->add_option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges")
-        ->check(real_number());
-    shape->add_option("--seed", options->seed, "Seed of the jitter")->check(whole_number());
+      .option("--wring", options->wring,
+              "Degrees by which the side is turned back and forth; from 58 on it folds over")
+      .check(real_number());
+  Command fandisk =
+      command.subcommand("fandisk", "Quarter of a ring with a step: planes, cylinders, sharp edges");
+  fandisk.option("--n", options->counts, "Grid cubes along the radius, each half of the arc, each level")
+      .type_name("NR NA NZ")
+      .expected(3)
+      .check(count);
+  fandisk.option("--jitter", options->jitter, "Random move within faces and inside, in cube widths")
+      .check(real_number());
+  fandisk.option("--seed", options->seed, "Seed of the jitter").check(whole_number());
+  for (Command shape : {ball, cylinder}) {
+    shape.option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges")
+        .check(real_number());
+    shape.option("--seed", options->seed, "Seed of the jitter").check(whole_number());
   }
-  for (CLI::App* shape : {cavity, box})
-    shape->add_option("--n", options->counts, "Grid cubes along x, y and z")
-        ->type_name("NX NY NZ")
-        ->expected(3)
-        ->check(count);
-  ball->add_option("--n", options->counts, "Shells")->type_name("N")->expected(1)->check(count);
-  cylinder->add_option("--n", options->counts, "Rings and layers")
-      ->type_name("NR NZ")
-      ->expected(2)
-      ->check(count);
-  for (CLI::App* shape : {cavity, box, ball, cylinder, fandisk}) {
-    shape->add_option("-o,--output", options->output, "Mesh to write")
-        ->required()
-        ->type_name("FILE")
-        ->transform(stream_name());
-    add_format_options(*shape, common, false, true);
-    add_write_options(*shape, options->write);
-    add_common_options(*shape, common);
+  for (Command shape : {cavity, box})
+    shape.option("--n", options->counts, "Grid cubes along x, y and z")
+        .type_name("NX NY NZ")
+        .expected(3)
+        .check(count);
+  ball.option("--n", options->counts, "Shells").type_name("N").expected(1).check(count);
+  cylinder.option("--n", options->counts, "Rings and layers").type_name("NR NZ").expected(2).check(count);
+  for (Command shape : {cavity, box, ball, cylinder, fandisk}) {
+    shape.option("-o,--output", options->output, "Mesh to write")
+        .required()
+        .type_name("FILE")
+        .transform(stream_name());
+    add_format_options(shape, common, false, true);
+    add_write_options(shape, options->write);
+    add_common_options(shape, common);
   }
-  return {[options] {
-            return std::vector<FileUse>{{FileUse::Kind::kMesh, "-o", options->output}};
-          },
-          [options, command, &common](Json& report) {
-            return run(command->get_subcommands().front()->get_name(), *options, common, report);
-          }};
+  return {
+      command,
+      [options] {
+        return std::vector<FileUse>{{FileUse::Kind::kMesh, "-o", options->output}};
+      },
+      [options, command, &common](Json& report) { return run(command.chosen(), *options, common, report); }};
 }
 
 }  // namespace hfr::app

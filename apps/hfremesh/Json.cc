@@ -185,22 +185,4 @@ Json to_json(const BuildReport& report) {
           {"split_vertices", report.copied.size()}};
 }
 
-const char* stop_name(Stop stop) {
-  switch (stop) {
-    case Stop::kGoal:
-      return "goal";
-    case Stop::kNoProgress:
-      return "no progress";
-    case Stop::kIterations:
-      return "iterations";
-    case Stop::kTimeLimit:
-      return "time limit";
-    case Stop::kCancelled:
-      return "cancelled";
-    case Stop::kDeviceLost:
-      return "device lost";
-  }
-  return "unknown";
-}
-
 }  // namespace hfr::app

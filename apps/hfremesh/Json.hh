@@ -30,7 +30,6 @@ Json to_json(const BuildReport& report);
 Json limits_json(const Result& result);
 /// The vertices of the first hundred faces.
 Json faces_json(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces);
-const char* stop_name(Stop stop);
 
 /// The first `limit` handles as numbers.
 template <class Handles>

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 namespace hfr::app {
 namespace {
@@ -25,8 +26,9 @@ std::string in_quotes(const std::string& text) {
 }
 
 std::optional<double> real_of(const std::string& text) {
-  double value = 0;
-  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value)) return std::nullopt;
+  char* end = nullptr;  // by way of long double, as the parser of the command line does
+  const auto value = static_cast<double>(std::strtold(text.c_str(), &end));
+  if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -42,29 +44,29 @@ std::optional<Integer> integer_of(std::string_view text) {
 template std::optional<int> integer_of(std::string_view);
 template std::optional<std::uint64_t> integer_of(std::string_view);
 
-CLI::Validator real_number(double low, double high, bool with_low) {
+ValueCheck real_number(double low, double high, bool with_low) {
   const auto bound = [](double x) { return std::isfinite(x) ? fmt::format("{}", x) : std::string(); };
   const std::string range = wanted("a number", bound(low), bound(high), with_low);
-  const auto check = [=](std::string& text) {
+  const auto check = [=](const std::string& text) {
     const std::optional<double> value = real_of(text);
     if (value && (*value > low || (with_low && *value == low)) && *value <= high) return std::string();
     return fmt::format("{} is wanted, not {}", range, in_quotes(text));
   };
-  return CLI::Validator(check, "").non_modifying();
+  return check;
 }
 
-CLI::Validator positive_number() { return real_number(0, std::numeric_limits<double>::infinity(), false); }
+ValueCheck positive_number() { return real_number(0, std::numeric_limits<double>::infinity(), false); }
 
-CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+ValueCheck whole_number(std::uint64_t low, std::uint64_t high) {
   const bool bounded = high < std::numeric_limits<std::uint64_t>::max();
   const std::string range =
       wanted("a whole number", fmt::format("{}", low), bounded ? fmt::format("{}", high) : "", true);
-  const auto check = [=](std::string& text) {
+  const auto check = [=](const std::string& text) {
     const std::optional<std::uint64_t> value = integer_of<std::uint64_t>(text);
     if (value && *value >= low && *value <= high) return std::string();
     return fmt::format("{} is wanted, not {}", range, in_quotes(text));
   };
-  return CLI::Validator(check, "").non_modifying();
+  return check;
 }
 
 }  // namespace hfr::app

@@ -2,12 +2,13 @@
 #ifndef HFR_APPS_NUMBERS_HH
 #define HFR_APPS_NUMBERS_HH
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+
+#include "Parser.hh"
 
 /// Checks of numbers on the command line. CLI11's own let NaN pass every range, take -1 for an unsigned
 /// number, and write out the largest double with all its 309 digits.
@@ -24,13 +25,13 @@ template <class Integer>
 std::optional<Integer> integer_of(std::string_view text);
 
 /// Finite numbers from `low` to `high`; `low` itself only where `with_low`.
-CLI::Validator real_number(double low = -std::numeric_limits<double>::infinity(),
-                           double high = std::numeric_limits<double>::infinity(), bool with_low = true);
+ValueCheck real_number(double low = -std::numeric_limits<double>::infinity(),
+                       double high = std::numeric_limits<double>::infinity(), bool with_low = true);
 /// Finite numbers above 0.
-CLI::Validator positive_number();
+ValueCheck positive_number();
 /// Integers from `low` to `high`.
-CLI::Validator whole_number(std::uint64_t low = 0,
-                            std::uint64_t high = std::numeric_limits<std::uint64_t>::max());
+ValueCheck whole_number(std::uint64_t low = 0,
+                        std::uint64_t high = std::numeric_limits<std::uint64_t>::max());
 
 }  // namespace hfr::app
 

@@ -4,13 +4,9 @@
 
 #include <string>
 
+#include "Parser.hh"
 #include "hfremesh/IO/MeshFile.hh"
 #include "hfremesh/Parallel/Parallel.hh"
-
-namespace CLI {
-class App;
-class Validator;
-}  // namespace CLI
 
 namespace hfr::app {
 
@@ -29,13 +25,13 @@ struct CommonOptions {
   bool prints_table() const { return !quiet && json != "-" && !stdout_taken; }
 };
 
-void add_common_options(CLI::App& command, CommonOptions& common);
+void add_common_options(Command command, CommonOptions& common);
 /// --format, of a mesh that is read from or written to a standard stream.
-void add_format_options(CLI::App& command, CommonOptions& common, bool reads, bool writes);
+void add_format_options(Command command, CommonOptions& common, bool reads, bool writes);
 /// A file that is named here and is a standard stream is "-" from then on.
-CLI::Validator stream_name();
-void add_split_option(CLI::App& command, CommonOptions& common);
-void add_write_options(CLI::App& command, io::WriteOptions& options);
+ValueCheck stream_name();
+void add_split_option(Command command, CommonOptions& common);
+void add_write_options(Command command, io::WriteOptions& options);
 
 }  // namespace hfr::app
 

@@ -2,7 +2,6 @@
 // hfremesh stats A [B]: figures of one mesh, or of two side by side.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 
@@ -63,17 +62,18 @@ ExitCode run(const std::vector<std::string>& files, const CommonOptions& common,
 
 }  // namespace
 
-Run add_stats(CLI::App& app, CommonOptions& common) {
+Subcommand add_stats(Command program, CommonOptions& common) {
   const auto files = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand("stats", "Print the figures of one mesh, or of two side by side");
-  command->add_option("A B", *files, "Meshes to read")
-      ->required()
-      ->expected(1, 2)
-      ->type_name("A [B]")
-      ->transform(stream_name());
-  add_format_options(*command, common, true, false);
-  add_common_options(*command, common);
-  return {[files] {
+  Command command = program.subcommand("stats", "Print the figures of one mesh, or of two side by side");
+  command.option("A B", *files, "Meshes to read")
+      .required()
+      .expected(1, 2)
+      .type_name("A [B]")
+      .transform(stream_name());
+  add_format_options(command, common, true, false);
+  add_common_options(command, common);
+  return {command,
+          [files] {
             std::vector<FileUse> uses;
             for (const std::string& file : *files)
               uses.push_back({FileUse::Kind::kInput, uses.empty() ? "A" : "B", file});

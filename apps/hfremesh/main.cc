@@ -6,7 +6,6 @@
 #include <malloc.h>
 #endif
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -45,15 +44,10 @@ void wait_passively(char** argv) {
   if (!error) execv(self.c_str(), argv);  // returns only on failure: go on as we are
 }
 
-struct Command {
-  CLI::App* app;
-  Run run;
-};
+constexpr const char* kSubcommands[] = {"improve", "move",     "check",  "stats",
+                                        "convert", "generate", "devices"};
 
-constexpr const char* kSubcommands[] = {"improve", "check", "stats", "convert", "generate", "devices"};
-
-/// The arguments, last first as CLI11 wants them. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o
-/// OUT".
+/// The arguments. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o OUT".
 std::vector<std::string> arguments(int argc, char** argv) {
   std::vector<std::string> args(argv + 1, argv + argc);
   static const std::vector<std::string> kOwnFlags = {"-h", "--help", "--version"};
@@ -62,13 +56,12 @@ std::vector<std::string> arguments(int argc, char** argv) {
   };
   if (!args.empty() && !is_one_of(kSubcommands, args[0]) && !is_one_of(kOwnFlags, args[0]))
     args.insert(args.begin(), "improve");
-  std::reverse(args.begin(), args.end());
   return args;
 }
 
 /// Looks at all files before any is read; nothing is written where two of them are one, the report included.
-void check_files(const Command& command, CommonOptions& common) {
-  std::vector<FileUse> files = command.run.files();
+void check_files(const Subcommand& subcommand, CommonOptions& common) {
+  std::vector<FileUse> files = subcommand.files();
   files.push_back({FileUse::Kind::kReport, "--json", common.json});
   require_apart(files, common);
   if (!common.json.empty()) require_writable(common.json);
@@ -85,11 +78,11 @@ std::vector<std::string> limit_threads(CommonOptions& common) {
 }
 
 /// Runs the command; what it throws becomes its exit code, a line and a part of the report.
-ExitCode run_command(const Command& command, CommonOptions& common, Json& report) {
+ExitCode run_command(const Subcommand& subcommand, CommonOptions& common, Json& report) {
   try {
     const std::vector<std::string> notes = limit_threads(common);
     report["threads"] = common.policy().threads;
-    const ExitCode code = command.run.run(report);
+    const ExitCode code = subcommand.run(report);
     if (!common.quiet) print_notes(notes);
     for (const std::string& note : notes) report["notes"].push_back(note);
     return code;
@@ -100,61 +93,57 @@ ExitCode run_command(const Command& command, CommonOptions& common, Json& report
   }
 }
 
-ExitCode run(const Command& command, CommonOptions& common, StandardStreams& streams) {
-  Json report = new_report(command.app->get_name());
+ExitCode run(const Subcommand& subcommand, CommonOptions& common, StandardStreams& streams) {
+  Json report = new_report(subcommand.command.name());
   try {
-    check_files(command, common);
+    check_files(subcommand, common);
   } catch (const std::exception& error) {
     print_error(message_of(error));
     return exit_code_of(error);
   }
-  ExitCode code = run_command(command, common, report);
+  ExitCode code = run_command(subcommand, common, report);
   if (!streams.arrived() && code == ExitCode::kDone) code = ExitCode::kUsage;
   if (common.json.empty()) return code;
   report["exit_code"] = static_cast<int>(code);
   return save_report(common.json, json_text(report), code);
 }
 
-/// CLI11 quotes arguments in full, however long they are.
+/// The parser quotes arguments in full, however long they are.
 std::string shortened(const std::string& message) {
   constexpr std::size_t kLongest = 300;
   return message.size() > kLongest ? message.substr(0, kLongest) + "..." : message;
 }
 
 /// Name of the subcommand that was being parsed, for the hint after an error.
-std::string parsed_command(const std::vector<Command>& commands) {
-  for (const Command& command : commands)
-    if (command.app->parsed()) return command.app->get_name() + " ";
+std::string parsed_command(const std::vector<Subcommand>& subcommands) {
+  for (const Subcommand& subcommand : subcommands)
+    if (subcommand.command.parsed()) return subcommand.command.name() + " ";
   return "";
 }
 
 ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams) {
-  CLI::App app(
-      "Repairs and improves tetrahedral meshes.\n'hfremesh IN -o OUT' is short for 'hfremesh improve IN "
-      "-o OUT'.",
-      "hfremesh");
-  app.set_version_flag("--version", std::string("hfremesh ") + HFR_VERSION);
-  app.require_subcommand(1);
+  Parser parser(
+      "hfremesh",
+      "Repairs and improves tetrahedral meshes.\n'hfremesh IN -o OUT' is short for 'hfremesh improve "
+      "IN -o OUT'.",
+      std::string("hfremesh ") + HFR_VERSION);
+  Command program = parser.program();
+  program.require_subcommand();
   CommonOptions common;
-  const Run runs[] = {add_improve(app, common), add_check(app, common),    add_stats(app, common),
-                      add_convert(app, common), add_generate(app, common), add_devices(app, common)};
-  std::vector<Command> commands;
-  for (std::size_t i = 0; i < std::size(runs); ++i)
-    commands.push_back({app.get_subcommand(kSubcommands[i]), runs[i]});
+  const std::vector<Subcommand> subcommands = {add_improve(program, common), add_move(program, common),
+                                               add_check(program, common),   add_stats(program, common),
+                                               add_convert(program, common), add_generate(program, common),
+                                               add_devices(program, common)};
   try {
-    if (argc < 2) throw CLI::RequiredError("a mesh or a subcommand");
-    std::vector<std::string> args = arguments(argc, argv);
-    app.parse(args);
-  } catch (const CLI::Success& wanted) {  // --help or --version
-    app.exit(wanted);
-    return ExitCode::kDone;
-  } catch (const CLI::ParseError& error) {
+    if (argc < 2) throw Failure(ExitCode::kUsage, "a mesh or a subcommand is required");
+    if (!parser.parse(arguments(argc, argv))) return ExitCode::kDone;
+  } catch (const Failure& error) {
     print_error(
-        fmt::format("{}; try 'hfremesh {}--help'", shortened(error.what()), parsed_command(commands)));
-    return ExitCode::kUsage;
+        fmt::format("{}; try 'hfremesh {}--help'", shortened(error.what()), parsed_command(subcommands)));
+    return error.code();
   }
-  for (const Command& command : commands)
-    if (command.app->parsed()) return run(command, common, streams);
+  for (const Subcommand& subcommand : subcommands)
+    if (subcommand.command.parsed()) return run(subcommand, common, streams);
   return ExitCode::kInternal;
 }
 

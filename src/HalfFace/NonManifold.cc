@@ -2,6 +2,7 @@
 #include "HalfFace/NonManifold.hh"
 
 #include <algorithm>
+#include <bit>
 #include <compare>
 #include <tuple>
 #include <utility>
@@ -57,25 +58,38 @@ struct Asking {
   }
 };
 
-/// visit(Asking) for those in a part of the cells whose edge wants(a, b).
-template <class Wants, class Visit>
-void for_asking(const TetMesh& mesh, const CellOrder& order, int part, int n_parts, Wants&& wants,
-                Visit&& visit) {
-  const std::size_t end = par::part_begin(mesh.n_cells(), n_parts, part + 1);
-  for (std::size_t i = par::part_begin(mesh.n_cells(), n_parts, part); i < end; ++i) {
+/// Per cell the edges at which it asks, a bit each: they are gone through twice, and to find them is to look
+/// at four neighbours anywhere in memory.
+class Askers {
+ public:
+  explicit Askers(const TetMesh& mesh) : mesh_(mesh), edges_(mesh.n_cells()) {}
+
+  void find(const CellOrder& order, std::size_t i) {
     const CellHandle c(i);
-    const Cell& cell = mesh.cell(c);
+    const Cell& cell = mesh_.cell(c);
     std::array<bool, 4> has_before;
     for (std::size_t k = 0; k < 4; ++k)
       has_before[k] = cell.mate[k].is_valid() && order.less(cell_of(cell.mate[k]), c);
-    for (std::size_t e = 0; e < 6; ++e) {
-      if (has_before[kEdgeOpposite[e][0]] || has_before[kEdgeOpposite[e][1]]) continue;
-      const VertexHandle a = std::min(cell.v[kEdgeCorners[e][0]], cell.v[kEdgeCorners[e][1]]);
-      const VertexHandle b = std::max(cell.v[kEdgeCorners[e][0]], cell.v[kEdgeCorners[e][1]]);
-      if (wants(a, b)) visit(Asking{{a, b}, c, static_cast<std::uint8_t>(e)});
+    unsigned bits = 0;
+    for (std::size_t e = 0; e < 6; ++e)
+      bits |= has_before[kEdgeOpposite[e][0]] || has_before[kEdgeOpposite[e][1]] ? 0U : 1U << e;
+    edges_[i] = static_cast<std::uint8_t>(bits);
+  }
+  /// visit(Asking) for each edge of the cell that was found.
+  template <class Visit>
+  void visit(std::size_t i, Visit&& visit) const {
+    const auto& v = mesh_.cell(CellHandle(i)).v;
+    for (unsigned left = edges_[i]; left != 0; left &= left - 1) {
+      const auto e = static_cast<std::size_t>(std::countr_zero(left));
+      const auto [a, b] = std::minmax(v[kEdgeCorners[e][0]], v[kEdgeCorners[e][1]]);
+      visit(Asking{{a, b}, CellHandle(i), static_cast<std::uint8_t>(e)});
     }
   }
-}
+
+ private:
+  const TetMesh& mesh_;
+  std::vector<std::uint8_t> edges_;
+};
 
 /// A ring or fan round an edge: its cell of smallest index, and whether cells go all the way round.
 struct RingOfEdge {
@@ -146,15 +160,25 @@ std::optional<DoubleEdge> find_double_edge(const TetMesh& mesh, par::Policy poli
   const int n_parts = par::thread_count(policy, mesh.n_cells());
   const CellOrder order(mesh, policy);
   EdgeBits seen(mesh.n_vertices(), n_parts == 1), some(mesh.n_vertices(), n_parts == 1);
+  Askers askers(mesh);
+  const auto for_cells = [&](int part, auto&& body) {
+    const std::size_t end = par::part_begin(mesh.n_cells(), n_parts, part + 1);
+    for (std::size_t i = par::part_begin(mesh.n_cells(), n_parts, part); i < end; ++i) body(i);
+  };
   par::parts(n_parts, [&](int part) {
-    for_asking(
-        mesh, order, part, n_parts, [&](VertexHandle a, VertexHandle b) { return seen.set(a, b); },
-        [&](const Asking& asking) { some.set(asking.edge[0], asking.edge[1]); });
+    for_cells(part, [&](std::size_t i) {
+      askers.find(order, i);
+      askers.visit(i, [&](const Asking& one) {
+        if (seen.set(one.edge[0], one.edge[1])) some.set(one.edge[0], one.edge[1]);
+      });
+    });
   });
   auto asking = gathered<Asking>(n_parts, [&](int part, std::vector<Asking>& out) {
-    for_asking(
-        mesh, order, part, n_parts, [&](VertexHandle a, VertexHandle b) { return some.has(a, b); },
-        [&](const Asking& one) { out.push_back(one); });
+    for_cells(part, [&](std::size_t i) {
+      askers.visit(i, [&](const Asking& one) {
+        if (some.has(one.edge[0], one.edge[1])) out.push_back(one);
+      });
+    });
   });
   std::sort(asking.begin(), asking.end());
   std::vector<RingOfEdge> rings;

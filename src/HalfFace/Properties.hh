@@ -66,6 +66,8 @@ class DenseStored : public StoredProperty {
   virtual std::shared_ptr<DenseStored> clone() const = 0;
   virtual void resize(std::size_t n) = 0;
   virtual void copy(std::size_t from, std::size_t to) = 0;
+  /// Takes a value of another property of the same type.
+  virtual void copy_from(const DenseStored& source, std::size_t from, std::size_t to) = 0;
   virtual void swap(std::size_t i, std::size_t j) = 0;
   /// Value i moves to new_index[i] (Handle<…>::kInvalid: it is dropped).
   virtual void permute(std::span<const Index> new_index, std::size_t n_new) = 0;
@@ -88,6 +90,9 @@ class Dense final : public DenseStored {
   void reset(std::size_t n) override { values.assign(n, Element{preset}); }
   void resize(std::size_t n) override { values.resize(n, Element{preset}); }
   void copy(std::size_t from, std::size_t to) override { values[to] = values[from]; }
+  void copy_from(const DenseStored& source, std::size_t from, std::size_t to) override {
+    values[to] = static_cast<const Dense&>(source).values[from];
+  }
   void swap(std::size_t i, std::size_t j) override { std::swap(values[i], values[j]); }
   void permute(std::span<const Index> new_index, std::size_t n_new) override {
     std::vector<Element> moved(n_new, Element{preset});

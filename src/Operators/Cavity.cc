@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
+#include "HalfFace/Errors.hh"
 #include "Operators/PinchedStars.hh"
 #include "Quality/Damage.hh"
 
@@ -185,6 +187,11 @@ bool append_heirs(const Cavity& cavity, const std::array<VertexHandle, 3>& paren
 }
 
 }  // namespace
+
+void detail::throw_full(std::size_t n) {
+  throw ResourceLimit("an operator has more than " + std::to_string(n) +
+                      " cells, or parts of them, in one place; clusters so large have to be left alone");
+}
 
 bool find_heirs(const TetMesh& mesh, const Cavity& cavity, Heirs& out) {
   out.clear();

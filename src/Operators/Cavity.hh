@@ -12,7 +12,11 @@
 
 namespace hfr {
 
-/// Vector of at most N items that lives where it is declared.
+namespace detail {
+[[noreturn]] void throw_full(std::size_t n);
+}
+
+/// Vector of at most N items that lives where it is declared; one more throws ResourceLimit.
 template <class T, std::size_t N>
 class FixedVector {
  public:
@@ -21,11 +25,13 @@ class FixedVector {
   bool full() const { return size_ == N; }
   void clear() { size_ = 0; }
   void push_back(const T& item) {
-    HFR_ASSERT(size_ < N);
+    if (size_ == N) [[unlikely]]
+      detail::throw_full(N);
     items_[size_++] = item;
   }
   void resize(std::size_t n) {
-    HFR_ASSERT(n <= N);
+    if (n > N) [[unlikely]]
+      detail::throw_full(N);
     size_ = n;
   }
   T& operator[](std::size_t i) { return items_[i]; }

@@ -6,6 +6,7 @@
 #include "Operators/WriteCells.hh"
 
 #include <algorithm>
+#include <bit>
 #include <vector>
 
 namespace hfr {
@@ -17,7 +18,6 @@ class OpenFaces {
   explicit OpenFaces(std::size_t n_faces) {
     std::size_t size = 32;
     while (size < 2 * n_faces) size *= 2;
-    HFR_ASSERT(size <= kMaxSize);
     mask_ = size - 1;
     std::fill_n(value_.begin(), size, -1);
   }
@@ -44,7 +44,8 @@ class OpenFaces {
   }
 
  private:
-  static constexpr std::size_t kMaxSize = 8192;
+  static constexpr std::size_t kMaxSize = 16 * Cavity::kCapacity;  // twice the faces of what goes and comes
+  static_assert(std::has_single_bit(kMaxSize));
   static constexpr std::int32_t kTaken = -2;
   std::size_t mask_;
   RawArray<std::int32_t, kMaxSize> value_;

@@ -67,7 +67,7 @@ class Climb {
 
 }  // namespace
 
-void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort) {
+void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort, Best& best) {
   CellBounds bounds = effort.bounds;
   if (effort.most_of_hundred > 0) bounds.max = whole.mesh.n_logical_cells() * effort.most_of_hundred / 100;
   whole.findings.forget_cell_bound();
@@ -78,9 +78,11 @@ void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort) {
   if (effort.refine) refine(run, *effort.refine);
   for (double at_start = 0; has_risen(climb.smallest(), at_start, effort.again) && !run.control.stopped();) {
     climb.while_it_rises();
+    best.note();
     if (at_start == 0 && effort.refine_again) refine(run, *effort.refine_again);
     at_start = climb.smallest();
     climb.search_worst();
+    best.note();
   }
 }
 

@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_ANY_COST_HH
 #define HFR_REMESH_ANY_COST_HH
 
+#include "Remesh/Best.hh"
 #include "Remesh/Run.hh"
 
 namespace hfr {
@@ -10,8 +11,9 @@ namespace hfr {
 /// cells tried on copies of their surroundings before and after, which may take it beyond targets that were
 /// missed, and with vertices put in where they are missing, twice.
 /// Expects: what a default run leaves. Guarantees: what polish() does; cells that raise nothing are taken
-/// back (Trial). Ends: when neither targets nor patches have raised the worst angle by AnyCostEffort::again.
-void raise_at_any_cost(const Run& run, const AnyCostEffort& effort);
+/// back (Trial), and `best` has seen what each step has left. Ends: when neither targets nor patches have
+/// raised the worst angle by AnyCostEffort::again.
+void raise_at_any_cost(const Run& run, const AnyCostEffort& effort, Best& best);
 
 }  // namespace hfr
 

@@ -103,7 +103,9 @@ bool Checkpoint::settle(TetMesh& mesh, bool known_no_worse, const std::function<
     now = standing(mesh);
   }
   require_sound(mesh);
-  if (is_no_worse(now, input_)) return false;
+  const bool mended = now.n_inverted <= kept_standing_.n_inverted &&
+                      now.n_inverted + now.n_flat <= kept_standing_.n_inverted + kept_standing_.n_flat;
+  if (is_no_worse(now, input_) && mended) return false;
   put_back(mesh);
   return true;
 }

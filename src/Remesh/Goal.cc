@@ -26,16 +26,20 @@ bool attempt(const Run& run, const GoalEffort& goal) {
 
 }  // namespace
 
+bool attempt_beyond(const Run& run, const GoalEffort& goal) {
+  if (!run.findings.met_cell_bound || run.control.stopped()) return false;
+  run.findings.forget_cell_bound();
+  Trial trial(run, goal.degrees);
+  return attempt(run.within(run.strategy.bounds_asked), goal) || trial.settle();
+}
+
 bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched) {
   const Strategy& strategy = run.strategy;
   if (attempt(run, goal)) return true;
   CellBounds bounds = run.bounds;
-  if (run.findings.met_cell_bound && !run.control.stopped()) {
-    run.findings.forget_cell_bound();
-    const Run beyond = run.within(strategy.bounds_asked);
-    Trial trial(run, goal.degrees);
-    if (attempt(beyond, goal)) return true;
-    if (trial.settle()) bounds = beyond.bounds;
+  if (attempt_beyond(run, goal)) {
+    if (n_below(run.mesh, goal.degrees, run.policy()) == 0) return true;
+    bounds = strategy.bounds_asked;
   }
   if (run.control.stopped() || !goal.goes_on) return false;
   const bool many_miss =

@@ -13,6 +13,10 @@ namespace hfr {
 /// Guarantees: what polish() does; cells that raise nothing are taken back (Trial).
 bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched);
 
+/// Where the bounds on cells were in the way: works on the cells that miss the goal within those that were
+/// asked for alone. True when what was done stays.
+bool attempt_beyond(const Run& run, const GoalEffort& goal);
+
 }  // namespace hfr
 
 #endif

@@ -13,6 +13,7 @@
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/Coordinates.hh"
 #include "Remesh/Explain.hh"
+#include "Remesh/FixedParts.hh"
 #include "Remesh/MapRecorder.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Polish.hh"
@@ -131,6 +132,7 @@ void look_for_faults(const TetMesh& mesh, const Survey& found, par::Policy polic
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
   validate(options);
+  require_fixed_parts(mesh, options.surface);
   require_sound_coordinates(mesh, options.policy);
   Result result;
   if (options.statistics) result.before = statistics(mesh, options.policy);

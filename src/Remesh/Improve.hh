@@ -21,8 +21,8 @@ class TetMesh;
 /// dihedral angle. Stages that may lower these are begun with a copy of the mesh; what is worse in the end
 /// becomes the best that was kept. Handles of properties stay valid.
 ///
-/// Throws InvalidInput for options out of range, and InternalError, with the mesh as it was kept, where
-/// operators have broken a rule of check(): see Checkpoint.hh.
+/// Throws InvalidInput for options out of range or that name what the mesh does not have, and InternalError,
+/// with the mesh as it was kept, where operators have broken a rule of check(): see Checkpoint.hh.
 Result improve(TetMesh& mesh, const ImproveOptions& options = {});
 
 /// What improve() would do with these options, as text of some 40 lines: the stages in their order, and the

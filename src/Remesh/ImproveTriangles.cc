@@ -4,30 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
 #include "HalfFace/Errors.hh"
 #include "Remesh/Coordinates.hh"
+#include "Remesh/Strategy.hh"
 #include "Remesh/Surfaces.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/TriangleSweep.hh"
 
 namespace hfr {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-/// Degrees; where no goal is given, the worst triangles are raised from one of these to the next.
-constexpr std::array<double, 8> kTargets = {2, 5, 10, 15, 20, 25, 30, 35};
-/// Where more triangles than this share lie below a target nobody asked for, the mesh as a whole is beyond
-/// it.
-constexpr double kLargestShare = 0.25;
-constexpr int kMaxIterations = 30;
-constexpr int kBulkIterations = 4;
-constexpr int kMaxIdle = 2;
-constexpr double kEnoughOfAll = 0.01;  // a bulk iteration that changes less is the last one
-constexpr double kVolumeEnough = 5e-5;
-constexpr int kVolumePasses = 8;
 
 class TriangleRun {
  public:
@@ -43,11 +29,11 @@ class TriangleRun {
       polish(*options_.min_angle);
     } else {
       bulk();
-      for (double target : kTargets) {
+      for (double target : effort_.targets) {
         if (stopped()) break;
         sweep_.focus(dihedral_decision(target));
         const auto n = static_cast<double>(sweep_.n_below());
-        if (n > kLargestShare * static_cast<double>(result_.before.triangles)) break;
+        if (n > effort_.largest_share * static_cast<double>(result_.before.triangles)) break;
         if (n > 0) polish(target);
       }
     }
@@ -81,40 +67,41 @@ class TriangleRun {
   }
   void bulk() {
     sweep_.focus(std::numeric_limits<double>::infinity());
-    for (int i = 1; i <= kBulkIterations && !stopped(); ++i) {
+    for (int i = 1; i <= effort_.bulk_iterations && !stopped(); ++i) {
       const std::size_t n = pass("bulk", "surface swap", i, &TriangleSweep::swap) +
                             pass("bulk", "surface smooth", i, &TriangleSweep::smooth);
-      if (static_cast<double>(n) < kEnoughOfAll * static_cast<double>(result_.before.triangles)) break;
+      if (static_cast<double>(n) < effort_.enough * static_cast<double>(result_.before.triangles)) break;
     }
   }
   void polish(double degrees) {
     sweep_.focus(dihedral_decision(degrees));
     std::size_t n_poor = sweep_.n_below();
     int idle = 0;
-    for (int i = 1; i <= kMaxIterations && n_poor > 0 && !stopped(); ++i) {
+    for (int i = 1; i <= effort_.iterations && n_poor > 0 && !stopped(); ++i) {
       std::size_t n = pass("polish", "surface swap", i, &TriangleSweep::swap);
       n += pass("polish", "surface node", i, &TriangleSweep::collapse);
       n += pass("polish", "surface smooth", i, &TriangleSweep::smooth);
       std::size_t now = sweep_.n_below();
       idle = now < n_poor ? 0 : idle + 1;
-      if (now > 0 && (n == 0 || idle >= kMaxIdle)) {
+      if (now > 0 && (n == 0 || idle >= effort_.idle)) {
         if (pass("polish", "surface split", i, &TriangleSweep::split) == 0) break;
         now = sweep_.n_below();
-        if (idle > 2 * kMaxIdle) break;
+        if (idle > 2 * effort_.idle) break;
       }
       n_poor = now;
     }
   }
   void restore_volume() {
     if (surface_.options().mode != SurfaceMode::kFree) return;
-    constexpr double kFarAbove = 1.1;
-    sweep_.focus(kFarAbove * sweep_.worst());
-    for (int i = 1; i <= kVolumePasses && std::abs(surface_.volume_gain()) > kVolumeEnough; ++i)
+    sweep_.focus(effort_.volume_focus * sweep_.worst());
+    for (int i = 1; i <= effort_.volume_passes && std::abs(surface_.volume_gain()) > effort_.volume_enough;
+         ++i)
       if (pass("volume", "surface volume", i, &TriangleSweep::offset) == 0) break;
   }
 
   const TriangleOptions& options_;
   TriangleResult& result_;
+  const TriangleEffort effort_;
   std::chrono::steady_clock::time_point start_;
   SurfaceMesh surface_;
   TriangleSweep sweep_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "HalfFace/Errors.hh"
+#include "Remesh/Result.hh"
 
 namespace hfr {
 namespace {
@@ -67,6 +68,24 @@ Rounds rounds_from_name(const std::string& name) {
   for (const auto& [known, rounds] : kRoundsNames)
     if (name == known) return rounds;
   throw InvalidInput("no kind of rounds is called '" + name + "'; there are " + names_of(kRoundsNames));
+}
+
+const char* stop_name(Stop stop) {
+  switch (stop) {
+    case Stop::kGoal:
+      return "goal";
+    case Stop::kNoProgress:
+      return "no progress";
+    case Stop::kIterations:
+      return "iterations";
+    case Stop::kTimeLimit:
+      return "time limit";
+    case Stop::kCancelled:
+      return "cancelled";
+    case Stop::kDeviceLost:
+      return "device lost";
+  }
+  return "unknown";
 }
 
 }  // namespace hfr

@@ -46,6 +46,9 @@ struct Turn {
   int iteration = 0;  ///< from 1, within the stage
   Focus focus = {};
   bool removes_vertices = true;  ///< whether an iteration and a mixed pass may
+  /// With more than PassEffort::few_seeds, insertion ends after a round in which fewer than one in so many
+  /// got a vertex.
+  std::size_t seeds_of_vertex = kNoLimit;
   /// Set where a pass is done again that was done on a device which has failed since: so many rounds,
   /// whatever the clock says, and no line in the report.
   std::optional<std::size_t> replayed_rounds = {};

@@ -8,6 +8,7 @@
 #include "HalfFace/Layers.hh"
 #include "HalfFace/TupleMap.hh"
 #include "HalfFace/Writer.hh"
+#include "Operators/Cavity.hh"
 
 namespace hfr {
 
@@ -67,9 +68,57 @@ void Patch::copy_constraints(const TetMesh& whole, std::span<const std::uint8_t>
   }
 }
 
-void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
-  std::unordered_map<std::array<VertexHandle, 3>, HalfFaceHandle, TupleHash> behind;
-  std::vector<std::array<VertexHandle, 3>> gone;  // faces of the boundary, unless they come again
+bool Patch::fits(const TetMesh& whole, const TetMesh& changed) const {
+  const auto for_simplices = [](const TetMesh& mesh, CellHandle c, auto&& visit) {
+    const auto& v = mesh.cell(c).v;
+    for (const auto& e : kEdgeCorners) visit(Simplex{v[e[0]], v[e[1]], VertexHandle()});
+    for (const auto& f : kFaceCorners) visit(Simplex{v[f[0]], v[f[1]], v[f[2]]});
+  };
+  const auto in_order = [](Simplex simplex) {
+    std::sort(simplex.begin(), simplex.end());  // an invalid handle is the last
+    return simplex;
+  };
+  std::unordered_set<Simplex, TupleHash> known, born;
+  for (CellHandle c : mesh_.cells())
+    for_simplices(mesh_, c, [&](const Simplex& simplex) { known.insert(in_order(simplex)); });
+  std::vector<std::uint8_t> has_born(whole.n_vertices(), 0);
+  for (CellHandle c : changed.cells()) {
+    for_simplices(changed, c, [&](Simplex simplex) {
+      const bool is_of_old_vertices = std::all_of(simplex.begin(), simplex.end(), [&](VertexHandle v) {
+        return !v.is_valid() || v.idx() < vertices_.size();
+      });
+      if (!is_of_old_vertices || known.contains(in_order(simplex))) return;
+      for (VertexHandle& v : simplex) {
+        if (!v.is_valid()) continue;
+        v = vertices_[v.idx()];
+        has_born[v.idx()] = 1;
+      }
+      born.insert(in_order(simplex));
+    });
+  }
+  if (born.empty()) return true;
+  const std::unordered_set<CellHandle> mine(cells_.begin(), cells_.end());
+  for (CellHandle c : whole.cells()) {
+    const auto& v = whole.cell(c).v;
+    if (std::count_if(v.begin(), v.end(), [&](VertexHandle u) { return has_born[u.idx()] != 0; }) < 2 ||
+        mine.contains(c))
+      continue;
+    bool is_double = false;
+    for_simplices(whole, c,
+                  [&](const Simplex& simplex) { is_double = is_double || born.contains(in_order(simplex)); });
+    if (is_double) return false;
+  }
+  return true;
+}
+
+/// Where a patch meets the rest of its mesh.
+struct Patch::Rim {
+  std::unordered_map<std::array<VertexHandle, 3>, HalfFaceHandle, TupleHash> behind;  ///< faces, in any order
+  std::vector<std::array<VertexHandle, 3>> boundary;  ///< those that face nothing
+};
+
+Patch::Rim Patch::rim(const TetMesh& whole) const {
+  Rim rim;
   const std::unordered_set<CellHandle> old(cells_.begin(), cells_.end());
   for (CellHandle c : cells_) {
     for (int k = 0; k < 4; ++k) {
@@ -77,12 +126,15 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
       const HalfFaceHandle m = whole.opposite_halfface(h);
       if (m.is_valid() && old.contains(cell_of(m))) continue;
       const auto face = AnyOrder::key(whole.halfface_vertices(h));
-      behind[face] = m;
-      if (!m.is_valid()) gone.push_back(face);
+      rim.behind[face] = m;
+      if (!m.is_valid()) rim.boundary.push_back(face);
     }
   }
-  std::unordered_set<std::array<VertexHandle, 3>, TupleHash> kept;
-  TetMesh::Writer writer(whole);
+  return rim;
+}
+
+std::vector<VertexHandle> Patch::put_vertices(TetMesh& whole, TetMesh::Writer& writer,
+                                              const TetMesh& changed) const {
   std::vector<VertexHandle> vertices = vertices_;
   for (std::size_t i = 0; i < changed.n_vertices(); ++i) {
     const VertexHandle local(i);
@@ -102,7 +154,11 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
     vertices.back() = whole.add_vertex(changed.point(local));
     whole.copy_vertex_data(nearest, vertices.back());
   }
-  // Slots: those of the cells that go, then free ones, then new ones.
+  return vertices;
+}
+
+std::vector<CellHandle> Patch::slots_for(TetMesh& whole, TetMesh::Writer& writer,
+                                         const TetMesh& changed) const {
   std::vector<CellHandle> slots(changed.n_cells());
   std::vector<CellHandle>& free = writer.free_cells();
   std::size_t n_used = 0;
@@ -124,6 +180,15 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
     writer.mark_deleted(cells_[i]);
     free.push_back(cells_[i]);
   }
+  return slots;
+}
+
+void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
+  const Rim rim = this->rim(whole);
+  TetMesh::Writer writer(whole);
+  const std::vector<VertexHandle> vertices = put_vertices(whole, writer, changed);
+  const std::vector<CellHandle> slots = slots_for(whole, writer, changed);
+  std::unordered_set<std::array<VertexHandle, 3>, TupleHash> kept;  // faces of the rim
   for (std::size_t i = 0; i < changed.n_cells(); ++i) {
     const CellHandle local(i);
     if (changed.is_deleted(local)) continue;
@@ -140,8 +205,8 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
         continue;
       }
       const auto face = whole.halfface_vertices(h);
-      const auto at = behind.find(AnyOrder::key(face));
-      if (at == behind.end()) {  // new on the surface
+      const auto at = rim.behind.find(AnyOrder::key(face));
+      if (at == rim.behind.end()) {  // new on the surface
         writer.set_mate(h, HalfFaceHandle());
         const auto& known = changed.labels().faces;
         const std::size_t entry = known.position(changed.halfface_vertices(halfface_of(local, k)));
@@ -156,7 +221,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
       if (at->second.is_valid()) writer.set_mate(at->second, h);
     }
   }
-  for (const auto& face : gone)
+  for (const auto& face : rim.boundary)
     if (!kept.contains(face)) whole.labels().faces.erase_unordered(face);
 }
 

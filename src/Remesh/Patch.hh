@@ -27,12 +27,27 @@ class Patch {
   const std::vector<CellHandle>& cells() const { return cells_; }
   const std::vector<VertexHandle>& vertices() const { return vertices_; }
 
+  /// False when an edge or a face that `changed` has and mesh() has not is one of the whole's cells outside
+  /// of the patch. That can be only where the whole lies over itself: in two of its pinched vertices, or
+  /// where its boundary is folded. O(cells of the whole).
+  bool fits(const TetMesh& whole, const TetMesh& changed) const;
+
   /// Writes `changed`, which became of mesh() without collection of garbage, in place of the cells. The whole
   /// must not have changed there meanwhile; `work` must be attached again before it is used.
   void put_back(TetMesh& whole, const TetMesh& changed) const;
 
  private:
+  struct Rim;
+
   void copy_constraints(const TetMesh& whole, std::span<const std::uint8_t> pinched);
+  Rim rim(const TetMesh& whole) const;
+  /// Moves, takes away and adds vertices of the whole. Returns them by their number in `changed`; those that
+  /// came and went there are invalid.
+  std::vector<VertexHandle> put_vertices(TetMesh& whole, TetMesh::Writer& writer,
+                                         const TetMesh& changed) const;
+  /// Where in the whole each cell of `changed` goes: into the slots of the cells that go, then into free
+  /// ones, then into new ones. Slots that are left over become free.
+  std::vector<CellHandle> slots_for(TetMesh& whole, TetMesh::Writer& writer, const TetMesh& changed) const;
 
   std::vector<CellHandle> cells_;
   std::vector<VertexHandle> vertices_;

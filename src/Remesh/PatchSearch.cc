@@ -46,17 +46,11 @@ Room room_of(const Patch& patch, const TetMesh& mesh, const CellBounds& bounds) 
   return {above_others(bounds.min), bounds.max > 0 ? above_others(bounds.max) : kNoLimit};
 }
 
-/// Where over each needle an apex of its own is put, as shares of the way from the short side to the tip, and
-/// how high, as a share of what would be best for a lone one; see detail::Needle.
-constexpr std::array<double, kNeedleRows> kRowShares = {0.37, 1.0 / 3.0};
-constexpr double kRowHeight = 0.8;
-constexpr double kSlender = 0.35;  // short side over length of a needle
-
 /// What a try begins with on a copy of a patch, even at a loss.
 struct Try {
   enum Kind {
     kNothing,  // improved as it is
-    kRow,      // an apex over each needle; number: of kRowShares
+    kRow,      // an apex over each needle; number: of PatchTrial::row_shares
     kVertex,   // a new vertex for the first cell; number: of the place, counted by promise
     kRemoval,  // one vertex less; number: of the vertex, which are in the order of discovery from that cell
   };
@@ -69,7 +63,7 @@ std::vector<Try> tries_of(const PatchEffort& effort) {
   const auto add = [&](Try::Kind kind, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) tries.push_back({kind, i});
   };
-  add(Try::kRow, std::min(effort.rows, kRowShares.size()));
+  add(Try::kRow, std::min(effort.rows, kNeedleRows));
   add(Try::kVertex, effort.vertices);
   add(Try::kRemoval, effort.removals);
   return tries;
@@ -88,14 +82,14 @@ bool put_row(const Run& run, const PatchTrial& rules, double share, double goal)
     const HalfFaceHandle face(h);
     if (!(work.quality[h / 4] < below) || !mesh.is_constrained(face)) continue;
     const detail::Needle needle(detail::points_of(mesh, face));
-    if (needle.side < kSlender * needle.length) needles.push_back(mesh.halfface_vertices(face));
+    if (needle.side < rules.slender * needle.length) needles.push_back(mesh.halfface_vertices(face));
   }
   bool changed = false;
   for (const auto& vertices : needles) {
     const HalfFaceHandle face = mesh.find_halfface(vertices);  // in whatever cell lies on it by now
     if (!face.is_valid()) continue;                            // where the patch is pinched at all three
     VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, rules.any_loss};
-    insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(share, kRowHeight);
+    insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(share, rules.row_height);
     if (!apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(cell_of(face)))) continue;
     changed = true;
     work.quality.resize(mesh.n_cells());
@@ -114,7 +108,7 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
     case Try::kNothing:
       return true;
     case Try::kRow: {
-      if (!put_row(run, rules, kRowShares[attempt.number], goal)) return false;
+      if (!put_row(run, rules, rules.row_shares[attempt.number], goal)) return false;
       // Vertices that came all at once have to be well connected before any is judged by itself.
       const Strategy connecting = strategy_to_connect(run.strategy);
       work.attach(mesh, run.policy());
@@ -156,6 +150,7 @@ Outcome search(const Patch& patch, const Run& whole, Room room, double goal, con
     if (best.worst >= enough || (attempt.kind == Try::kRemoval && best.mesh) || clock.stopped()) break;
     TetMesh mesh = patch.mesh();
     LoneRun lone(mesh, strategy, clock.seconds_left());
+    lone.findings().is_folded = whole.findings.is_folded;
     if (!begin(attempt, lone.run(), rules, worked_for)) continue;
     lone.work().attach(mesh, policy);
     const PartOfSurface part(mesh, rules.has_surface ? whole.surface : nullptr, patch.vertices());
@@ -172,8 +167,7 @@ Outcome search(const Patch& patch, const Run& whole, Room room, double goal, con
   return best;
 }
 
-/// Patches round the worst of the cells that share none. One that has two pinched vertices is left out: an
-/// edge between them may exist elsewhere, where the patch does not see it.
+/// Patches round the worst of the cells that share none.
 std::vector<Patch> disjoint_patches(const Run& run, std::span<const CellHandle> worst,
                                     const PatchEffort& effort) {
   const TetMesh& mesh = run.mesh;
@@ -185,7 +179,6 @@ std::vector<Patch> disjoint_patches(const Run& run, std::span<const CellHandle> 
     Patch patch(mesh, c, effort.layers, run.work.pinched);
     const auto& cells = patch.cells();
     if (std::any_of(cells.begin(), cells.end(), [&](CellHandle d) { return taken[d.idx()] != 0; })) continue;
-    if (run.work.has_two_pinched(mesh, cells)) continue;
     for (CellHandle d : cells) taken[d.idx()] = 1;
     patches.push_back(std::move(patch));
   }
@@ -196,8 +189,9 @@ struct PutBack {
   std::size_t n_candidates = 0, n_changed = 0;  // patches
   bool worst_rose = false;
 };
-/// Puts back what has got better, as far as the bounds on cells let it.
+/// Puts back what has got better, as far as the bounds on cells let it and no edge or face comes twice.
 PutBack put_back(const Run& run, std::span<const Patch> patches, std::span<const Outcome> outcomes) {
+  const bool may_overlap = run.findings.is_folded || !run.work.pinched.empty();
   PutBack done;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (outcomes[i].held_back) run.findings.note_cell_bound(run.bounds);
@@ -207,6 +201,7 @@ PutBack put_back(const Run& run, std::span<const Patch> patches, std::span<const
       run.findings.note_cell_bound(run.bounds);
       continue;
     }
+    if (may_overlap && !patches[i].fits(run.mesh, *outcomes[i].mesh)) continue;
     patches[i].put_back(run.mesh, *outcomes[i].mesh);
     ++done.n_changed;
     done.worst_rose = done.worst_rose || i == 0;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Pipeline.hh"
 
+#include <optional>
 #include <vector>
 
 #include "Quality/FoldedFaces.hh"
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/AnyCost.hh"
+#include "Remesh/Best.hh"
 #include "Remesh/Bulk.hh"
 #include "Remesh/Coarsen.hh"
 #include "Remesh/Goal.hh"
@@ -35,12 +37,6 @@ void mend_invalid(const Run& run) {
   run.control.set_fraction(kUntangled);
 }
 
-bool run_default(const Run& run) {
-  mend_invalid(run);
-  improve_all(run, run.strategy.floor, run.strategy.targets.targets);
-  return false;
-}
-
 bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   mend_invalid(run);
   if (share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss)
@@ -52,10 +48,29 @@ bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   return false;
 }
 
-bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
+/// What a default run claims, where it has come near.
+void reach_claimed(const Run& run) {
+  if (!run.strategy.claimed || run.control.stopped()) return;
+  const GoalEffort& goal = *run.strategy.claimed->goal;
+  if (smallest_dihedral(run.mesh, run.policy()) >= goal.degrees) return;
+  if (share_below(run.mesh, goal.degrees, run.policy()) > goal.few_miss) return;
+  Best best(run);
+  attempt_beyond(run.with(*run.strategy.claimed), goal);
+  best.settle();
+}
+
+bool run_default(const Run& run) {
   mend_invalid(run);
   improve_all(run, run.strategy.floor, run.strategy.targets.targets);
-  raise_at_any_cost(run, effort);
+  reach_claimed(run);
+  return false;
+}
+
+bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
+  run_default(run);
+  Best best(run);
+  raise_at_any_cost(run, effort, best);
+  best.settle();
   return false;
 }
 
@@ -68,10 +83,20 @@ void improve_all(const Run& run, double floor, std::span<const TargetAngle> targ
   if (strategy.coarsen) coarsen(run, *strategy.coarsen);
   improve_bulk(run, strategy.bulk);
   run.control.set_fraction(kBulkDone);
+  // The worst angle rises in no case while a cell stays inverted or flat, so that vertices which are put in
+  // for a target have to show in the cells below it.
+  std::optional<Trial> trial;
+  if (!targets.empty() && survey(run.mesh, run.policy()).n_invalid > 0)
+    trial.emplace(run, targets.front().degrees);
   raise_worst_angles(run, floor, targets);
+  if (trial) trial->settle();
 }
 
 bool run_stages(const Run& run) {
+  if (run.strategy.plain) {
+    run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal);
+    run.keep(survey(run.mesh, run.policy()).n_invalid == 0);
+  }
   switch (run.strategy.course) {
     case Course::kDefault:
       return run_default(run);

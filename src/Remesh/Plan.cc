@@ -117,9 +117,16 @@ void add_targets(Lines& lines, const Strategy& strategy) {
   const PolishEffort& polish = strategy.polish;
   if (strategy.refine) add_refine(lines, "refine", *strategy.refine);
   lines.add("targets", say("degrees: ", listed(strategy.targets.targets)));
-  lines.add("targets", say("each where at most ", percent(strategy.targets.targets.back().largest_share),
-                           " of the cells are below; beyond ", strategy.targets.in_turn_beyond,
-                           " only if the one before was reached"));
+  lines.add("targets", say("where more than ", percent(strategy.targets.targets.back().largest_share),
+                           " of the cells are below, only if the one before has left less than ",
+                           percent(strategy.targets.enough_left), " of those below it; beyond ",
+                           strategy.targets.in_turn_beyond, " only if the one before was reached"));
+  const ThroughoutEffort& throughout = strategy.throughout;
+  lines.add("targets",
+            say("there an iteration has to mend 1 in ", throughout.polish.least_fewer,
+                " cells or raise the worst by ", throughout.polish.gain, "; vertices for all, up to ",
+                throughout.of_hundred, " of 100 cells that there may be, until fewer than 1 in ",
+                throughout.polish.seeds_of_vertex, " gets one"));
   lines.add("targets", say(polish.iterations, " iterations; ", polish.idle,
                            " idle ones (no fewer cells, and the worst not raised by ", polish.gain,
                            ") end it; ", named(polish.selection)));

@@ -7,7 +7,6 @@
 #include "Remesh/Survey.hh"
 
 namespace hfr {
-
 template <class Metric>
 bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, double decision,
                    const FewCells& few) {
@@ -19,7 +18,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
   std::size_t n_poor_dug = 0;  // when vertices were last inserted
   double worst_dug = 0;
   for (int i = 1; i <= effort.iterations && n_poor > 0 && !control.stopped(); ++i) {
-    const Turn turn{i, Focus{decision}};
+    const Turn turn{i, Focus{decision}, true, effort.seeds_of_vertex};
     const std::size_t changes = runner.iterate(turn);
     const std::size_t n_poor_now = runner.n_below(decision);
     const double enough = worst > 0 ? worst * effort.gain : worst;
@@ -30,7 +29,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     worst = runner.worst();
     if (n_poor == 0 || (changes > 0 && idle < effort.idle)) continue;
     // What helps from here on is tried once; the next idle iteration goes on to what is dearer.
-    if (runner.pass(PassKind::kFan, turn) > 0) {
+    if (runner.pass(PassKind::kFan, turn) * effort.fan_of > at_least) {
       idle = effort.idle - 1;
       continue;
     }

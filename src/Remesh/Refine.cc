@@ -15,7 +15,7 @@ void insert_where_poor(const Run& run, const RefineEffort& effort) {
   const Focus focus{dihedral_decision(effort.below)};
   std::size_t n_poor = runner.n_below(focus.below);
   for (int i = 1; i <= effort.iterations && n_poor > 0 && !run.control.stopped(); ++i) {
-    const Turn turn{i, focus, /*removes_vertices=*/false};
+    const Turn turn{i, focus, /*removes_vertices=*/false, effort.seeds_of_vertex};
     runner.iterate(turn);
     const std::size_t n_left = runner.n_below(focus.below);
     const bool helps = static_cast<double>(n_left) < effort.fewer * static_cast<double>(n_poor);

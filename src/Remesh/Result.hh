@@ -11,12 +11,16 @@
 #include "hfremesh/HalfFace/Handles.hh"
 #include "hfremesh/Quality/Statistics.hh"
 #include "hfremesh/Surface/SurfaceOptions.hh"
+#include "hfremesh/Transfer/MeshMaps.hh"
 
 namespace hfr {
 
 /// kDeviceLost: the device that was asked for failed in the middle; the mesh is that of the last finished
 /// round, as after a cancel.
 enum class Stop { kGoal, kNoProgress, kIterations, kTimeLimit, kCancelled, kDeviceLost };
+
+/// "goal", "no progress", "iterations", "time limit", "cancelled", "device lost".
+const char* stop_name(Stop stop);
 
 /// One operator over the mesh once. With the stage and op "undo": the passes before, some or all, were taken
 /// back, and n_inverted and worst (of the smallest dihedral) are those of the mesh that was put back.
@@ -106,19 +110,6 @@ struct StuckCell {
 
 /// How many cells each limit keeps, in the order of Limit.
 std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells);
-
-/// What became of vertices and cells in a run. "Old" handles are those of the mesh before it, "new" ones
-/// those of the mesh after it.
-struct MeshMaps {
-  std::vector<VertexHandle> vertices;  ///< by old vertex: the new one, which may have moved; invalid: removed
-  /// By old cell: the new one with the same four vertices; invalid where its place was filled otherwise.
-  std::vector<CellHandle> cells;
-  std::vector<VertexHandle> old_vertices;  ///< by new vertex: the old one; invalid: inserted
-  std::vector<CellHandle> old_cells;  ///< by new cell: the old one with the same four vertices; invalid: none
-  /// By new vertex: the old one whose properties it has. That is the vertex itself or, of an inserted one,
-  /// the nearest vertex of the cells in which it was put, or what that one had its properties from.
-  std::vector<VertexHandle> sources;
-};
 
 struct Result {
   bool changed = false;       ///< by what was not taken back

@@ -56,6 +56,11 @@ struct Run {
     run.bounds = other;
     return run;
   }
+  /// The same run by another strategy.
+  Run with(const Strategy& other) const {
+    return {mesh,   work,    other,      control,      findings,
+            device, surface, checkpoint, other.bounds, may_add_poor_cells};
+  }
   /// Before something that may leave the mesh worse; see Checkpoint::keep().
   void keep(bool valid) const {
     if (checkpoint) checkpoint->keep(mesh, valid, control.n_changes());

@@ -105,6 +105,17 @@ PolishEffort polish_effort(const Asked& asked, bool any_cost) {
   return polish;
 }
 
+ThroughoutEffort throughout_effort(const PolishEffort& polish) {
+  ThroughoutEffort effort;
+  effort.polish = polish;
+  effort.polish.many = 200;
+  effort.polish.least_fewer = 50;
+  effort.polish.gain = 1.1;
+  effort.polish.dig_share = 1;
+  effort.polish.seeds_of_vertex = 32;
+  return effort;
+}
+
 FirstPolish first_polish(const Asked& asked, const PolishEffort& polish) {
   FirstPolish first{.polish = polish};
   // Few cells, so kind by kind, as towards a goal.
@@ -233,6 +244,7 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   strategy.floor = report_value(Metric::kMinDihedral, std::clamp(found.worst, 0.0, kRegularDihedral));
   // With coarsening, the default run goes as far as it can at once.
   strategy.polish = polish_effort(asked, asked.any_cost() && asked.coarsens());
+  strategy.throughout = throughout_effort(strategy.polish);
   strategy.first_polish = first_polish(asked, strategy.polish);
   if (asked.coarsens()) strategy.coarsen.emplace();
   strategy.bulk = bulk_effort(asked);
@@ -240,6 +252,9 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   if (asked.is_frozen()) {
     strategy.refine = refine_effort(asked, 92, false);
     if (!asked.limits_iterations()) strategy.refine_again = refine_effort(asked, 98, false);
+    strategy.throughout.refine = strategy.refine_again;
+    if (strategy.throughout.refine)
+      strategy.throughout.refine->seeds_of_vertex = strategy.throughout.polish.seeds_of_vertex;
   }
   if (!asked.limits_iterations()) {
     strategy.neighbourhoods.emplace();
@@ -252,6 +267,16 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   if (asked.any_cost()) strategy.any_cost = any_cost_effort(asked, strategy.bounds);
   if (asked.is_free()) strategy.volume = VolumeEffort{.keeps_angles_only = asked.has_goal()};
   strategy.compat.iterations = asked.iterations_or(strategy.compat.iterations);
+  const auto towards = [&](double goal) {
+    ImproveOptions other = options;
+    other.min_dihedral = goal;
+    other.raise_min_dihedral = false;
+    return std::make_shared<const Strategy>(resolve(other, found, n_cells));
+  };
+  if (strategy.untangle && !(asked.has_goal() && *options.min_dihedral <= kPlainGoal))
+    strategy.plain = towards(kPlainGoal);
+  if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens())
+    strategy.claimed = towards(kClaimedGoal);
   return strategy;
 }
 

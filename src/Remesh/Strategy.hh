@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,15 +22,19 @@ namespace hfr {
 // What a run is going to do, as plain data: resolve() is the only reader of mode, goal, bounds and effort in
 // ImproveOptions, and nothing below it asks for them again. docs/pipeline.md has the order of the stages and
 // the same numbers. Angles are degrees unless "decision value" is said; see Quality/Metrics.hh. Shares are of
-// 1. bench/quality_table.py makes the table by which the numbers were chosen; a row that shows what one buys
-// is named with it.
+// 1. "Shown by" names the rows in which a change of a stage's numbers shows: runs and surface modes of
+// bench/quality_table.py, over all its meshes unless one is named, or a table of docs/.
 
 /// Degrees that can be asked for: a regular tetrahedron has 70.53.
 inline constexpr double kLargestGoal = 70.5;
+/// A goal that valid cells meet but for those that are all but flat.
+inline constexpr double kPlainGoal = 0.001;
+/// What a run without a goal claims to reach wherever a run with it as goal does.
+inline constexpr double kClaimedGoal = 15;
 inline constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 /// Numbers of cells that a mesh may come to have. Vertex collapse keeps to `min`, insertion to `max`; swaps
-/// may add or take a few. 0: no bound.
+/// may add or take a few. 0: no bound. Shown by docs/worst-angles.md, "How many cells come out".
 struct CellBounds {
   std::size_t min = 0;
   std::size_t max = 0;
@@ -44,6 +49,19 @@ struct CellBounds {
   }
 };
 
+/// A Remesher's own numbers; its repairs are runs as others. Shown by bench/remesher.cc and
+/// examples/turning_body.cc.
+struct StepEffort {
+  /// A cell that a repair had to leave below the trigger calls for another one once its decision value, a
+  /// sin², has fallen below this share: 2 % of its angle.
+  double much_worse = 0.96;
+  int halvings = 6;  ///< by which the largest safe part of a displacement is looked for: to 1/64 of it
+  /// Cells that the mesh is held to, of 100 that it had, where the caller gives no bounds: those of a run
+  /// alone let the turning body lose a third of its cells in 40 steps.
+  std::size_t fewest_of_hundred = 82, most_of_hundred = 118;
+};
+inline constexpr StepEffort kStepEffort;
+
 /// Whether edge removal, face swap and vertex collapse run in turn or compete in one selection.
 enum class Selection {
   kByKind,
@@ -51,7 +69,8 @@ enum class Selection {
   kMixed,
 };
 
-/// What every pass of a run needs to know, and how long it goes on.
+/// What every pass of a run needs to know, and how long it goes on. Shown by --runs default, worst angle
+/// and seconds.
 struct PassEffort {
   Ops ops = Ops::kDefault;
   Smoother smoother = Smoother::kNewton;
@@ -87,7 +106,7 @@ struct PassEffort {
   double move_gain = 1.05;
 };
 
-/// Mending inverted and flat cells.
+/// Mending inverted and flat cells. Shown by bench/untangle.py and docs/untangling.md, "Measured".
 struct UntangleEffort {
   /// Layers of cells round the invalid ones whose vertices are moved together, and visits to each vertex.
   struct Width {
@@ -105,7 +124,8 @@ struct UntangleEffort {
   int restarts = 6;     ///< of reconnection after moving
 };
 
-/// All cells in one metric.
+/// All cells in one metric. Shown by --runs default, percentiles and seconds, the cavities first;
+/// `removes_vertices` by docs/worst-angles.md, "Vertex collapse in the bulk stage".
 struct BulkEffort {
   Metric metric = Metric::kVolumeLength;
   int iterations = 3;
@@ -116,14 +136,15 @@ struct BulkEffort {
   bool removes_vertices = false;
 };
 
-/// Removal of vertices wherever it helps.
+/// Removal of vertices wherever it helps. Shown by docs/surface.md, "--coarsen".
 struct CoarsenEffort {
   double below = 50;    ///< degrees; cells that are worked on
   int iterations = 20;  ///< at most
   double still = 0.98;  ///< share of an iteration's cells that may be left for another one
 };
 
-/// Work on cells with an angle below a target.
+/// Work on cells with an angle below a target. Shown by --runs default,max with --surface frozen,flat,free;
+/// the search by docs/worst-angles.md, "Cluster search".
 struct PolishEffort {
   int iterations = 60;  ///< at most
   /// An iteration that neither lowers the number of poor cells nor raises the worst decision value by `gain`
@@ -134,9 +155,14 @@ struct PolishEffort {
   /// more than `many` poor cells an iteration is idle unless it mends one in `least_fewer`.
   std::size_t many = kNoLimit;
   std::size_t least_fewer = 10;
+  /// FanMerge counts as gain where it merges one in so many of these: each merger takes several cells.
+  std::size_t fan_of = 4;
   /// Poor cells up to which vertices are inserted for them: `few_to_dig`, or one cell in `dig_share`.
   std::size_t few_to_dig = 50;
   std::size_t dig_share = 48;
+  /// Insertion for more than PassEffort::few_seeds cells ends after a round in which fewer than one in so
+  /// many got a vertex.
+  std::size_t seeds_of_vertex = kNoLimit;
   /// Tenths of the poor cells of the last insertion that may be left for the next one, unless the worst has
   /// risen: more vertices would only fill the place with poor cells.
   std::size_t dig_again_tenths = 9;
@@ -145,7 +171,8 @@ struct PolishEffort {
   Selection selection = Selection::kMixedOnAngles;
 };
 
-/// The worst angles before the bulk stage, which knows only volume-length and can box them in.
+/// The worst angles before the bulk stage, which knows only volume-length and can box them in. Shown by
+/// --runs default, worst angle.
 struct FirstPolish {
   PolishEffort polish;
   double target = 15;          ///< degrees
@@ -162,15 +189,19 @@ struct TargetAngle {
   double from = 0;
 };
 
-/// Raising the worst cells from target to target.
+/// Raising the worst cells from target to target. Shown by --runs default, worst angle and seconds.
 struct TargetEffort {
   std::vector<TargetAngle> targets;  ///< ascending; the last is the goal where one was asked for
   std::vector<TargetAngle> beyond;   ///< all of them: work for more makes room that a goal's last cells lack
   /// Beyond what most meshes come to, a target is tried only when the one before was reached.
   double in_turn_beyond = 25;
+  /// Where more cells than TargetAngle::largest_share miss a target, it is tried only after one that has left
+  /// less than this share of the cells that missed it.
+  double enough_left = 0.5;
 };
 
-/// New vertices where the mesh lacks them.
+/// New vertices where the mesh lacks them. Shown by --runs default, percentiles and cells; `gain` by
+/// docs/operators.md, "Insertion" and its row of ipc_dolphin5k.
 struct RefineEffort {
   double below = 30;         ///< degrees; cells that vertices are put in for
   double least_share = 0;    ///< of cells below that show that vertices are missing
@@ -180,11 +211,25 @@ struct RefineEffort {
   std::size_t of_hundred = 100;
   int iterations = 60;  ///< at most
   double fewer = 0.98;  ///< vertices go in when an iteration leaves more than this share of the poor cells
-  std::size_t one_in = 50;  ///< and no more once fewer than one in so many of these got one
+  std::size_t one_in = 50;                 ///< and no more once fewer than one in so many of these got one
+  std::size_t seeds_of_vertex = kNoLimit;  ///< as in PolishEffort
+};
+
+/// Raising the worst angle of a mesh that is poor throughout. Each iteration goes over much of the mesh
+/// there, so it has to bring something for its work, in cells mended or in the worst angle; vertices go to
+/// the worst cells first, and to as many as get one.
+struct ThroughoutEffort {
+  PolishEffort polish;
+  double below = 15;        ///< degrees; a mesh is poor throughout where a larger share of its cells
+  double share = 0.1;       ///< is below, or where no larger share
+  double movable = 0.05;    ///< of its vertices may move; there even targets
+  double dig_share = 0.02;  ///< that this share of the cells misses are worked for in this way
+  std::optional<RefineEffort> refine;  ///< in the place of refine_again, without a first one
+  std::size_t of_hundred = 98;         ///< cells that there may be; the rest is for the last ones
 };
 
 /// Work on the surroundings of a few cells that miss an angle by little, as if the angle were larger: that
-/// makes room.
+/// makes room. Shown by --runs default, worst angle.
 struct NeighbourhoodEffort {
   struct Try {
     int layers;      ///< of cells round them
@@ -203,7 +248,8 @@ struct NeighbourhoodEffort {
 inline constexpr std::size_t kNeedleRows = 2;
 
 /// Tries on copies of the surroundings of the worst cells: "insertion followed by smoothing and topological
-/// improvement", kept or rolled back as one step (Klingner & Shewchuk 2007).
+/// improvement", kept or rolled back as one step (Klingner & Shewchuk 2007). Shown by --runs default,max,
+/// worst angle and seconds, ipc_dolphin5k for rows over needles; docs/operators.md, "Patches".
 struct PatchEffort {
   std::size_t few = 64;            ///< cells below the next angle; where there are more, nothing is tried
   int layers = 3;                  ///< of cells round the worst one
@@ -238,12 +284,17 @@ struct PatchTrial {
   double ahead = 1.05;     ///< times the target, which is worked for
   double largest = 60;     ///< degrees that are worked for
   int iterations = 8;      ///< of the polish of one try: more found no more
+  /// Where over each needle an apex of its own is put, as a share of the way from the short side to the tip,
+  /// one try each, and how high, as a share of what would be best for a lone one; see detail::Needle.
+  std::array<double, kNeedleRows> row_shares = {0.37, 1.0 / 3.0};
+  double row_height = 0.8;
+  double slender = 0.35;  ///< short side over length of a needle, at most
   bool has_surface =
       false;  ///< whether the patch's part of the surface may change, too: flat ones may, while
               ///< a curved one is held to the shape of the input, which a patch does not know
 };
 
-/// The last few cells below a target.
+/// The last few cells below a target. Shown by --runs default,20,30, worst angle and seconds.
 struct LastCellsEffort {
   double up_to = 30;     ///< degrees; targets beyond are left unless a goal was asked for
   double again = 1.002;  ///< factor by which the worst angle has to rise for neighbourhoods to be tried again
@@ -257,7 +308,7 @@ struct LastCellsEffort {
   double patches_up_to = std::numeric_limits<double>::infinity();
 };
 
-/// An angle that was asked for.
+/// An angle that was asked for. Shown by --runs 15,25 with --surface frozen,flat,free.
 struct GoalEffort {
   double degrees = 0;
   /// Where a larger share of the cells misses it, all cells are worked on before it is worked for: most would
@@ -268,7 +319,7 @@ struct GoalEffort {
   bool goes_on = true;  ///< with all cells where the goal was missed; not where iterations are limited
 };
 
-/// The worst angle as far as it goes, whatever it costs in time: after a default run.
+/// The worst angle as far as it goes, whatever it costs in time: after a default run. Shown by --runs max.
 struct AnyCostEffort {
   CellBounds bounds;
   /// Of 100 cells that the default run leaves, those that there may be; 0: as bounds say. With a surface
@@ -286,7 +337,7 @@ struct AnyCostEffort {
   std::optional<RefineEffort> refine, refine_again;
 };
 
-/// The enclosed volume, given back at the end.
+/// The enclosed volume, given back at the end. Shown by docs/surface.md, "Measured", column volume.
 struct VolumeEffort {
   bool keeps_angles_only =
       false;  ///< judges by dihedral angles, so that a goal is not lost for an obtuse one
@@ -294,7 +345,27 @@ struct VolumeEffort {
   double enough = 5e-5;  ///< of the volume
 };
 
-/// The paper's pipeline.
+/// A surface without cells, from all its triangles to the worst ones; see improve_triangles(). Shown by
+/// docs/surface.md, "A surface without cells".
+struct TriangleEffort {
+  int bulk_iterations = 4;  ///< at most, over all triangles
+  double enough = 0.01;     ///< of the triangles: a bulk iteration that changes fewer is the last one
+  /// Degrees that the worst triangles are raised to where no goal was asked for, in turn.
+  std::array<double, 8> targets = {2, 5, 10, 15, 20, 25, 30, 35};
+  /// Where a larger share of the triangles lies below a target that nobody asked for, the mesh as a whole is
+  /// beyond it.
+  double largest_share = 0.25;
+  int iterations = 30;  ///< of one target, at most
+  /// Iterations in a row without fewer poor triangles after which edges are split; after twice as many
+  /// nothing more is tried.
+  int idle = 2;
+  int volume_passes = 8;        ///< by which the enclosed volume is given back
+  double volume_enough = 5e-5;  ///< of the volume, that may be missing in the end
+  /// Times the worst decision value: a vertex that moves leaves no triangle below it poorer than it was.
+  double volume_focus = 1.1;
+};
+
+/// The paper's pipeline. Shown by bench/paper_tables.py and docs/paper-tables.md.
 struct CompatEffort {
   int iterations = 3;  ///< "three were enough to eliminate all inverted elements"
 };
@@ -315,6 +386,7 @@ struct Strategy {
   std::optional<CoarsenEffort> coarsen;
   BulkEffort bulk;
   PolishEffort polish;
+  ThroughoutEffort throughout;
   TargetEffort targets;
   std::optional<RefineEffort> refine, refine_again;
   std::optional<NeighbourhoodEffort> neighbourhoods;
@@ -324,6 +396,11 @@ struct Strategy {
   std::optional<AnyCostEffort> any_cost;
   std::optional<VolumeEffort> volume;
   CompatEffort compat;
+  /// Where the input has invalid cells and more is asked for than that they be mended: the strategy of a run
+  /// that only mends them (kPlainGoal), which is done first.
+  std::shared_ptr<const Strategy> plain;
+  /// Without a goal: that of kClaimedGoal, for what is left below it.
+  std::shared_ptr<const Strategy> claimed;
 
   /// For cells that have fallen below the input's worst angle.
   const PolishEffort& mending() const { return any_cost ? any_cost->polish : polish; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "Quality/Decisions.hh"
@@ -54,12 +55,17 @@ double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
 
 std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy) {
   const double goal = dihedral_decision(degrees);
-  return par::reduce(
-      policy, mesh.n_cells(), std::size_t{0},
-      [&](std::size_t i) -> std::size_t {
-        return !mesh.is_deleted(CellHandle(i)) && min_dihedral_of(mesh, CellHandle(i)) < goal ? 1 : 0;
-      },
-      [](std::size_t a, std::size_t b) { return a + b; });
+  const std::size_t n = mesh.n_cells();
+  const int n_parts = par::thread_count(policy, n);
+  std::vector<std::size_t> found(static_cast<std::size_t>(n_parts), 0);
+  par::parts(n_parts, [&](int part) {
+    std::size_t mine = 0;
+    for_decisions(mesh, MinDihedral{}, par::part_begin(n, n_parts, part),
+                  par::part_begin(n, n_parts, part + 1),
+                  [&](std::size_t, double value) { mine += value < goal ? 1 : 0; });
+    found[static_cast<std::size_t>(part)] = mine;
+  });
+  return std::accumulate(found.begin(), found.end(), std::size_t{0});
 }
 
 double share_below(const TetMesh& mesh, double degrees, par::Policy policy) {

@@ -1,33 +1,75 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Targets.hh"
 
+#include <algorithm>
+
 #include "Remesh/LastCells.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Refine.hh"
 #include "Remesh/Survey.hh"
+#include "Remesh/Trial.hh"
 
 namespace hfr {
+namespace {
+
+/// Whether vertices put in for many cells come to an end: not in runs with a surface that may change, and of
+/// goals that have met their own bound on cells.
+bool is_bounded(const Run& run) { return !run.surface && run.bounds.max > 0; }
+
+/// Whether all but a few vertices stay where they are: inner ones are missing, whatever the angles are.
+bool lacks_vertices(const Run& run) {
+  const auto& frozen = run.work.frozen;
+  const auto n_movable = static_cast<double>(std::count(frozen.begin(), frozen.end(), 0));
+  return n_movable <= run.strategy.throughout.movable * static_cast<double>(frozen.size());
+}
+
+/// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
+void raise_throughout(const Run& run, const ThroughoutEffort& effort, double degrees) {
+  CellBounds bounds = run.bounds;
+  bounds.max = bounds.max * effort.of_hundred / 100;
+  const Run part = run.within(bounds);
+  Trial trial(part, degrees);
+  polish(part, effort.polish, degrees);
+  trial.settle();
+}
+
+}  // namespace
 
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
+  const TargetEffort& effort = run.strategy.targets;
+  const ThroughoutEffort& throughout = run.strategy.throughout;
+  const bool bounded = is_bounded(run), lacks = bounded && lacks_vertices(run);
   double now = smallest_dihedral(run.mesh, run.policy());
-  double last = 0;  // that was worked for
+  double last = 0;          // that was worked for
+  bool has_brought = true;  // enough, the target before
   for (const TargetAngle& target : targets) {
     if (run.control.stopped()) return;
     if (now >= target.degrees) continue;
-    if (target.degrees > run.strategy.targets.in_turn_beyond && now < last) break;
+    if (target.degrees > effort.in_turn_beyond && now < last) break;
+    const double share = share_below(run.mesh, target.degrees, run.policy());
+    if (share > target.largest_share && !(has_brought && bounded)) continue;
     last = target.degrees;
-    polish(run, run.strategy.polish, target.degrees, target.largest_share);
+    if (share > (lacks ? throughout.dig_share : target.largest_share))
+      raise_throughout(run, throughout, target.degrees);
+    else
+      polish(run, run.strategy.polish, target.degrees);
     now = smallest_dihedral(run.mesh, run.policy());
+    has_brought = share_below(run.mesh, target.degrees, run.policy()) < effort.enough_left * share;
   }
 }
 
 void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngle> targets) {
   const Strategy& strategy = run.strategy;
   if (smallest_dihedral(run.mesh, run.policy()) < floor) polish(run, strategy.polish, floor);
-  if (strategy.refine) refine(run, *strategy.refine);
+  const ThroughoutEffort& poor = strategy.throughout;
+  // Where the mesh is poor throughout, vertices go to the worst cells first.
+  const bool throughout = is_bounded(run) && (lacks_vertices(run) ||
+                                              share_below(run.mesh, poor.below, run.policy()) > poor.share);
+  if (strategy.refine && !throughout) refine(run, *strategy.refine);
   raise_to_targets(run, targets);
   // What was put in first is well connected by now, which shows where vertices are still missing.
-  if (strategy.refine_again && refine(run, *strategy.refine_again)) raise_to_targets(run, targets);
+  const std::optional<RefineEffort>& again = throughout ? poor.refine : strategy.refine_again;
+  if (again && refine(run, *again)) raise_to_targets(run, targets);
   // Whatever raises the last few takes from their neighbours.
   if (improve_last_cells(run, strategy.last_cells, targets)) raise_to_targets(run, targets);
 }

@@ -9,7 +9,8 @@
 namespace hfr {
 
 /// Raises the worst angles from target to target; one that is missed is no reason to stop, because what holds
-/// a cell below it may give way on the next.
+/// a cell below it may give way on the next. Where most of a mesh misses one, it is worked for while that
+/// brings enough, and the next only if it has.
 /// Expects: any mesh. Guarantees: what polish() does. Ends: after the last target, or with the run.
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets);
 /// Raises the worst angles as far as a limited effort takes them: back to `floor` degrees, where they stood

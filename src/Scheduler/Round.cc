@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 #include <unordered_set>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
 #include "HalfFace/Writer.hh"
 #include "Operators/PinchedStars.hh"
 #include "Operators/WriteCells.hh"
@@ -166,7 +168,9 @@ class RoundCore::State {
   /// In rank order, a candidate wins when no cell of its scope is taken.
   std::size_t select() {
     scopes_ = ScopeList(options_.policy, keys_.size(), [&](std::size_t i, Scope& out) {
-      round_.scope(round_.candidate(keys_[i].index), out);
+      const PlanBase& plan = round_.candidate(keys_[i].index);
+      round_.scope(plan, out);
+      require_sizes(plan, out.size());
     });
     std::size_t sub_rounds = 1;
     std::vector<std::uint32_t> ranks;
@@ -182,6 +186,17 @@ class RoundCore::State {
     winners_.clear();
     for (std::uint32_t r : ranks) winners_.push_back({keys_[r].index, r, {}, {}, 0, {}});
     return sub_rounds;
+  }
+
+  /// Slots are handed out by the plan and written by scope and cavity: in every build, and before anything is
+  /// written. What else the three have to agree in, builds with assertions look at.
+  static void require_sizes(const PlanBase& plan, std::size_t n_scope) {
+    if (plan.n_created > Cavity::kCapacity)
+      throw ResourceLimit("an operator creates " + std::to_string(plan.n_created) + " cells; at most " +
+                          std::to_string(Cavity::kCapacity) + " fit into a cavity");
+    HFR_REQUIRE(plan.n_removed == 0 || plan.n_removed == n_scope,
+                "a plan removes " + std::to_string(plan.n_removed) +
+                    " cells, and the scope of its seed has " + std::to_string(n_scope));
   }
 
   const PlanBase& plan_of(const Winner& winner) const { return round_.candidate(winner.candidate); }
@@ -325,7 +340,6 @@ class RoundCore::State {
       const auto scope = scopes_[winner.rank];
       winner.first_slot = slots_.size();
       if (plan.n_removed == 0) continue;
-      HFR_ASSERT(scope.size() == plan.n_removed);
       for (const CavityPart& p :
            parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first)) {
         for (std::size_t i = 0; i < p.n_removed; ++i)

@@ -14,8 +14,8 @@
 namespace hfr::surface {
 namespace {
 
-/// Of the diagonal: vertices no further from a plane or line lie in it. What they are moved onto it by, times
-/// the area, is what the volume may change.
+/// Share of the diagonal: vertices no further from a plane or line count as in it. Moving them onto it
+/// changes the volume by no more than that length times the area.
 constexpr double kCoplanar = 1e-13;
 
 double diagonal(const Arrays& arrays) {
@@ -151,7 +151,8 @@ class Regions {
     const Vec3 middle = 0.5 * (arrays_.points[e.a.idx()] + arrays_.points[e.b.idx()]);
     return dot(normal(e.f[0], middle), normal(e.f[1], middle)) >= cosine_;
   }
-  /// Of the faces within reach of x that can be come to from f; a large one counts only for its part there.
+  /// Mean normal of the faces within reach of x that a walk from f comes to; a large face counts only for its
+  /// part there.
   Vec3 normal(std::uint32_t f, Vec3 x) {
     ++mark_;
     Vec3 sum;
@@ -191,6 +192,8 @@ struct Incidence {
   std::array<VertexHandle, 2> along;  // other ends of the first two
   std::uint32_t face = 0;             // some face of the vertex
   bool locked = false;
+  bool crosses = false;                   // features of other than two faces, or more of them than two
+  std::array<std::uint32_t, 4> beside{};  // flat mode: the facets beside the first two features
 };
 
 MotionConstraint motion_constraint_of(std::span<const Vec3> points, VertexHandle v, const Incidence& at,
@@ -425,9 +428,24 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
     const std::array<VertexHandle, 2> ends = {e.a, e.b};
     for (std::size_t i = 0; i < 2; ++i) {
       Incidence& here = at[ends[i].idx()];
+      here.crosses = here.crosses || !e.manifold || here.n_features >= 2;
+      if (flat && !here.crosses)
+        for (std::size_t side = 0; side < 2; ++side)
+          here.beside[2 * here.n_features + side] = found.facet[e.f[side]];
       if (here.n_features < 2) here.along[here.n_features] = ends[1 - i];
       ++here.n_features;
       here.locked = here.locked || e.locked;
+    }
+  }
+  // Sheets that meet in a vertex alone: to move it in the facet of one would take it out of that of another.
+  for (std::size_t i = 0; flat && i < arrays.faces.size(); ++i) {
+    for (VertexHandle v : arrays.faces[i]) {
+      Incidence& here = at[v.idx()];
+      const auto end = here.beside.begin() + 2 * here.n_features;
+      if (here.n_features == 0)
+        here.locked = here.locked || found.facet[i] != found.facet[here.face];
+      else if (!here.crosses)
+        here.locked = here.locked || std::find(here.beside.begin(), end, found.facet[i]) == end;
     }
   }
   for (VertexHandle v : arrays.locked_vertices) at[v.idx()].locked = true;

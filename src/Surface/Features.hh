@@ -25,8 +25,8 @@ struct Arrays {
   std::vector<std::uint8_t> interface;             ///< between two regions
   std::vector<std::array<int, 2>> regions;         ///< inside and outside of each; the latter of interfaces
   std::vector<std::uint8_t> locked;                ///< stays a face: fixed, or of a periodic patch
-  std::vector<std::uint8_t> fixed;                 ///< and its vertices stay where they are
-  std::vector<std::array<VertexHandle, 2>> locked_edges;  ///< ascending
+  std::vector<std::uint8_t> fixed;                 ///< locked, and its vertices stay where they are, too
+  std::vector<std::array<VertexHandle, 2>> locked_edges;  ///< edges that stay, ends ascending
   std::vector<VertexHandle> locked_vertices;
 };
 Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
@@ -50,8 +50,8 @@ struct Features {
   std::vector<std::uint32_t> facet;  ///< per face: number of its planar facet; only in flat mode
   std::vector<MotionConstraint> motion_constraint;  ///< per vertex of the volume
 };
-/// `distance`: how far the surface may go in free mode; what turns only within a few times that is too small
-/// to be a feature.
+/// `distance`: how far the surface may go in free mode. Edges that turn, in a set no larger than a few times
+/// that, are too small to be features.
 Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance);
 /// Largest distance from the input that the options allow; 0 but in free mode. Unless they say it, three
 /// tenths of the mean edge, but no more than 0.005 of the diagonal of the bounding box.
@@ -63,9 +63,9 @@ inline double six_volume(const Triangle& t, Vec3 from) {
   return dot(t[0] - from, cross(t[1] - from, t[2] - from));
 }
 
-/// Outward, as long as twice the area.
+/// The outward normal of a triangle, as long as twice its area.
 inline Vec3 scaled_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - t[0]); }
-/// By division, so that a normal along an axis is that axis to the last bit; zero stays zero.
+/// n at length 1, by division, so that a normal along an axis is that axis to the last bit; zero stays zero.
 inline Vec3 unit(Vec3 n) {
   const double length = norm(n);
   return length > 0 ? Vec3{n.x / length, n.y / length, n.z / length} : Vec3{};

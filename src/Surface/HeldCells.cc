@@ -45,7 +45,8 @@ class View {
              return e && e->manifold && !e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]];
            });
   }
-  /// `for_good`: only those whose faces stay as they are.
+  /// Is the cell at a feature edge whose faces leave it less than `degrees`? `for_good`: only features whose
+  /// faces stay as they are count.
   bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees, bool for_good) const {
     const auto& v = mesh.cell(c).v;
     return std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
@@ -76,11 +77,12 @@ class View {
                          });
     return at != edges.end() && at->a == a && at->b == b ? &*at : nullptr;
   }
-  /// False for the cells of the larger region at an edge of an interface.
+  /// Is the cell on the side from which the faces at e are seen from inside? Not in the larger region, at an
+  /// edge of an interface.
   bool is_inside(const TetMesh& mesh, CellHandle c, const surface::Edge& e) const {
     return !arrays_.interface[e.f[0]] || mesh.region(c) == arrays_.regions[e.f[0]][0];
   }
-  /// Degrees between the two faces, through the inside: below 180 where the surface is convex.
+  /// Degrees between the two faces at e, through the inside: below 180 where the surface is convex.
   double angle_inside(const surface::Edge& e) const {
     const Triangle f = corners(arrays_.points, arrays_.faces[e.f[0]]);
     const Triangle g = corners(arrays_.points, arrays_.faces[e.f[1]]);

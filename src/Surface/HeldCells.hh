@@ -14,8 +14,8 @@ namespace hfr {
 /// The least that lets the surface of a cell change.
 enum class FreedBy : std::uint8_t {
   kFlat,   ///< in flat mode one of its vertices may move, or one of its edges be swapped
-  kFree,   ///< in free mode one may, in flat mode none
-  kShape,  ///< in neither, or two faces at one of its edges, which both modes keep, leave less than `degrees`
+  kFree,   ///< in free mode a vertex may move or an edge be swapped, in flat mode none
+  kShape,  ///< in no mode; or two faces at one of its edges, which both modes keep, leave less than `degrees`
 };
 
 /// For each cell, what would free it. `options` give the feature angle, the distance and what is fixed, for

@@ -25,8 +25,8 @@ Vec3 scaled_normal(const std::array<Vec3, 3>& t) { return cross(t[1] - t[0], t[2
 /// Height over the longest edge below which nearest_point() loses too many digits to differences of products.
 constexpr double kThin = 1e-2;
 
-/// In coordinates along the longest edge and from it to the third corner, each of which is right to its own
-/// last digits.
+/// Nearest point of a thin triangle, in coordinates along its longest edge and from that to the third corner,
+/// each of which is right to its own last digits.
 Vec3 nearest_point_of_thin(std::array<Vec3, 3> t, Vec3 x) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k)

@@ -31,14 +31,15 @@ class InputSurface {
   InputSurface& operator=(InputSurface&&) noexcept;
 
   std::size_t size() const;
-  /// Needs size() > 0.
+  /// Where the item nearest to x comes nearest. Precondition: size() > 0.
   Hit nearest(Vec3 x) const;
-  /// The same when it is no further than `limit`; distance is infinite otherwise. The quicker the smaller
-  /// the limit. With `side`: only triangles whose normal does not point away from it count.
+  /// Where the nearest item no further than `limit` comes nearest; distance is infinite where there is none.
+  /// The quicker the smaller the limit. With `side`: only triangles whose normal does not point away from it
+  /// count.
   Hit nearest_within(Vec3 x, double limit) const;
   Hit nearest_within(Vec3 x, double limit, Vec3 side) const;
-  /// The same, quick where one of the guessed items is the answer or little further. Of items as near as a
-  /// guess, the guess counts.
+  /// Both questions with items that are guessed: quick where one of these is the answer or little further. Of
+  /// items as near as a guess, the guess counts.
   Hit nearest_within(Vec3 x, double limit, Vec3 side, std::span<const std::uint32_t> guesses) const;
   Hit nearest(Vec3 x, std::size_t guess) const;
   /// Is this item no further from x than `limit`? Most often quicker than its distance.
@@ -57,8 +58,8 @@ class InputSurface {
 /// to the last bit.
 Vec3 nearest_point(const std::array<Vec3, 3>& triangle, Vec3 x);
 Vec3 nearest_point(const std::array<Vec3, 2>& segment, Vec3 x);
-/// The same to rounding for triangles of any height; nearest_point() is wrong by as much as their height for
-/// those whose height is lost beside their longest edge.
+/// Point of a triangle of any height nearest to x, to rounding. nearest_point() is wrong by as much as the
+/// height of triangles whose height is lost beside their longest edge.
 Vec3 exact_nearest_point(const std::array<Vec3, 3>& triangle, Vec3 x);
 
 }  // namespace hfr

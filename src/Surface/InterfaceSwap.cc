@@ -14,7 +14,8 @@ namespace {
 
 static_assert(InterfaceSwap<VolumeLength>::kMaxSide + 1 == HFR_MAX_RING);  // vertices of the polygon
 
-/// False where gather_two_sided_ring() is, and for a side of a single cell.
+/// The rings on both sides of the edge. False where gather_two_sided_ring() is, and for a side of a single
+/// cell.
 bool gather(const TetMesh& mesh, EdgeHandle seed, TwoSidedRing& two) {
   return gather_two_sided_ring(mesh, seed, two) && two.sides[0].n_cells > 1 && two.sides[1].n_cells > 1;
 }

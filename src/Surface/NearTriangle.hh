@@ -30,12 +30,13 @@ class NearTriangle {
   }
 
  private:
-  // What is closer to the distance than this is left to the exact question: rounding must not matter.
+  // Points whose distance differs by less from the one asked about are left to the exact question: rounding
+  // must not matter.
   static constexpr double kMore = 1 + 1e-6;
   static constexpr double kLess = 1 - 1e-6;
 
   std::array<Vec3, 3> corners_;
-  Vec3 normal_;                  // these have length 1, or 0 when the triangle is too thin for planes
+  Vec3 normal_;  // length 1, as have those of outward_; 0 when the triangle is too thin for planes
   std::array<Vec3, 3> outward_;  // normal to edge k, from corner k to the next, in the triangle's plane
   bool has_planes_ = false;
 };

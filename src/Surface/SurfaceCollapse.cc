@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
 
-/// The cells that a collapse may write, and in two regions those of the smaller one first; of either region
-/// the ones behind the star first.
+/// The cells that a collapse may write. In two regions those of the smaller number come first; within a
+/// region, the cells behind the star.
 struct Cluster {
   Star star;
   Scope cells;

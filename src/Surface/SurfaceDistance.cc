@@ -50,7 +50,8 @@ class Furthest {
     }
     return false;
   }
-  /// In the place of that which has been of no use for longest, more or less.
+  /// Notes a triangle that was near, in the place of the one that has been of no use for longest, more or
+  /// less.
   void remember(std::size_t item) {
     if (!recent_.full()) recent_.push_back(item);
     recent_[recent_.size() - 1] = item;

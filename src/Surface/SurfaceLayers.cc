@@ -42,7 +42,7 @@ SurfaceLayers::SurfaceLayers(const Arrays& arrays, std::span<const Vec3> points,
                    [](const Sample& a, const Sample& b) { return a.box < b.box; });
 }
 
-/// As the middles of equal parts.
+/// A triangle is taken in as samples, in the middles of its equal parts.
 void SurfaceLayers::add(const Triangle& t) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, norm(t[(k + 1) % 3] - t[k]));

@@ -13,11 +13,12 @@ namespace {
 
 using namespace surface;  // what SurfaceMesh is made of
 
-/// Of the mean edge length of the surface: normals of triangles no larger say little.
+/// Share of the mean edge length of the surface: normals of triangles no larger say little.
 constexpr double kDetail = 0.1;
-/// How far apart the points of a triangle are by which its distance is judged, of the mean edge.
+/// How far apart the points of a triangle are by which its distance is judged, as a share of the mean edge.
 constexpr double kSpacing = 0.3;
-/// How far apart those between them are, of the distance allowed; so many at most on the input.
+/// How far apart further points between these are, as a multiple of the distance allowed, and how many of
+/// them there are on the input at most.
 constexpr double kCloseSpacing = 2;
 constexpr double kMostBetween = 1 << 20;
 constexpr std::uint32_t kNoOrbit = ~0U;
@@ -105,7 +106,8 @@ void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& fea
   }
 }
 
-/// Twice the distance allowed, or more where that would make too many points.
+/// Length between further points: kCloseSpacing times the distance allowed, or more where that would make too
+/// many.
 double SurfaceMesh::Impl::spacing_between(std::span<const Triangle> input) const {
   const auto count = [&](double apart) {  // about
     double n = 0;
@@ -351,7 +353,7 @@ bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
   const OmHalfedge h = impl_->find_only(a, b);
   if (!h.is_valid() || om.status(om.edge_handle(h)).locked()) return false;
   if (om.is_boundary(om.edge_handle(h))) {
-    // The rim of a surface without cells, and of no other.
+    // Edges of a rim are split where there are no cells, and on no other surface.
     if (!impl_->alone || !impl_->has_one_sheet(a) || !impl_->has_one_sheet(b)) return false;
   }
   for (OmHalfedge side : {h, om.opposite_halfedge_handle(h)})
@@ -374,8 +376,22 @@ void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& ou
     if (kind == SurfaceKind::kCurve && !om.status(om.edge_handle(*it)).feature()) continue;
     if (on_rim && !om.is_boundary(om.edge_handle(*it))) continue;
     const VertexHandle onto = impl_->vertex_of(om.to_vertex_handle(*it));
-    if (om.is_collapse_ok(*it) && impl_->find_only(v, onto).is_valid()) out.push_back(onto);
+    if (om.is_collapse_ok(*it) && impl_->find_only(v, onto).is_valid() && !impl_->closes(*it))
+      out.push_back(onto);
   }
+}
+
+/// Would the collapse lay a face upon another one, as where a region is no more than one cell? The shape
+/// would count it, and it would be gone with that region.
+bool SurfaceMesh::Impl::closes(OmHalfedge h) const {
+  const OmVertex from = om.from_vertex_handle(h), onto = om.to_vertex_handle(h);
+  for (auto it = om.cvf_iter(from); it.is_valid(); ++it) {
+    std::array<VertexHandle, 3> f = vertices(*it);
+    if (std::find(f.begin(), f.end(), vertex_of(onto)) != f.end()) continue;
+    std::replace(f.begin(), f.end(), vertex_of(from), vertex_of(onto));
+    if (find(f).is_valid()) return true;
+  }
+  return false;
 }
 
 }  // namespace hfr

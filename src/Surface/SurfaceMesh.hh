@@ -44,7 +44,7 @@ class SurfaceMesh {
   /// Takes the surface as it is now as the shape to keep. Throws InvalidInput for options out of range, and
   /// for periodic patches that do not match.
   SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
-  /// A surface without cells. What speaks of a TetMesh or a half-face is of no use then.
+  /// A surface without cells. Members that take a TetMesh or a half-face are not for it.
   SurfaceMesh(const TriangleMesh& mesh, const SurfaceOptions& options);
   /// The surface of a part of a mesh whose surface is `whole`, in flat mode: some cells of one region as a
   /// mesh of their own, whose vertex i is vertices[i] of the whole's. Faces of the whole's boundary may
@@ -81,7 +81,7 @@ class SurfaceMesh {
   bool is_deleted(std::size_t f) const;
   std::array<VertexHandle, 3> face_vertices(std::size_t f) const;  ///< in outward order
   int patch(std::size_t f) const;
-  /// Where the vertex is by what has been told; it must be one of the surface.
+  /// Where the vertex is, by the changes that have been told; it must be one of the surface.
   Vec3 point(VertexHandle v) const;
   /// Appends the vertices of all faces at v, whatever sheet they belong to.
   void star(VertexHandle v, std::vector<std::array<VertexHandle, 3>>& out) const;
@@ -123,8 +123,8 @@ class SurfaceMesh {
   void on_collapse(VertexHandle v, VertexHandle onto);
   /// The edge from a to b has got the vertex `middle`.
   void on_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place);
-  /// In flat mode, after cells have been replaced without a word: takes the surface as it is now. Labels must
-  /// have been written.
+  /// In flat mode, after cells have been replaced that nobody told of: takes the surface as it is now. Labels
+  /// must have been written.
   void rebuild(const TetMesh& mesh, par::Policy policy = {});
   /// The surface as it is now, for take_back().
   std::unique_ptr<SurfaceMesh> copy() const;

@@ -106,14 +106,14 @@ struct SurfaceMesh::Impl {
 
   SurfaceOptions options;
   double hausdorff = 0;
-  double detail = 0;             // what is no larger is noise
-  double spacing = 0;            // of points by which distances are judged
-  double between = 0;            // and of those between them, where they are further apart than that
-  bool samples_between = false;  // some face has such
+  double detail = 0;             // length: what of the shape is no larger is noise
+  double spacing = 0;            // length between points by which distances are judged
+  double between = 0;            // length between those in between, where `spacing` is more
+  bool samples_between = false;  // some face has points in between
   Om om;
   std::vector<VertexHandle> vertex;              // of the volume, per OpenMesh vertex
   std::vector<OmVertex> first;                   // OpenMesh's per vertex of the volume; invalid inside
-  std::vector<std::pair<Index, OmVertex>> more;  // where there are several, ascending
+  std::vector<std::pair<Index, OmVertex>> more;  // OpenMesh's further ones of a vertex, ascending
   std::vector<FaceRecord> faces;
   std::vector<MotionConstraint> motion_constraint;
   std::shared_ptr<const InputSurface> shape, curves;  // free mode
@@ -182,6 +182,7 @@ struct SurfaceMesh::Impl {
     });
     return found;
   }
+  bool closes(OmHalfedge h) const;
   VertexHandle vertex_of(OmVertex v) const { return vertex[static_cast<std::size_t>(v.idx())]; }
   std::array<VertexHandle, 3> vertices(OmFace f) const {
     OmHalfedge h = om.halfedge_handle(f);

@@ -11,17 +11,17 @@ namespace {
 using namespace surface;  // what SurfaceMesh is made of
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// The samples are judged by somewhat less than what is allowed, for what lies between them.
+/// Share of the distance allowed by which samples are judged, for the sake of what lies between them.
 constexpr double kBetween = 0.7;
-/// Those between them by less, since they are nearer to one another.
+/// The same share for the further points in between, which are nearer to one another.
 constexpr double kCloseBetween = 0.85;
-/// What is less than this share of a distance is so beyond rounding.
+/// A length below this share of a distance is smaller whatever rounding did.
 constexpr double kSurely = 1 - 1e-9;
 /// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
 constexpr double kNotBack = 0.1;
 /// Share of the volume beyond which a change in the same direction is refused.
 constexpr double kVolume = 5e-4;
-/// And of a region's, which no single change may pass, either.
+/// Share of a region's volume beyond which such a change is refused; no single change may be larger, either.
 constexpr double kRegionVolume = 9e-4;
 /// Regions whose volume one change may touch; one that would touch more is refused.
 constexpr std::size_t kMostRegions = 16;
@@ -89,8 +89,8 @@ bool SurfaceMesh::Impl::are_near(std::span<const Triangle> created, std::span<co
   return true;
 }
 
-/// Where the points of are_near() are far apart: are those between them no further than `distance` from the
-/// input? A piece whose corners are all so near to the same triangle of the input is so as a whole.
+/// Where the points of are_near() are far apart: are further points between them no further than `distance`
+/// from the input? A piece whose corners are all so near to the same triangle of the input is so as a whole.
 bool SurfaceMesh::Impl::are_near_between(std::span<const Triangle> created, Guesses& beneath,
                                          double distance) const {
   bool near = true;

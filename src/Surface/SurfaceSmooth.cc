@@ -18,8 +18,6 @@ using surface::TangentSteps;
 namespace {
 
 constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
-/// Steps of one search where a cell is inverted: it gets less so for ever, ever further away.
-constexpr int kMostSteps = 100;
 static_assert(2 * TangentSteps::kMost <= StarForm::kTrials);
 
 /// The surface round a vertex, before and after a move.
@@ -29,7 +27,7 @@ struct Patch {
   FixedVector<std::uint8_t, kMaxFaces> corner;  // of the vertex
   bool has_interface = false;
 
-  /// False when there are too many faces.
+  /// The faces of the surface at v. False when they are too many.
   bool gather(const TetMesh& mesh, VertexHandle v, std::span<const HalfFaceHandle> link) {
     for (HalfFaceHandle h : link) {
       for (HalfFaceHandle g : mesh.cell_halffaces(cell_of(h))) {
@@ -143,7 +141,6 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
     const TangentSteps steps = on_curve ? TangentSteps::on_line(axis) : TangentSteps::in_plane(axis, u);
     std::optional<StarForm> star;
     if (std::is_same_v<Metric, VolumeLength> && move.old_worst > 0) star.emplace(mesh, v, link);
-    int n_steps = 0;
     search_by_halving(radius, halvings, [&](double r) {
       const Vec3 centre = place;
       const bool hopeless = star && all_fall_short(*star, worst_now, [&](auto&& ask) {
@@ -154,7 +151,7 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
       if (hopeless) return 2;
       bool better = false;
       for (Vec3 x : steps.at(r, centre)) better = consider(x) || better;
-      return better && (move.old_worst > 0 || ++n_steps < kMostSteps) ? 0 : 1;
+      return better ? 0 : 1;
     });
   }
   // Where the shape forbids the place, one nearer by may do.

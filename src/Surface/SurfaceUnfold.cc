@@ -25,13 +25,14 @@ using surface::scaled_normal;
 using surface::SurfaceLayers;
 using surface::unit;
 
-constexpr int kRings = 6;  // round folded faces that take part
+constexpr int kRings = 6;  // rings of faces round folded ones that take part
 constexpr int kSight = 4;  // rings that are known to be about as wide as folds
-/// The same round all that a wide fold covers, one after the other until its distance is small enough.
+/// Rings of faces that take part round all that a wide fold covers: one number after the other is tried,
+/// until the distance is small enough.
 constexpr std::array<int, 5> kRingsOfCovered = {2, 1, 3, 4, 6};
-constexpr int kRingsAtOnce = 24;  // that a fold is looked for in
-constexpr int kPasses = 300;
-constexpr int kPatience = 60;  // passes without fewer folds
+constexpr int kRingsAtOnce = 24;  // rings that a fold is looked for in
+constexpr int kPasses = 300;      // of spreading, at most
+constexpr int kPatience = 60;     // passes without fewer folds
 /// A face is folded over when its normal is turned by more than this (cosine) against the area vector of what
 /// lies round it, and that vector is not the small sum of faces of opposite sides, as at a thin edge.
 constexpr double kAgainst = -0.2;
@@ -182,7 +183,8 @@ class Unfolder {
     std::sort(vertices.begin(), vertices.end());
     return vertices;
   }
-  /// Flags faces that can be come to from flagged ones over faces of that kind, some rings far.
+  /// Flags the faces for which kind(layers, triangle) holds and that a walk from flagged ones over such faces
+  /// comes to within some rings.
   template <class Kind>
   std::size_t take_in(std::vector<std::uint8_t>& folds, Kind&& kind) const {
     const Faces near = faces_at(vertices_round(folds, kRingsAtOnce));
@@ -211,8 +213,8 @@ class Unfolder {
     for (const auto& f : arrays_.faces) all.push_back(scaled_normal(corners(points_, f)));
     return all;
   }
-  /// Fixed ones, and those on features other than edges of folded faces. `layered`: faces at whose edges all
-  /// layers count.
+  /// Vertices that stay: fixed ones, and those on features other than edges of folded faces. `layered`: faces
+  /// at whose edges all layers count.
   std::vector<std::uint8_t> held_vertices(const std::vector<std::uint8_t>& folds,
                                           const Faces& layered) const {
     std::vector<std::uint8_t> held(points_.size(), 0);
@@ -290,7 +292,8 @@ class Attempts {
         before_(triangles(arrays, arrays.points)),
         shape_(before_) {}
 
-  /// Round the flagged faces. `wide`: what counts are faces that are against all layers near to them.
+  /// Spreads the vertices round the flagged faces. `wide`: folds are counted by faces that are against all
+  /// layers near to them.
   Attempt spread(const std::vector<std::uint8_t>& flagged, std::size_t n_folded, int rings, bool wide) const {
     constexpr double kSpacing = 0.25;
     Unfolder unfolder(arrays_, options_);
@@ -325,7 +328,7 @@ class Attempts {
   InputSurface shape_;
 };
 
-/// The new points of the vertices, or nothing.
+/// The points of an unfolded surface, by vertex; nothing where no way to unfold it is any better.
 std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptions& options,
                                         par::Policy policy, Unfolding& done) {
   constexpr double kCoplanar = 1e-12;  // of the mean edge: what flat mode allows

@@ -50,20 +50,28 @@ class TangentSteps {
   bool on_line_;
 };
 
+/// Steps of one search, of all radii together. Beyond them it gets better for ever and goes nowhere: an
+/// inverted cell is less so the further away its vertex is, and one of a body far thinner than wide gains a
+/// little from each lift outwards.
+inline constexpr int kMostSteps = 100;
+
 /// Looks for better places at `radius`, again and again as long as there is one, and then at half of it,
 /// until it has been halved so many times. look(radius) tries the places, goes to the best one and returns
-/// how many times the radius is to be halved before the next look: 0 when it has found a better one.
+/// how many times the radius is to be halved before the next look: 0 when it has found a better one, which
+/// counts as 1 from kMostSteps on.
 template <class Look>
 void search_by_halving(double radius, int halvings, Look&& look) {
+  int n_steps = 0;
   for (int level = 0; level < halvings;) {
-    const int n = look(radius);
+    int n = look(radius);
+    if (n == 0 && ++n_steps >= kMostSteps) n = 1;
     for (int i = 0; i < n; ++i) radius *= 0.5;
     level += n;
   }
 }
 
-/// The same where consider(place) goes to a place that is better than where it stood, and says whether it
-/// was: all places round the one that a look begins with are tried. places_at(radius) names them.
+/// Search by halving where each look tries all places that places_at(radius) names, round the one that it
+/// begins with. consider(place) goes to a place that is better than where it stood, and says whether it was.
 template <class PlacesAt, class Consider>
 void search_places_by_halving(double radius, int halvings, PlacesAt&& places_at, Consider&& consider) {
   search_by_halving(radius, halvings, [&](double r) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "Quality/Metrics.hh"
@@ -80,12 +81,19 @@ class Measurer {
   }
 
   void measure_points() {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    Vec3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
     for (VertexHandle v : mesh_.vertices()) {
       const Vec3 p = mesh_.point(v);
-      for (int i = 0; i < 3; ++i) out_.largest_coordinate = std::max(out_.largest_coordinate, std::abs(p[i]));
+      for (int i = 0; i < 3; ++i) {
+        out_.largest_coordinate = std::max(out_.largest_coordinate, std::abs(p[i]));
+        low[i] = std::min(low[i], p[i]);
+        high[i] = std::max(high[i], p[i]);
+      }
       if (mesh_.is_fixed(v)) out_.fixed_vertices.insert(place(p));
       if (mesh_.labels().vertex(v) != 0) out_.vertex_labels.insert(mesh_.labels().vertex(v));
     }
+    if (mesh_.n_vertices() > 0) out_.diagonal = std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
   }
 
   /// Length of the longest edge as a power of two.

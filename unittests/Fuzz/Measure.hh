@@ -45,6 +45,7 @@ struct Measure {
   std::size_t extra_fans = 0;                ///< fans of cells round edges, beyond one for each edge
   std::size_t extra_stars = 0;  ///< sets of cells at vertices that faces connect, beyond one for each vertex
   double largest_coordinate = 0;
+  double diagonal = 0;   ///< of the bounding box
   long double area = 0;  ///< of boundary and interfaces
   Rule rule = Ok;        ///< the first broken one of the kernel's own
   std::string rule_message;

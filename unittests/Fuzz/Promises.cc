@@ -11,9 +11,12 @@
 namespace hfr::fuzz {
 namespace {
 
-constexpr double kAngleRounding = 1e-6;      // degrees
-constexpr long double kRounding = 1e-9L;     // of sums of volumes that are compared
-constexpr long double kFlatVolume = 1e-12L;  // docs/surface.md: what flat runs keep the volume to
+constexpr double kAngleRounding = 1e-6;   // degrees
+constexpr long double kRounding = 1e-9L;  // of sums of volumes that are compared
+// docs/surface.md: what flat runs keep the volume to, and, as a share of the diagonal, how far from a plane a
+// point may be that they take for one of it: a body not much thicker than that is mostly such distances.
+constexpr long double kFlatVolume = 1e-12L;
+constexpr long double kPlanar = 1e-13L;
 
 class Judge {
  public:
@@ -98,7 +101,8 @@ class Judge {
     long double allowed = 0;
     const long double rounding = before.largest_coordinate * 0x1p-52L * before.area;
     if (options_.surface.mode == SurfaceMode::kFlat)
-      allowed = kFlatVolume * before.absolute_volume + 16 * rounding;
+      allowed =
+          kFlatVolume * before.absolute_volume + kPlanar * before.diagonal * before.area + 16 * rounding;
     if (options_.surface.mode == SurfaceMode::kFree)
       allowed = 2 * bound * before.area + kFlatVolume * before.absolute_volume + 16 * rounding;
     if (options_.surface.mode == SurfaceMode::kFrozen)
@@ -172,7 +176,7 @@ class Judge {
     if (goal > 0 && !result.goal_reached && result.stuck.empty() && worst < goal - kAngleRounding)
       find("statistics", "a goal is missed and no cell is stuck");
     for (const StuckCell& cell : result.stuck)
-      if (!(cell.degrees < result.stuck_below))
+      if (!(cell.degrees < result.stuck_below + kAngleRounding))
         find("statistics", "a stuck cell of {} degrees", cell.degrees);
   }
 

@@ -14,6 +14,7 @@ namespace {
 
 using testing::Contains;
 using testing::IsEmpty;
+using testing::Not;
 
 /// 16 cubes; region 1 and 2, a labelled face, edge and vertex, and a fixed vertex.
 TetMesh box() {
@@ -96,6 +97,20 @@ TEST(Promises, AreBrokenByABoundaryThatMoves) {
   moved.set_point(VertexHandle(44), {1, 1, 1 + 1e-9});
   for (const char* promise : {"volume", "region volume"})
     EXPECT_THAT(broken(good, moved, SurfaceMode::kFlat), Contains(promise));
+}
+
+TEST(Promises, AreKeptByAThinBodyThatMovesByWhatCountsAsPlanar) {
+  const auto sheet = [](double lift) {
+    TetMesh mesh = box();
+    for (VertexHandle v : mesh.vertices()) {
+      const Vec3 p = mesh.point(v);
+      mesh.set_point(v, {p.x, p.y, 1e-12 * p.z});
+    }
+    mesh.set_point(VertexHandle(44), mesh.point(VertexHandle(44)) + Vec3{0, 0, lift});
+    return mesh;
+  };
+  EXPECT_THAT(broken(sheet(0), sheet(1e-12), SurfaceMode::kFlat), Not(Contains("volume")));
+  EXPECT_THAT(broken(sheet(0), sheet(1e-10), SurfaceMode::kFlat), Contains("volume"));
 }
 
 TEST(Promises, AreBrokenByLabelsThatGo) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "HalfFace/Check.hh"
+#include "HalfFace/Errors.hh"
 #include "Operators/ClusterSearch.hh"
 #include "Operators/FanMerge.hh"
 #include "Operators/GrownCells.hh"
@@ -128,6 +129,19 @@ TEST(Capacities, CavityOf512CellsIsReplacedByAsMany) {
   replace(mesh, cavity);
   EXPECT_EQ(check(mesh), Ok);
   EXPECT_TRUE(tets_of(mesh) == before);
+}
+
+TEST(Capacities, CavityOf513CellsIsAnErrorInEveryBuild) {
+  Cavity cavity;
+  for (std::size_t c = 0; c < Cavity::kCapacity; ++c) {
+    cavity.removed.push_back(C(c));
+    cavity.created.push_back({V(0), V(1), V(2), V(3)});
+  }
+  EXPECT_THROW(cavity.removed.push_back(C(Cavity::kCapacity)), ResourceLimit);
+  EXPECT_THROW(cavity.created.push_back({V(0), V(1), V(2), V(3)}), ResourceLimit);
+  EXPECT_THROW(cavity.removed.resize(Cavity::kCapacity + 1), ResourceLimit);
+  EXPECT_EQ(cavity.removed.size(), Cavity::kCapacity);
+  EXPECT_EQ(cavity.created.size(), Cavity::kCapacity);
 }
 
 TEST(Capacities, MoreThan512NewEdgesAreAllListed) {

@@ -4,8 +4,8 @@
 
 #include "Operators/LimitMeshes.hh"
 #include "Remesh/DamagedMeshes.hh"
+#include "Remesh/Drivers.hh"
 #include "Remesh/Meshes.hh"
-#include "hfremesh/HalfFace/Config.hh"
 
 namespace hfr::test {
 namespace {
@@ -49,45 +49,8 @@ std::vector<NamedMesh> meshes() {
           {"ball", built(generate::ball(3))}};
 }
 
-struct Driver {
-  std::string name;
-  ImproveOptions options;
-  friend std::ostream& operator<<(std::ostream& out, const Driver& driver) { return out << driver.name; }
-};
-
-std::vector<Driver> drivers() {
-  std::vector<Driver> all;
-  const auto add = [&](const char* name) -> ImproveOptions& {
-    all.push_back({name, {}});
-    all.back().options.statistics = false;
-    return all.back().options;
-  };
-  add("default");
-  add("goal").min_dihedral = 20;
-  ImproveOptions& most = add("max");
-  most.raise_min_dihedral = true;
-  most.iterations = 2;
-  add("coarsen").coarsen = true;
-  add("kinds in turn").rounds = Rounds::kByKind;
-  add("compat").compat = Compat::kJpdc2013;
-  ImproveOptions& cluster = add("cluster search");
-  cluster.ops = Ops::kDefault | Ops::kCluster;
-  cluster.min_dihedral = 15;
-#ifdef HFR_SURFACE
-  add("flat").surface.mode = SurfaceMode::kFlat;
-  ImproveOptions& flat_goal = add("flat with a goal");
-  flat_goal.surface.mode = SurfaceMode::kFlat;
-  flat_goal.min_dihedral = 30;
-  add("free").surface.mode = SurfaceMode::kFree;
-  ImproveOptions& free_coarse = add("free, coarsen");
-  free_coarse.surface.mode = SurfaceMode::kFree;
-  free_coarse.coarsen = true;
-#endif
-  return all;
-}
-
 class ParanoidPipelines : public testing::TestWithParam<Driver> {};
-INSTANTIATE_TEST_SUITE_P(Driver, ParanoidPipelines, testing::ValuesIn(drivers()), [](const auto& driver) {
+INSTANTIATE_TEST_SUITE_P(Driver, ParanoidPipelines, testing::ValuesIn(courses()), [](const auto& driver) {
   std::string name = driver.param.name;
   std::erase_if(name, [](char c) { return c == ' ' || c == ','; });
   return name;

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "Operators/FaceSwap.hh"
 #include "Operators/Metrics.hh"
 #include "Operators/Replace.hh"
 #include "Operators/VertexCollapse.hh"
 #include "Operators/VertexInsertion.hh"
+#include "Remesh/DamagedMeshes.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Refine.hh"
@@ -105,6 +107,37 @@ TEST(Patch, VertexWithCellsThatThePatchDoesNotSeeStays) {
   const VertexHandle middle(static_cast<std::size_t>(
       std::find(patch.vertices().begin(), patch.vertices().end(), V(0)) - patch.vertices().begin()));
   EXPECT_FALSE(blind.mesh().is_boundary(middle)) << "it no longer looks like an inner one";
+}
+
+/// Two flat cells on a common triangle; another region has the edge between their apexes already, if wanted.
+TetMesh flat_pair(bool with_edge_elsewhere) {
+  std::vector<Vec3> points = {{1, 0, 0}, {-0.5, 0.9, 0}, {-0.5, -0.9, 0}, {0, 0, 0.2}, {0, 0, -0.2}};
+  std::vector<Corners> cells = {{0, 1, 2, 3}, {0, 2, 1, 4}};
+  if (with_edge_elsewhere) {
+    points.insert(points.end(), {{5, 0, 0}, {5, 5, 0}});
+    cells.push_back({3, 4, 6, 5});
+  }
+  TetMesh mesh = build(std::move(points), cells);
+  if (with_edge_elsewhere) mesh.set_region(C(2), 1);
+  return mesh;
+}
+
+TEST(Patch, FitsUnlessItHasAnEdgeThatIsElsewhereAlready) {
+  for (const bool elsewhere : {false, true}) {
+    const TetMesh mesh = flat_pair(elsewhere);
+    const Patch patch(mesh, C(0), 2);
+    ASSERT_EQ(patch.cells().size(), 2U);
+    TetMesh changed = patch.mesh();
+    const auto quality = qualities(changed, MinSine2{});
+    const FaceSwap<MinSine2> swap{MinSine2{}, quality};
+    int swaps = 0;
+    for (int k = 0; k < 4 && swaps == 0; ++k)
+      if (changed.opposite_halfface(halfface_of(C(0), k)).is_valid())
+        swaps += apply(swap, changed, halfface_of(C(0), k)) ? 1 : 0;
+    ASSERT_EQ(swaps, 1);
+    EXPECT_TRUE(patch.fits(mesh, patch.mesh()));
+    EXPECT_EQ(patch.fits(mesh, changed), !elsewhere);
+  }
 }
 
 TEST(Patch, WhatCameWentAndMovedArrives) {
@@ -312,6 +345,27 @@ TEST(Refine, LetsPoorCellsMultiplyOnlyWhereNothingIsSpared) {
     more_poor[spare ? 0 : 1] = n_poor;
   }
   EXPECT_GT(more_poor[1], more_poor[0]);
+}
+
+TEST(SearchPatches, EdgeThatAnotherRegionHasIsNotMadeAgain) {
+  for (const bool elsewhere : {false, true}) {
+    TetMesh mesh = flat_pair(elsewhere);
+    ASSERT_GT(smallest_dihedral(mesh, {}), 0);
+    const ImproveOptions options = serial();
+    StageBench bench(mesh, options);
+    EXPECT_EQ(bench.run.work.pinched.empty(), !elsewhere);
+    EXPECT_EQ(search_patches(bench.run, 40, kLittleEffort), !elsewhere);
+    EXPECT_EQ(check(mesh, {.last = Rule::kDuplicateEdge}), Ok);
+  }
+}
+
+TEST(SearchPatches, MeshWhoseCellsLieOverOneAnotherGetsNoFaceOfThreeCells) {
+  TetMesh mesh = glued_over_itself();
+  ImproveOptions options = serial();
+  options.ops = Ops::kEdge | Ops::kInsert;
+  options.min_dihedral = 10;
+  ASSERT_NO_THROW(improve(mesh, options));
+  EXPECT_EQ(check(mesh, {.last = Rule::kDuplicateEdge}), Ok);
 }
 
 TEST(SearchPatches, LeavesAMeshWithInvalidCellsAlone) {

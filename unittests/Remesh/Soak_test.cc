@@ -53,7 +53,9 @@ TEST_P(Soak, RandomOperatorsKeepAMeshWhole) {
   EXPECT_GT(winners, 50U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Soak, testing::Range<std::uint64_t>(1, 201));
+// Each jitter with and without labels three times or more. More seeds are those of scripts/fuzz.sh, whose
+// cases take fewer seconds each.
+INSTANTIATE_TEST_SUITE_P(Seeds, Soak, testing::Range<std::uint64_t>(1, 46));
 
 }  // namespace
 }  // namespace hfr::test

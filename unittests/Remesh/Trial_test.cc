@@ -5,6 +5,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/Hash.hh"
+#include "Remesh/DamagedMeshes.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/StageBench.hh"
 
@@ -119,6 +120,20 @@ TEST(Trial, ThreeCellsRoundAnEdgeThatMissTheGoalGetNoneForNothing) {
   options.ops = Ops::kEdge | Ops::kInsert;
   improve(mesh, options);
   EXPECT_TRUE(mesh.n_cells() == 3 || smallest_dihedral(mesh, {}) > before) << mesh.n_cells();
+}
+#endif
+
+#ifdef HFR_HAS_SURFACE
+TEST(Trial, MeshThatKeepsAnInvertedCellGetsNoPoorCellsForNothing) {
+  TetMesh mesh = glued_with_an_inverted_cell();
+  const std::size_t n_cells = mesh.n_cells(), n_poor = n_below(mesh, 20, {});
+  ASSERT_EQ(invalid_cells(mesh, {}).size(), 1U);
+  ASSERT_LT(n_poor, n_cells / 4);
+  ImproveOptions options = serial();
+  options.surface.mode = SurfaceMode::kFree;
+  improve(mesh, options);
+  EXPECT_TRUE(invalid_cells(mesh, {}).empty() || mesh.n_cells() <= n_cells || n_below(mesh, 20, {}) < n_poor)
+      << mesh.n_cells() << " cells";
 }
 #endif
 

@@ -2,9 +2,14 @@
 // An operator that the library does not know, written against the contract alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ranges>
+
 #include "HalfFace/Check.hh"
+#include "HalfFace/Errors.hh"
 #include "Operators/Clusters.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/LimitMeshes.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/Seeds.hh"
 
@@ -61,6 +66,42 @@ struct SplitCell {
 };
 static_assert(LocalOperator<SplitCell>);
 
+/// Takes all cells of a vertex and makes the same again. A plan may say that it takes fewer, or makes more.
+struct RewriteStar {
+  using Seed = VertexHandle;
+  struct Plan : PlanBase {
+    VertexHandle seed;
+  };
+  VolumeLength metric;
+  std::uint32_t n_hidden = 0, n_invented = 0;
+
+  void scope(const TetMesh& mesh, Seed seed, Scope& out) const {
+    out.clear();
+    for (CellHandle c : mesh.vertex_cells(seed)) out.push_back(c);
+  }
+  std::optional<Plan> evaluate(const TetMesh& mesh, Seed seed) const {
+    const auto n = static_cast<std::uint32_t>(std::ranges::distance(mesh.vertex_cells(seed)));
+    Plan plan;
+    plan.seed = seed;
+    plan.old_worst = 0.1;
+    plan.new_worst = 1;
+    plan.n_removed = n - n_hidden;
+    plan.n_created = n + n_invented;
+    return plan;
+  }
+  void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const {
+    out.clear();
+    for (CellHandle c : mesh.vertex_cells(plan.seed)) {
+      out.removed.push_back(c);
+      out.created.push_back(mesh.cell(c).v);
+    }
+  }
+  Tet identity(const TetMesh&, Seed seed) const {
+    return {seed, VertexHandle(), VertexHandle(), VertexHandle()};
+  }
+};
+static_assert(LocalOperator<RewriteStar>);
+
 struct NoIdentity {
   using Seed = CellHandle;
   struct Plan : PlanBase {
@@ -113,6 +154,49 @@ TEST(OwnOperator, SwapsOnlyInItsBall) {
     EXPECT_EQ(before.cell(C(i)).v, mesh.cell(C(i)).v);
   }
   EXPECT_GT(outside, 300U);
+}
+
+/// A round on vertex 0, the middle of a star of 2n cells. True where it throws the error, and then has left
+/// mesh and workspace as they were.
+template <class Error>
+bool throws(const RewriteStar& op, Index n, par::Policy policy) {
+  TetMesh mesh = built(hub(n));
+  const TetMesh before = mesh;
+  Workspace work;
+  work.attach(mesh, policy);
+  work.set_qualities(mesh, VolumeLength{}, policy);
+  Round<RewriteStar> round(mesh, work, {policy, false, 1});
+  const std::vector<VertexHandle> seeds = {V(0)};
+  bool thrown = false;
+  try {
+    EXPECT_EQ(round.run(op, seeds).winners, 1U);
+  } catch (const Error&) {
+    thrown = true;
+  }
+  EXPECT_EQ(check(mesh), Ok);
+  EXPECT_TRUE(identical(mesh, before));
+  EXPECT_EQ(std::ranges::count(work.claim, kUnclaimed), static_cast<std::ptrdiff_t>(mesh.n_cells()));
+  return thrown;
+}
+
+TEST(OwnOperator, ScopeOf256CellsIsWrittenAndOneOfMoreIsAnErrorThatChangesNothing) {
+  for (const par::Policy policy : {par::Policy{1, 1}, par::Policy{4, 1}}) {
+    EXPECT_FALSE(throws<Error>({}, 128, policy));
+    EXPECT_TRUE(throws<ResourceLimit>({}, 129, policy));
+    EXPECT_TRUE(throws<ResourceLimit>({}, 400, policy)) << "more than a cavity holds";
+  }
+}
+
+TEST(OwnOperator, PlanThatCreatesMoreThan512CellsIsAnErrorThatChangesNothing) {
+  RewriteStar op;
+  op.n_invented = Cavity::kCapacity - 64 + 1;
+  EXPECT_TRUE(throws<ResourceLimit>(op, 32, {}));
+}
+
+TEST(OwnOperator, PlanThatRemovesOtherCellsThanItsScopeHasIsAnErrorThatChangesNothing) {
+  RewriteStar op;
+  op.n_hidden = 1;
+  EXPECT_TRUE(throws<InvalidInput>(op, 32, {}));
 }
 
 TEST(OwnOperator, SplitsEveryCellOfABoxInOneRound) {

@@ -3,62 +3,20 @@
 #include <gtest/gtest.h>
 
 #include "IO/Hash.hh"
+#include "Remesh/Drivers.hh"
 #include "Remesh/Meshes.hh"
 #include "Shuffle/Seeds.hh"
 #include "Shuffle/Shuffle.hh"
-#include "hfremesh/HalfFace/Config.hh"
 
 namespace hfr::test {
 namespace {
 
 constexpr std::uint64_t kSeeds = 200;
 
-struct Driver {
-  const char* name;
-  ImproveOptions options;
-};
-
 std::vector<Driver> drivers() {
-  std::vector<Driver> all;
-  const auto add = [&](const char* name) -> ImproveOptions& {
-    all.push_back({name, {}});
-    all.back().options.statistics = all.size() % 4 == 1;
-    return all.back().options;
-  };
-  add("default");
-  add("goal").min_dihedral = 25;
-  add("high goal").min_dihedral = 45;
-  ImproveOptions& most = add("max");
-  most.raise_min_dihedral = true;
-  most.iterations = 3;
-  add("bulk nodes").bulk_nodes = true;
-  add("coarsen").coarsen = true;
-  add("paper").compat = Compat::kJpdc2013;
-  ImproveOptions& inserting = add("paper with insertion");
-  inserting.compat = Compat::kJpdc2013;
-  inserting.ops = Ops::kDefault | Ops::kInsert;
-  add("kinds in turn").rounds = Rounds::kByKind;
-  add("kinds mixed").rounds = Rounds::kMixed;
-  add("candidates").smoother = Smoother::kCandidates;
-  add("Laplacian").smoother = Smoother::kLaplacian;
-  add("Taubin").smoother = Smoother::kTaubin;
-  add("radius ratio").metric = Metric::kRadiusRatio;
-  ImproveOptions& cluster = add("cluster search");
-  cluster.ops = Ops::kDefault | Ops::kCluster;
-  cluster.min_dihedral = 30;
-#ifdef HFR_SURFACE
-  add("flat").surface.mode = SurfaceMode::kFlat;
-  ImproveOptions& flat_goal = add("flat with a goal");
-  flat_goal.surface.mode = SurfaceMode::kFlat;
-  flat_goal.min_dihedral = 30;
-  add("free").surface.mode = SurfaceMode::kFree;
-  ImproveOptions& free_goal = add("free with a goal");
-  free_goal.surface.mode = SurfaceMode::kFree;
-  free_goal.min_dihedral = 25;
-  ImproveOptions& free_coarse = add("free, coarsen");
-  free_coarse.surface.mode = SurfaceMode::kFree;
-  free_coarse.coarsen = true;
-#endif
+  std::vector<Driver> all = courses();
+  for (Driver& driver : variations()) all.push_back(std::move(driver));
+  for (std::size_t i = 0; i < all.size(); i += 4) all[i].options.statistics = true;
   return all;
 }
 

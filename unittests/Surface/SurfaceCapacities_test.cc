@@ -127,6 +127,28 @@ TEST(SurfaceCapacities, VertexOf64FacesIsCollapsedAndOneOf65LeftAlone) {
   }
 }
 
+TEST(SurfaceCapacities, ChangeThatTouches16RegionsIsJudgedAndOneOf17Refused) {
+  for (const Index n : {Index{15}, Index{16}, Index{17}, Index{60}}) {
+    TetMesh mesh = disc(n, {0, 0, 0});
+    for (Index i = 0; i < n; ++i) mesh.set_region(C(i), static_cast<int>(i));
+    SurfaceOptions options;
+    options.mode = SurfaceMode::kFree;
+    options.hausdorff = 0.1;
+    const SurfaceMesh surface(mesh, options);
+    std::vector<std::array<VertexHandle, 3>> faces;
+    surface.star(V(0), faces);
+    ASSERT_EQ(faces.size(), 2 * n) << "of the boundary, and between the regions";
+    std::vector<Triangle> removed, created;
+    for (const auto& f : faces) {
+      removed.push_back({mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])});
+      created.push_back(removed.back());
+      for (Vec3& p : created.back())
+        if (p == mesh.point(V(0))) p = {1e-6, 2e-6, 0};
+    }
+    EXPECT_EQ(surface.keeps_shape(faces, removed, created), n <= 16) << n;
+  }
+}
+
 TEST(SurfaceCapacities, TrianglesRoundAVertexMayBeAnyNumber) {
   for (const Index n : {Index{11}, Index{12}, Index{13}, Index{64}, Index{65}, Index{300}}) {
     TriangleMesh mesh;

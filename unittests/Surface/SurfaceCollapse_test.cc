@@ -73,5 +73,21 @@ TEST(SurfaceCollapse, CornersHaveNoTargetsAndVerticesOfAFeatureOnlyAlongIt) {
   EXPECT_EQ(n_on_edges, 24);
 }
 
+TEST(SurfaceCollapse, VertexOfARegionOfOneCellDoesNotLayItsFacesUponOneAnother) {
+  // The second cell is flat: vertex 3 is in the middle of the edge from 1 to 4, and with it the region would
+  // go.
+  TetMesh mesh =
+      build({{1, 1, 2}, {2, 2, 4}, {3, 2, 1}, {2, 1, 2}, {2, 0, 0}, {0, -1, 3}},
+            std::vector<Corners>{{3, 1, 2, 5}, {2, 1, 4, 3}, {2, 3, 4, 5}, {3, 5, 4, 1}, {1, 2, 0, 4}});
+  SurfaceMesh whole(mesh, mode(SurfaceMode::kFree));
+  ASSERT_EQ(whole.motion_constraint(V(3)).kind, SurfaceKind::kInside);
+  mesh.set_region(C(1), 1);
+  SurfaceMesh surface(mesh, mode(SurfaceMode::kFree));
+  ASSERT_EQ(surface.motion_constraint(V(3)).kind, SurfaceKind::kCurve);
+  std::vector<VertexHandle> targets;
+  surface.collapse_targets(V(3), targets);
+  EXPECT_TRUE(targets.empty());
+}
+
 }  // namespace
 }  // namespace hfr::test

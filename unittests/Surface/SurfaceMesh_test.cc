@@ -323,5 +323,32 @@ TEST(SurfaceDistance, IsThatOfAllPointsFromAllTriangles) {
   }
 }
 
+TEST(SurfaceMesh, VertexInWhichTwoPlanesTouchStays) {
+  // The middle of the upper side of one box is that of a side of the other.
+  for (const bool touch : {false, true}) {
+    const generate::Arrays box = generate::box({2, 2, 2});
+    generate::Arrays both = box;
+    const auto n = static_cast<Index>(box.points.size());
+    for (Vec3 p : box.points) both.points.push_back(p + Vec3{0.5, 0, 0.5});
+    const Vec3 place = {0.5, 0.5, 1};
+    const auto at = [&](Index first) {
+      return static_cast<Index>(std::find(both.points.begin() + first, both.points.end(), place) -
+                                both.points.begin());
+    };
+    const Index one = at(0), other = at(n);
+    ASSERT_LT(one, n);
+    ASSERT_LT(other, 2 * n);
+    for (auto cell : box.cells) {
+      for (Index& v : cell) v = v + n == other && touch ? one : v + n;
+      both.cells.push_back(cell);
+    }
+    const TetMesh mesh = build(both.points, both.cells);
+    SurfaceOptions options;
+    options.mode = SurfaceMode::kFlat;
+    const SurfaceMesh surface(mesh, options);
+    EXPECT_EQ(surface.motion_constraint(V(one)).kind, touch ? SurfaceKind::kFixed : SurfaceKind::kFacet);
+  }
+}
+
 }  // namespace
 }  // namespace hfr::test

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "HalfFace/Generate.hh"
@@ -84,6 +85,16 @@ TEST(SearchByHalving, EndsWhereHalvingTwiceGoesBeyondTheLast) {
     return 2;
   });
   EXPECT_EQ(n_looks, 2);
+}
+
+TEST(SearchByHalving, EndsWhereEveryStepIsBetterThanTheLast) {
+  int looks = 0;
+  const auto further = [&](double) {
+    if (++looks > 1'000'000) throw std::runtime_error("for ever");
+    return 0;
+  };
+  search_by_halving(1.0, 3, further);
+  EXPECT_EQ(looks, kMostSteps + 2);
 }
 
 TEST(SearchPlacesByHalving, ComesWithinTheLastRadiusOfTheHighestPlace) {

@@ -65,6 +65,14 @@ TEST(Options, NumbersThatAreNoneAreRefusedEverywhere) {
   expect_refused(tool, "in.mesh -o out.mesh --time-limit -1", "a number above 0 is wanted, not '-1'");
 }
 
+TEST(Options, NamesThatThereAreNotAreRefusedWithThoseThatThereAre) {
+  Tool tool;
+  tool.write("in.mesh", kTwoCells);
+  expect_refused(tool, "in.mesh -o out.mesh --surface soft", "soft not in {frozen,flat,free}");
+  expect_refused(tool, "in.mesh -o out.mesh --work-group 3", "3 not in {0,1,2,4,");
+  expect_refused(tool, "generate cavity -o out.mesh --field 1", "1 not in {gaussians,bulk-shear}");
+}
+
 TEST(Options, TheLargestSeedIsTaken) {
   Tool tool;
   EXPECT_EQ(tool.run("generate box --n 1 1 1 --seed 18446744073709551615 -o out.mesh").code, 0);

@@ -5,12 +5,12 @@ set -euo pipefail
 check=$1
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-mkdir -p "$tree"/{kernels,src/{Parallel,HalfFace,Quality,IO},apps/hfremesh}
+mkdir -p "$tree"/{kernels,src/{Parallel,HalfFace,Quality,IO},apps/hfremesh,bindings/c}
 
 clean() {
   printf 'set(HEADERS base.h)\n' > "$tree/kernels/CMakeLists.txt"
   : > "$tree/kernels/base.h"
-  rm -f "$tree/kernels/new.h" "$tree"/src/*/New.{cc,hh} "$tree/src/IO/Inner.hh"
+  rm -f "$tree/kernels/new.h" "$tree/bindings/c/Mesh.cc" "$tree"/src/*/New.{cc,hh} "$tree/src/IO/Inner.hh"
   printf 'hfr_layer(Parallel HEADERS For.hh)\n' > "$tree/src/Parallel/CMakeLists.txt"
   printf 'hfr_layer(HalfFace SOURCES Mesh.cc HEADERS Mesh.hh)\n' > "$tree/src/HalfFace/CMakeLists.txt"
   printf 'hfr_layer(IO SOURCES Read.cc HEADERS Read.hh PRIVATE_HEADERS\n Inner.hh)\n' > "$tree/src/IO/CMakeLists.txt"
@@ -44,6 +44,10 @@ echo '  #pragma omp atomic' >> "$tree/src/IO/Read.cc"
 expect_fault 'src/IO/Read.cc:3: only src/Parallel knows the thread library'
 echo '#include <omp.h>' >> "$tree/apps/hfremesh/main.cc"
 expect_fault 'apps/hfremesh/main.cc:4: only src/Parallel knows the thread library'
+echo '#include <hfremesh/IO/Inner.hh>' > "$tree/bindings/c/Mesh.cc"
+expect_fault 'bindings/c/Mesh.cc:1: IO/Inner.hh is not a public header'
+echo 'void f() { std::cerr << "no"; }' > "$tree/bindings/c/Mesh.cc"
+expect_fault 'bindings/c/Mesh.cc:1: bindings/ neither prints'
 echo 'void f() { std::cerr << "no"; }' >> "$tree/src/IO/Read.cc"
 expect_fault 'src/IO/Read.cc:3: src/ neither prints'
 echo 'void f() { fprintf(stderr, "no"); }' >> "$tree/src/IO/Read.cc"

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ImproveLine.hh"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "Json.hh"
+#include "Locks.hh"
+#include "Numbers.hh"
+
+namespace hfr::app {
+namespace {
+
+constexpr double kLargestDihedral = 70.5;  // degrees; the regular tetrahedron has 70.53
+
+/// What is wrong with the argument of --min-dihedral; nothing when it is well.
+std::string degrees_or_max(std::string& text) {
+  const std::optional<double> degrees = real_of(text);
+  if (text == "max" || (degrees && *degrees > 0 && *degrees < kLargestDihedral)) return "";
+  return fmt::format("a number of degrees between 0 and {} or 'max' is wanted, not {}", kLargestDihedral,
+                     in_quotes(text));
+}
+
+/// What is wanted, and what may be done for it.
+void add_goal_options(Command command, ImproveLine& line) {
+  command
+      .option("--min-dihedral", line.min_dihedral,
+              "Goal for the smallest dihedral angle; only cells that miss it are worked on. 'max': as large "
+              "as can be had")
+      .type_name("DEG")
+      .check(degrees_or_max);
+  command
+      .option("--min-angle", line.min_angle,
+              "For a surface without tetrahedra: goal for the smallest angle of its triangles")
+      .type_name("DEG")
+      .check(real_number(0, 60));
+  command.option("--iterations", line.improve.iterations, "At most N bulk iterations; 0 is no limit")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<int>::max()));
+  command.option("--time-limit", line.time_limit, "Stop improving after S seconds; exit code 5 then")
+      .type_name("S")
+      .check(positive_number());
+  command.option("--ops", line.ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
+      .type_name("LIST");
+  command.flag("--no-insert", line.no_insert, "No new vertices");
+  command.flag("--bulk-nodes", line.improve.bulk_nodes,
+               "Remove vertices in the bulk stage, too: fewer cells, and a lower worst angle on most meshes");
+  command
+      .option("--min-cells", line.improve.min_cells,
+              "No vertex is removed below N cells; 0: 81 % of the input's, without a bound for 'max'")
+      .type_name("N")
+      .check(whole_number());
+  command
+      .option("--max-cells", line.improve.max_cells,
+              "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
+      .type_name("N")
+      .check(whole_number());
+  command.flag("--coarsen", line.improve.coarsen,
+               "Remove vertices wherever that makes the worst angles there better, however few cells are "
+               "left; --min-cells still holds");
+}
+
+/// How it is done.
+void add_method_options(Command command, ImproveLine& line) {
+  command.option("--metric", line.metric, "Quality metric of the bulk passes; volume-length by default")
+      .type_name("NAME");
+  command
+      .option("--rounds", line.rounds,
+              "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
+      .type_name("NAME");
+  command.option("--smoother", line.smoother, "newton, candidates, laplacian or taubin").type_name("NAME");
+  command.option("--compat", line.compat, "Run a published pipeline exactly: jpdc2013")
+      .type_name("NAME")
+      .one_of({"jpdc2013"});
+}
+
+void add_surface_options(Command command, ImproveLine& line) {
+  command
+      .option("--surface", line.surface,
+              "What may happen to the surface: frozen (nothing, the default), flat (new triangles in "
+              "planar faces), free (within --hausdorff of the input)")
+      .type_name("MODE")
+      .one_of({"frozen", "flat", "free"});
+  command
+      .option("--hausdorff", line.hausdorff,
+              "Largest distance between input and output surface, with --surface free; 0: as flat. Default: "
+              "0.3 of the mean edge, at most 0.5 % of the diagonal")
+      .type_name("LENGTH")
+      .check(real_number(0));
+  command
+      .option("--feature-angle", line.feature_angle,
+              "Edges sharper than this stay, with --surface free; 40 by default")
+      .type_name("DEG")
+      .check(real_number(0, 180));
+  command.flag("--label-features", line.label_features,
+               "Write sharp edges and corners of the surface as labels");
+  command.flag("--ignore-labels", line.ignore_labels,
+               "Leave out labels of triangles, edges and vertices that would keep something as it is");
+  command
+      .option("--fix", line.fix,
+              "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "
+              "separate by commas")
+      .type_name("WHAT")
+      .delimiter(',');
+  command
+      .option("--periodic", line.periodic,
+              "Patches A:B that match each other by a translation: their vertices move together")
+      .type_name("A:B")
+      .delimiter(',');
+}
+
+void add_device_options(Command command, ImproveLine& line) {
+  command
+      .option("--device", line.device,
+              "Where the large passes run: cpu, auto, opencl or opencl:PLATFORM.DEVICE; the output is the "
+              "same everywhere")
+      .type_name("NAME");
+  command.flag("--hybrid", line.improve.hybrid, "On a device, smooth only, and reconnect on the processor");
+  command
+      .option("--work-group", line.improve.device_tuning.work_group,
+              "Work-items of a group on a device, a power of two; 0 chooses")
+      .type_name("N")
+      .one_of({0, 1, 2, 4, 8, 16, 32, 64, 128, 256});
+  command.flag("--profile", line.improve.device_tuning.profile, "Measure every kernel; in the JSON report");
+}
+}  // namespace
+
+void add_improve_options(Command command, ImproveLine& line, CommonOptions& common) {
+  command.option("IN", line.input, "Mesh to read").required().type_name("FILE").transform(stream_name());
+  command.option("-o,--output", line.output, "Mesh to write; may be IN")
+      .type_name("FILE")
+      .transform(stream_name());
+  add_format_options(command, common, true, true);
+  command.flag("--dry-run", line.dry_run, "Report only, write no mesh");
+  command.flag("--plan", line.plan, "Print the stages and numbers of the run instead of doing it");
+  add_goal_options(command, line);
+  command.option("--ids", line.ids, "Write the cells below the goal and why they are; - is stdout")
+      .type_name("FILE")
+      .transform(stream_name());
+  add_method_options(command, line);
+  add_surface_options(command, line);
+  add_device_options(command, line);
+  command.option("--seed", line.improve.seed, "Seed of the order among equal candidates")
+      .type_name("N")
+      .check(whole_number());
+  command.flag("--progress", line.progress, "Print progress as lines on stderr");
+  add_split_option(command, common);
+  add_write_options(command, line.write);
+  add_common_options(command, common);
+}
+
+ImproveOptions improve_options(const ImproveLine& line, const CommonOptions& common) {
+  ImproveOptions options = line.improve;
+  if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
+  if (line.min_dihedral == "max")
+    options.raise_min_dihedral = true;
+  else if (!line.min_dihedral.empty())
+    options.min_dihedral = real_of(line.min_dihedral);
+  if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
+  if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
+  if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);
+  if (!line.rounds.empty()) options.rounds = rounds_from_name(line.rounds);
+  if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
+  if (!line.device.empty()) options.device = device_choice_from_name(line.device);
+  if (line.time_limit > 0) options.time_limit = line.time_limit;
+  if (line.surface == "flat") options.surface.mode = SurfaceMode::kFlat;
+  if (line.surface == "free") options.surface.mode = SurfaceMode::kFree;
+  if (line.hausdorff >= 0) options.surface.hausdorff = line.hausdorff;
+  if (line.feature_angle) options.surface.feature_angle = *line.feature_angle;
+  add_locks(options.surface, line.fix, line.periodic);
+  options.policy = common.policy();
+  options.statistics = common.prints_table() || !common.json.empty() || !line.ids.empty();
+  return options;
+}
+
+Json options_json(const ImproveLine& line, const ImproveOptions& options) {
+  Json json;
+  json["min_dihedral"] = options.min_dihedral ? Json(*options.min_dihedral) : Json();
+  if (options.raise_min_dihedral) json["min_dihedral"] = "max";
+  json["iterations"] = options.iterations;
+  json["time_limit"] = line.time_limit > 0 ? Json(line.time_limit) : Json();
+  json["ops"] = ops_to_list(options.ops);
+  json["metric"] = metric_name(options.metric);
+  json["min_cells"] = options.min_cells > 0 ? Json(options.min_cells) : Json();
+  json["coarsen"] = options.coarsen;
+  json["max_cells"] = options.max_cells > 0 ? Json(options.max_cells) : Json();
+  json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
+  json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
+  json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
+  json["surface"] = line.surface.empty() ? "frozen" : line.surface;
+  json["device"] = line.device.empty() ? "cpu" : line.device;
+  json["hybrid"] = options.hybrid;
+  json["bulk_nodes"] = options.bulk_nodes;
+  json["seed"] = options.seed;
+  json["ignore_labels"] = line.ignore_labels;
+  json["dry_run"] = line.dry_run;
+  return json;
+}
+
+std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_tetrahedra) {
+  std::vector<std::string> notes;
+  const auto idle = [&](bool given, const char* option, const char* without) {
+    if (given) notes.push_back(fmt::format("{} counts only with {}", option, without));
+  };
+  const bool frozen = on_tetrahedra && (line.surface.empty() || line.surface == "frozen");
+  const bool free = line.surface == "free" || (line.surface.empty() && !on_tetrahedra);
+  idle(!free && line.hausdorff >= 0, "--hausdorff", "--surface free");
+  idle(!free && line.feature_angle, "--feature-angle", "--surface free");
+  idle(frozen && !line.fix.empty(), "--fix", "--surface flat or free");
+  idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
+  const bool on_cpu = line.device.empty() || line.device == "cpu";
+  idle(on_cpu && line.improve.hybrid, "--hybrid", "--device");
+  idle(on_cpu && line.improve.device_tuning.work_group > 0, "--work-group", "--device");
+  idle(on_cpu && line.improve.device_tuning.profile, "--profile", "--device");
+  return notes;
+}
+
+}  // namespace hfr::app

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_APPS_IMPROVE_LINE_HH
+#define HFR_APPS_IMPROVE_LINE_HH
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Options.hh"
+#include "Parser.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/Remesh/Improve.hh"
+
+namespace hfr::app {
+
+/// What of a command line counts for `improve`, as it was given; names are looked up before the input is
+/// read.
+struct ImproveLine {
+  std::string input, output;
+  bool dry_run = false;
+  bool plan = false;
+  bool progress = false;
+  bool label_features = false;
+  bool ignore_labels = false;
+  std::string ops, metric, smoother, rounds, compat;
+  std::string surface;
+  std::vector<std::string> fix, periodic;
+  double hausdorff = -1;  ///< negative = not given
+  std::optional<double> feature_angle;
+  std::string device;  ///< as device_choice_from_name() has it
+  bool no_insert = false;
+  std::string min_dihedral;  ///< degrees or "max"
+  double min_angle = 0;      ///< degrees, for surfaces; 0 = none
+  std::string ids;           ///< file for the cells that are stuck, empty for none
+  double time_limit = 0;     ///< 0 = none
+  io::WriteOptions write;
+  ImproveOptions improve;
+};
+
+/// `line` and `common` must outlive the parser's run.
+void add_improve_options(Command command, ImproveLine& line, CommonOptions& common);
+/// What the library is asked for. Throws for a name that there is not.
+ImproveOptions improve_options(const ImproveLine& line, const CommonOptions& common);
+/// The same for the report.
+nlohmann::ordered_json options_json(const ImproveLine& line, const ImproveOptions& options);
+/// Options that count for nothing without another one.
+std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_tetrahedra);
+
+}  // namespace hfr::app
+
+#endif

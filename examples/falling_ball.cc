@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A ball falls through a box that is far longer than the ball is wide. Only the motion of the ball's surface
+// is given; the vertices inside follow as those of an elastic body, and what that squeezes is repaired. Shows
+// a time limit for each repair and a cancel. Ends with 1 where a step has left an inverted cell. Usage:
+// example_falling_ball [N STEPS]     6 N³ cells in the box round the ball
+#include <cstdio>
+#include <cstdlib>
+#include <hfremesh/Remesh/Improve.hh>
+#include <hfremesh/Remesh/Remesher.hh>
+
+#include "Meshes.hh"
+
+namespace {
+
+/// The box round the ball made longer: what is above and below the middle is stretched.
+hfr::TetMesh long_box(hfr::Index n, double length) {
+  hfr::TetMesh mesh = example::box_round_ellipsoid(n, {0.35, 0.35, 0.35});
+  for (hfr::VertexHandle v : mesh.vertices()) {
+    hfr::Vec3 p = mesh.point(v);
+    const double beyond = std::max(0.0, std::abs(p.z) - 0.5) / 0.5;
+    p.z += (p.z < 0 ? -1 : 1) * beyond * (length - 1);
+    mesh.set_point(v, p);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const auto n = static_cast<hfr::Index>(argc > 2 ? std::atoi(argv[1]) : 10);
+  const int n_steps = argc > 2 ? std::atoi(argv[2]) : 20;
+  const double length = 3;  // half of the box's
+  hfr::TetMesh mesh = long_box(n, length);
+  hfr::improve(mesh);
+
+  hfr::RemesherOptions options;
+  options.improve.min_dihedral = 15;
+  options.improve.time_limit = 10;  // seconds, of each repair
+  bool cancel = false;
+  options.improve.cancel = [&] { return cancel; };
+  options.motion = hfr::Motion::kElastic;
+  options.on_inversion = hfr::OnInversion::kSubsteps;
+  hfr::Remesher remesher(mesh, options);
+  const auto fall = [&](double by) {
+    std::vector<hfr::Vec3> displacement(mesh.n_vertices());
+    for (hfr::VertexHandle v : mesh.boundary_vertices()) {
+      const hfr::Vec3 p = mesh.point(v);
+      if (std::max(std::abs(p.x), std::abs(p.y)) < 0.9 && std::abs(p.z) < length - 0.1)
+        displacement[v.idx()].z = by;
+    }
+    return displacement;
+  };
+  double worst = 180;
+  std::size_t n_repairs = 0, n_inverted = 0;
+  const double way = 3.5;  // five diameters
+  for (int i = 0; i < n_steps; ++i) {
+    const double by = i < n_steps / 2 ? -way / n_steps : way / n_steps;  // and up again
+    const hfr::StepResult step = remesher.step(fall(by));
+    worst = std::min(worst, step.min_dihedral);
+    n_repairs += step.repairs.size();
+    n_inverted += step.n_inverted;
+  }
+  std::printf("%d steps, %zu repairs: smallest angle %.2f degrees, %zu cells\n", n_steps, n_repairs, worst,
+              mesh.n_cells());
+  cancel = true;  // what a signal handler might set
+  const hfr::StepResult last = remesher.step(fall(-2.5));
+  std::printf("cancelled: %s, %zu inverted cells\n",
+              last.undone ? "the step was undone" : "the step was done", last.n_inverted);
+  return n_inverted + last.n_inverted == 0 ? 0 : 1;
+} catch (const hfr::Error& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 2;
+}

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_CELL_WATCH_HH
+#define HFR_REMESH_CELL_WATCH_HH
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "HalfFace/TetMesh.hh"
+#include "Remesh/Remesher.hh"
+
+namespace hfr {
+
+/// Values by cell or vertex, brought over a repair: those of what is created are `made`.
+template <class T, class H>
+void carry(std::vector<T>& values, const std::vector<H>& old_of, T made) {
+  if (values.empty()) return;
+  std::vector<T> now(old_of.size(), made);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (old_of[i].is_valid()) now[i] = values[old_of[i].idx()];
+  values = std::move(now);
+}
+
+/// What a Remesher knows of the cells of its mesh: the quality of each, which are bad by the triggers, and
+/// which of these call for a repair. Looks only at what it is told to look at, and allocates nothing then.
+class CellWatch {
+ public:
+  /// `triggers` and the mesh outlive this object.
+  CellWatch(const TetMesh& mesh, const RepairTriggers& triggers, par::Policy policy);
+
+  /// The mesh is another one: nothing is known of it, nothing is excused, and cells have the volumes at rest
+  /// that they have now. Looks at every cell.
+  void reset();
+  void look_at_all();
+  /// Looks at the cells of these vertices; returns how many there are.
+  std::size_t look_at_cells_of(std::span<const VertexHandle> vertices);
+  /// After a repair: looks at what it has made and moved. What is bad then, and not inverted, will have to
+  /// become worse before it calls for the next repair, unless this one was cut short.
+  void follow(const Edits& edits, bool was_cut_short);
+
+  /// The strongest cause that a cell gives; kNone for none.
+  RepairCause cause() const;
+  std::size_t n_inverted() const { return totals_.inverted; }
+  std::vector<CellHandle> inverted() const;
+  double min_dihedral() const;  ///< degrees
+
+  /// What looking at the same cells again does not bring back.
+  struct Memory {
+    std::vector<double> left, rest_volume;
+    std::vector<std::uint8_t> excused;
+  };
+  Memory memory() const { return {left_, rest_volume_, excused_}; }
+  /// The mesh is again the one that the memory is of; look_at_all() is to follow.
+  void restore(Memory memory);
+
+ private:
+  /// Why a cell is bad, a bit each.
+  enum Bad : std::uint8_t {
+    kIsInverted = 1,
+    kIsBelow = 2,
+    kHasMetric = 4,
+    kIsSqueezed = 8,
+    kIsIndicated = 16
+  };
+  struct Totals {
+    std::size_t active = 0;  ///< bad cells that call for a repair
+    std::size_t inverted = 0;
+    std::uint8_t bits = 0;  ///< of the active ones
+    bool any = false;       ///< bad cells, active or not
+
+    Totals& operator+=(const Totals& o) {
+      active += o.active;
+      inverted += o.inverted;
+      bits |= o.bits;
+      any = any || o.any;
+      return *this;
+    }
+  };
+
+  void look_at(std::span<const CellHandle> cells);
+  void update(CellHandle c, double value);
+  bool is_plainly_good(double value) const { return value >= trigger_ && value > 0 && !asks_more_; }
+  Totals totals_of(CellHandle c) const;
+  std::uint8_t badness(CellHandle c) const;
+  void forget_looks();
+  void excuse();
+
+  const TetMesh& mesh_;
+  const RepairTriggers& triggers_;
+  par::Policy policy_;
+  double trigger_;  // decision value of triggers.min_dihedral
+  bool asks_more_;  // triggers look at more of a cell than its dihedrals
+
+  std::vector<double> quality_;        // by cell: decision value of MinDihedral
+  std::vector<std::uint8_t> bad_;      // by cell: bits of Bad
+  std::vector<std::uint8_t> excused_;  // by cell: bits that the last repair had to leave
+  std::vector<double> left_;           // by cell: its value then
+  std::vector<double> rest_volume_;    // by cell, where asked for
+  bool has_bad_ = false;               // some entry of bad_ may not be 0
+  Totals totals_;
+
+  // Of the last look; kept for their memory.
+  std::vector<CellHandle> cells_;
+  std::vector<std::uint32_t> stamp_;  // by cell
+  std::uint32_t stamp_now_ = 0;
+  std::vector<Totals> partial_;
+};
+
+}  // namespace hfr
+
+#endif

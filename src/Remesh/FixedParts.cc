@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/FixedParts.hh"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "HalfFace/Errors.hh"
+
+namespace hfr {
+namespace {
+
+template <std::size_t N>
+std::string name_of(const char* kind, const std::array<VertexHandle, N>& vertices) {
+  std::string text = std::string("fix ") + kind;
+  for (std::size_t i = 0; i < N; ++i) text += (i == 0 ? ':' : '-') + std::to_string(vertices[i].idx());
+  return text;
+}
+
+template <std::size_t N>
+void require_vertices(const TetMesh& mesh, const char* kind, const std::array<VertexHandle, N>& vertices) {
+  for (VertexHandle v : vertices)
+    HFR_REQUIRE(mesh.exists(v), name_of(kind, vertices) + ": there are " + std::to_string(mesh.n_vertices()) +
+                                    " vertices, counted from 0");
+}
+
+}  // namespace
+
+void require_fixed_parts(const TetMesh& mesh, const SurfaceOptions& options) {
+  for (VertexHandle v : options.fixed_vertices) require_vertices<1>(mesh, "vertex", {v});
+  for (const auto& edge : options.fixed_edges) {
+    require_vertices(mesh, "edge", edge);
+    HFR_REQUIRE(mesh.find_edge(edge[0], edge[1]).is_valid(),
+                name_of("edge", edge) + ": there is no such edge");
+  }
+  for (const auto& face : options.fixed_faces) {
+    require_vertices(mesh, "face", face);
+    HFR_REQUIRE(mesh.find_face(face).is_valid(), name_of("face", face) + ": there is no such face");
+  }
+  const auto& labelled = mesh.labels().faces.entries();
+  for (int patch : options.fixed_patches)
+    HFR_REQUIRE(std::ranges::any_of(labelled, [&](const auto& entry) { return entry.value == patch; }),
+                "fix patch:" + std::to_string(patch) + ": no face has this label");
+}
+
+}  // namespace hfr

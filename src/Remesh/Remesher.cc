@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Remesher.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "HalfFace/Errors.hh"
+#include "HalfFace/Geometry.hh"
+#include "Remesh/CellWatch.hh"
+#include "Remesh/Coordinates.hh"
+#include "Remesh/Improve.hh"
+#include "Remesh/MeshMotion.hh"
+#include "Remesh/Strategy.hh"
+
+namespace hfr {
+namespace {
+
+/// The property by which what is left of a displacement gets over a repair.
+constexpr const char* kRest = "hfr: rest of the displacement";
+
+/// What the options hold by its vertices keeps them under their new handles: nothing that is fixed goes.
+void rename_fixed(SurfaceOptions& options, const std::vector<VertexHandle>& new_of) {
+  const auto rename = [&](VertexHandle& v) {
+    if (v.idx() < new_of.size()) v = new_of[v.idx()];
+  };
+  for (VertexHandle& v : options.fixed_vertices) rename(v);
+  for (auto& edge : options.fixed_edges) std::for_each(edge.begin(), edge.end(), rename);
+  for (auto& face : options.fixed_faces) std::for_each(face.begin(), face.end(), rename);
+}
+
+double mean_edge(const TetMesh& mesh) {
+  double sum = 0;
+  for (CellHandle c : mesh.cells())
+    for (const auto& e : kEdgeCorners) {
+      const auto& v = mesh.cell_vertices(c);
+      sum += norm(mesh.point(v[e[1]]) - mesh.point(v[e[0]]));
+    }
+  return sum / (6.0 * static_cast<double>(std::max<std::size_t>(mesh.n_logical_cells(), 1)));
+}
+
+void validate(const RemesherOptions& options) {
+  hfr::validate(options.improve);
+  const RepairTriggers& triggers = options.triggers;
+  const auto at_least_0 = [](double value, const char* name) {
+    HFR_REQUIRE(value >= 0 && std::isfinite(value), std::string("trigger ") + name + ": must be 0 or more");
+  };
+  at_least_0(triggers.min_dihedral, "min_dihedral");
+  at_least_0(triggers.jacobian_ratio, "jacobian_ratio");
+  at_least_0(triggers.motion, "motion");
+  HFR_REQUIRE(triggers.every >= 0, "trigger every: must be 0 or more");
+  HFR_REQUIRE(options.max_substeps >= 1, "max_substeps: must be 1 or more");
+  for (const auto& [metric, value] : triggers.metrics)
+    HFR_REQUIRE(std::isfinite(value), "trigger of " + std::string(metric_name(metric)) + ": must be finite");
+  if (options.improve.min_dihedral)
+    HFR_REQUIRE(triggers.min_dihedral <= *options.improve.min_dihedral,
+                "trigger min_dihedral: must not be above the goal, or every step would repair");
+}
+
+}  // namespace
+
+class Remesher::State {
+ public:
+  State(TetMesh& mesh, RemesherOptions options)
+      : mesh_(mesh),
+        options_(std::move(options)),
+        policy_(options_.improve.policy),
+        watch_(mesh, options_.triggers, policy_) {
+    validate(options_);
+    validate_fields(mesh, options_.fields);
+    wants_parents_ = options_.parents ||
+                     std::any_of(options_.fields.begin(), options_.fields.end(),
+                                 [](const FieldTransfer& field) { return field.how == Transfer::kInherit; });
+    options_.improve.maps = true;
+    options_.improve.statistics = false;
+    const std::size_t n = mesh.n_logical_cells();
+    if (options_.improve.min_cells == 0) options_.improve.min_cells = n * kStepEffort.fewest_of_hundred / 100;
+    if (options_.improve.max_cells == 0)
+      options_.improve.max_cells = (n * kStepEffort.most_of_hundred + 99) / 100;
+    reset();
+  }
+
+  void reset();
+  void require_displacement(std::span<const Vec3> displacement);
+  StepResult step(std::span<const Vec3> displacement);
+  MoveResult move(std::span<const Vec3> displacement);
+  RepairCause needs_repair() const;
+  RepairResult repair();
+  std::vector<FieldReport> transfer();
+
+  const CellWatch& watch() const { return watch_; }
+  std::span<const std::uint64_t> vertex_ids() const { return vertex_ids_; }
+  std::span<const std::uint64_t> cell_ids() const { return cell_ids_; }
+
+ private:
+  /// All that a step may have to take back, but for the points that its first move has changed.
+  struct Before {
+    std::shared_ptr<const TetMesh> mesh;
+    std::vector<VertexHandle> moved;
+    std::vector<Vec3> points;
+    CellWatch::Memory cells;
+    std::vector<double> travelled, travelled_before;
+    std::vector<std::uint64_t> vertex_ids, cell_ids;
+    SurfaceOptions surface;
+  };
+
+  std::span<const Vec3> followed(std::span<const Vec3> displacement);
+  void list_moved(std::span<const Vec3> displacement);
+  void set_points(std::span<const Vec3> displacement, double fraction);
+  void put_points_back();
+  MoveResult take(std::span<const Vec3> displacement, OnInversion on_inversion);
+  void note_motion(std::span<const Vec3> displacement, double fraction);
+
+  RepairResult repair_mesh();
+  void follow_edits(const Edits& edits, bool was_cut_short);
+  bool repair_in_step(std::span<const FieldTransfer> fields, StepResult& result);
+  void run_step(std::span<const Vec3> displacement, StepResult& result);
+  void undo();
+
+  TetMesh& mesh_;
+  RemesherOptions options_;
+  par::Policy policy_;
+
+  CellWatch watch_;
+  std::vector<double> travelled_;  // by vertex, where asked for
+  std::vector<std::uint64_t> vertex_ids_, cell_ids_;
+  std::uint64_t next_vertex_id_ = 0, next_cell_id_ = 0;
+  bool wants_parents_ = false;
+  double mean_edge_ = 0;
+  double farthest_ = 0;  // of travelled_
+  int steps_ = 0;        // since the last repair
+
+  // Of the move that was done last; kept for their memory.
+  std::vector<VertexHandle> moved_;
+  std::vector<Vec3> was_;
+  std::vector<double> travelled_before_;  // of moved_, where asked for
+  std::vector<std::uint8_t> known_;
+  std::vector<Vec3> follow_;
+
+  std::shared_ptr<TetMesh> before_;  // the mesh before the last repair
+  std::optional<Edits> pending_;     // of the last repair, whose fields wait
+  std::optional<Before> undo_;       // of the step in progress, once it has repaired
+  bool has_moved_ = false;           // points, in the step in progress
+  int steps_before_ = 0;             // steps_ before the step in progress
+  bool is_stale_ = false;            // the cells could not be looked at after a step was taken back
+};
+
+void Remesher::State::reset() {
+  pending_.reset();
+  if (mesh_.n_logical_cells() != mesh_.n_cells() || mesh_.n_logical_vertices() != mesh_.n_vertices())
+    mesh_.collect_garbage();
+  require_sound_coordinates(mesh_, policy_);
+  steps_ = 0;
+  if (options_.triggers.motion > 0) {
+    travelled_.assign(mesh_.n_vertices(), 0.0);
+    mean_edge_ = mean_edge(mesh_);
+  }
+  farthest_ = 0;
+  if (options_.ids) {
+    const auto number = [](std::vector<std::uint64_t>& ids, std::size_t size, std::uint64_t& next) {
+      ids.resize(size);
+      for (std::uint64_t& id : ids) id = next++;
+    };
+    number(vertex_ids_, mesh_.n_vertices(), next_vertex_id_);
+    number(cell_ids_, mesh_.n_cells(), next_cell_id_);
+  }
+  is_stale_ = false;
+  watch_.reset();
+}
+
+RepairCause Remesher::State::needs_repair() const {
+  if (watch_.cause() != RepairCause::kNone) return watch_.cause();
+  const RepairTriggers& triggers = options_.triggers;
+  if (triggers.motion > 0 && farthest_ > triggers.motion * mean_edge_) return RepairCause::kMotion;
+  if (triggers.every > 0 && steps_ >= triggers.every) return RepairCause::kSteps;
+  return RepairCause::kNone;
+}
+
+// --- moving ---
+
+void Remesher::State::require_displacement(std::span<const Vec3> displacement) {
+  if (is_stale_) watch_.look_at_all();
+  is_stale_ = false;
+  HFR_REQUIRE(displacement.size() == mesh_.n_vertices(),
+              "displacement: has " + std::to_string(displacement.size()) + " entries for " +
+                  std::to_string(mesh_.n_vertices()) + " vertices");
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    const Vec3 d = displacement[i];
+    HFR_REQUIRE(std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z),
+                "displacement: that of vertex " + std::to_string(i) + " is not finite");
+  }
+}
+
+/// The displacement of all vertices: as it is given, or with inner ones made to follow.
+std::span<const Vec3> Remesher::State::followed(std::span<const Vec3> displacement) {
+  if (options_.motion == Motion::kGiven) return displacement;
+  known_.assign(mesh_.n_vertices(), 0);
+  for (HalfFaceHandle h : mesh_.boundary_halffaces())
+    for (VertexHandle v : mesh_.halfface_vertices(h)) known_[v.idx()] = 1;
+  for (VertexHandle v : mesh_.vertices())
+    if (mesh_.is_fixed(v)) known_[v.idx()] = 1;
+  follow_.assign(displacement.begin(), displacement.end());
+  follow(mesh_, known_, options_.motion == Motion::kElastic, follow_);
+  return follow_;
+}
+
+void Remesher::State::list_moved(std::span<const Vec3> displacement) {
+  moved_.clear();
+  was_.clear();
+  travelled_before_.clear();
+  for (std::size_t i = 0; i < displacement.size(); ++i) {
+    if (displacement[i] == Vec3{}) continue;
+    moved_.push_back(VertexHandle(i));
+    was_.push_back(mesh_.point(VertexHandle(i)));
+    if (!travelled_.empty()) travelled_before_.push_back(travelled_[i]);
+  }
+}
+
+void Remesher::State::set_points(std::span<const Vec3> displacement, double fraction) {
+  has_moved_ = true;
+  par::for_each(policy_, moved_.size(), [&](std::size_t i) {
+    const Vec3 d = displacement[moved_[i].idx()];
+    mesh_.set_point(moved_[i], was_[i] + (fraction == 1 ? d : fraction * d));
+  });
+}
+
+void Remesher::State::put_points_back() {
+  for (std::size_t i = 0; i < moved_.size(); ++i) {
+    mesh_.set_point(moved_[i], was_[i]);
+    if (!travelled_.empty()) travelled_[moved_[i].idx()] = travelled_before_[i];
+  }
+}
+
+MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion on_inversion) {
+  MoveResult result;
+  list_moved(displacement);
+  result.n_moved = moved_.size();
+  if (moved_.empty()) return result;
+  const std::size_t inverted_before = watch_.n_inverted();
+  set_points(displacement, 1);
+  result.n_looked_at = watch_.look_at_cells_of(moved_);
+  if (on_inversion == OnInversion::kRepair || watch_.n_inverted() <= inverted_before) {
+    note_motion(displacement, 1);
+    return result;
+  }
+  if (on_inversion == OnInversion::kRefuse) {
+    result.refused = watch_.inverted();
+    put_points_back();
+    watch_.look_at_cells_of(moved_);
+    result.fraction = 0;
+    return result;
+  }
+  double safe = 0, unsafe = 1;
+  for (int i = 0; i < kStepEffort.halvings; ++i) {
+    const double middle = 0.5 * (safe + unsafe);
+    set_points(displacement, middle);
+    watch_.look_at_cells_of(moved_);
+    (watch_.n_inverted() <= inverted_before ? safe : unsafe) = middle;
+  }
+  set_points(displacement, safe);
+  watch_.look_at_cells_of(moved_);
+  result.fraction = safe;
+  note_motion(displacement, safe);
+  return result;
+}
+
+void Remesher::State::note_motion(std::span<const Vec3> displacement, double fraction) {
+  if (travelled_.empty()) return;
+  for (VertexHandle v : moved_) {
+    travelled_[v.idx()] += fraction * norm(displacement[v.idx()]);
+    farthest_ = std::max(farthest_, travelled_[v.idx()]);
+  }
+}
+
+MoveResult Remesher::State::move(std::span<const Vec3> displacement) {
+  require_displacement(displacement);
+  transfer();
+  const MoveResult result = take(followed(displacement), options_.on_inversion);
+  ++steps_;
+  return result;
+}
+
+// --- repairing ---
+
+/// Leaves the mesh as it was where improve() throws.
+RepairResult Remesher::State::repair_mesh() {
+  if (before_ && before_.use_count() == 1)
+    *before_ = mesh_;
+  else
+    before_ = std::make_shared<TetMesh>(mesh_);
+  Result run;
+  try {
+    run = improve(mesh_, options_.improve);
+  } catch (...) {
+    mesh_.restore(*before_);
+    throw;
+  }
+  RepairResult result;
+  result.stop = run.stop;
+  result.goal_reached = run.goal_reached;
+  result.edits = make_edits(*before_, mesh_, std::move(run.maps), policy_, wants_parents_);
+  follow_edits(result.edits, run.stop == Stop::kTimeLimit || run.stop == Stop::kCancelled);
+  return result;
+}
+
+/// Brings what is kept for each cell and vertex over a repair.
+void Remesher::State::follow_edits(const Edits& edits, bool was_cut_short) {
+  const MeshMaps& maps = edits.maps;
+  if (!travelled_.empty()) travelled_.assign(mesh_.n_vertices(), 0.0);
+  farthest_ = 0;
+  steps_ = 0;
+  rename_fixed(options_.improve.surface, maps.vertices);
+  carry(cell_ids_, maps.old_cells, std::uint64_t{0});
+  carry(vertex_ids_, maps.old_vertices, std::uint64_t{0});
+  if (options_.ids) {
+    for (const CreatedCell& c : edits.created_cells) cell_ids_[c.cell.idx()] = next_cell_id_++;
+    for (const PlacedVertex& v : edits.created_vertices) vertex_ids_[v.vertex.idx()] = next_vertex_id_++;
+  }
+  watch_.follow(edits, was_cut_short);
+}
+
+RepairResult Remesher::State::repair() {
+  transfer();
+  RepairResult result = repair_mesh();
+  pending_ = result.edits;
+  return result;
+}
+
+std::vector<FieldReport> Remesher::State::transfer() {
+  if (!pending_) return {};
+  const Edits edits = std::move(*pending_);
+  pending_.reset();
+  return transfer_fields(*before_, mesh_, edits, options_.fields, policy_);
+}
+
+// --- a step ---
+
+/// Repairs, and carries `fields` over. False where the run was cut short.
+bool Remesher::State::repair_in_step(std::span<const FieldTransfer> fields, StepResult& result) {
+  if (result.repairs.empty()) result.cause = needs_repair();
+  if (!undo_) {
+    undo_ = Before{.mesh = nullptr,
+                   .moved = moved_,
+                   .points = was_,
+                   .cells = watch_.memory(),
+                   .travelled = travelled_,
+                   .travelled_before = travelled_before_,
+                   .vertex_ids = vertex_ids_,
+                   .cell_ids = cell_ids_,
+                   .surface = options_.improve.surface};
+  }
+  RepairResult repair = repair_mesh();
+  if (!undo_->mesh) undo_->mesh = before_;
+  if (!repair.edits.empty()) {
+    result.changed = true;
+    repair.fields = transfer_fields(*before_, mesh_, repair.edits, fields, policy_);
+  }
+  result.stop = repair.stop;
+  result.repairs.push_back(std::move(repair));
+  return result.stop != Stop::kTimeLimit && result.stop != Stop::kCancelled;
+}
+
+void Remesher::State::run_step(std::span<const Vec3> displacement, StepResult& result) {
+  std::vector<Vec3> rest;  // of the displacement, once a part of it was taken
+  double taken = 0;
+  for (int i = 0; taken < 1; ++i) {
+    const bool as_a_whole = options_.on_inversion == OnInversion::kSubsteps && i >= options_.max_substeps;
+    const MoveResult move =
+        take(i == 0 ? displacement : rest, as_a_whole ? OnInversion::kRepair : options_.on_inversion);
+    result.n_looked_at += move.n_looked_at;
+    result.refused = move.refused;
+    result.fraction = taken += (1 - taken) * move.fraction;
+    if (!move.refused.empty()) return;
+    if (move.fraction == 1) break;
+    auto left = mesh_.request_vertex_property<Vec3>(kRest);
+    for (std::size_t v = 0; v < mesh_.n_vertices(); ++v)
+      left[VertexHandle(v)] = (1 - move.fraction) * (i == 0 ? displacement[v] : rest[v]);
+    std::vector<FieldTransfer> fields = options_.fields;
+    fields.push_back({.name = kRest, .how = Transfer::kLinear});
+    const bool finished = repair_in_step(fields, result);
+    rest.assign(left.values().begin(), left.values().end());
+    mesh_.properties().vertices.remove(kRest);
+    if (!finished) return;
+    if (move.fraction == 0 && result.repairs.back().edits.empty()) i = options_.max_substeps - 1;
+  }
+  ++steps_;
+  if (needs_repair() != RepairCause::kNone) repair_in_step(options_.fields, result);
+}
+
+void Remesher::State::undo() {
+  if (undo_ && undo_->mesh) {
+    mesh_.restore(*undo_->mesh);
+    mesh_.properties().vertices.remove(kRest);
+  }
+  if (undo_) {
+    moved_ = std::move(undo_->moved);
+    was_ = std::move(undo_->points);
+    watch_.restore(std::move(undo_->cells));
+    travelled_ = std::move(undo_->travelled);
+    travelled_before_ = std::move(undo_->travelled_before);
+    vertex_ids_ = std::move(undo_->vertex_ids);
+    cell_ids_ = std::move(undo_->cell_ids);
+    options_.improve.surface = std::move(undo_->surface);
+  }
+  if (has_moved_) put_points_back();
+  steps_ = steps_before_;
+  farthest_ = travelled_.empty() ? 0.0 : *std::max_element(travelled_.begin(), travelled_.end());
+  undo_.reset();
+  has_moved_ = false;
+  is_stale_ = true;
+  watch_.look_at_all();
+  is_stale_ = false;
+}
+
+StepResult Remesher::State::step(std::span<const Vec3> displacement) {
+  require_displacement(displacement);
+  transfer();
+  undo_.reset();
+  has_moved_ = false;
+  moved_.clear();
+  was_.clear();
+  travelled_before_.clear();
+  steps_before_ = steps_;
+  const std::size_t inverted_before = watch_.n_inverted();
+  StepResult result;
+  try {
+    run_step(followed(displacement), result);
+  } catch (...) {
+    undo();
+    throw;
+  }
+  const bool cut_short = result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled;
+  if (cut_short && watch_.n_inverted() > inverted_before) {
+    undo();
+    result.undone = true;
+    result.changed = false;
+    result.fraction = 0;
+    result.repairs.clear();
+  }
+  undo_.reset();
+  result.n_inverted = watch_.n_inverted();
+  result.min_dihedral = watch_.min_dihedral();
+  return result;
+}
+
+// --- the class ---
+
+Remesher::Remesher(TetMesh& mesh, RemesherOptions options)
+    : mesh_(mesh), state_(std::make_unique<State>(mesh, std::move(options))) {}
+Remesher::~Remesher() = default;
+StepResult Remesher::step(std::span<const Vec3> displacement) { return state_->step(displacement); }
+MoveResult Remesher::move(std::span<const Vec3> displacement) { return state_->move(displacement); }
+RepairCause Remesher::needs_repair() const { return state_->needs_repair(); }
+RepairResult Remesher::repair() { return state_->repair(); }
+std::vector<FieldReport> Remesher::transfer() { return state_->transfer(); }
+void Remesher::reset() { state_->reset(); }
+double Remesher::min_dihedral() const { return state_->watch().min_dihedral(); }
+std::size_t Remesher::n_inverted() const { return state_->watch().n_inverted(); }
+std::span<const std::uint64_t> Remesher::vertex_ids() const { return state_->vertex_ids(); }
+std::span<const std::uint64_t> Remesher::cell_ids() const { return state_->cell_ids(); }
+
+}  // namespace hfr

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_TRANSFER_EDITS_HH
+#define HFR_TRANSFER_EDITS_HH
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Transfer/MeshMaps.hh"
+
+namespace hfr {
+
+/// A vertex that is new or has moved, and where it lies in the mesh as it was: the value of a linear field
+/// there is the sum of weights[k] times the value at vertex k of old_cell.
+struct PlacedVertex {
+  VertexHandle vertex;              ///< of the mesh as it is
+  VertexHandle old_vertex;          ///< invalid: created
+  Vec3 point;                       ///< where it is
+  CellHandle old_cell;              ///< of the mesh as it was; invalid where no cell with a volume is near
+  std::array<double, 4> weights{};  ///< they add up to 1; a negative one only where `inside` is false
+  bool inside = true;               ///< false: it lies beyond the mesh as it was, and old_cell is the nearest
+};
+
+/// What a new cell has in common with an old one, as a share of the new one's volume. Negative for an old
+/// cell that was inverted: the shares of a new cell add up to 1 where the old mesh covers it.
+struct ParentCell {
+  CellHandle old_cell;
+  double share = 0;
+};
+
+struct CreatedCell {
+  CellHandle cell;                       ///< of the mesh as it is
+  std::array<VertexHandle, 4> vertices;  ///< likewise
+  std::size_t first_parent = 0;          ///< in Edits::parents, the largest share first
+  std::size_t n_parents = 0;             ///< 0 where it lies beyond the mesh as it was
+};
+
+/// What a repair did to a mesh, element by element: enough for a solver to bring its arrays, its matrix and
+/// its own fields up to date. "Old" handles are those of the mesh before it, "new" ones those after it; both
+/// run without gaps. All lists are in ascending order of the handles that they begin with.
+struct Edits {
+  /// Cells are mapped where they have the same vertices in the same order.
+  MeshMaps maps;
+  std::vector<CellHandle> removed_cells;  ///< old
+  std::vector<CreatedCell> created_cells;
+  std::vector<ParentCell> parents;             ///< of all created cells, where has_parents
+  std::vector<CellHandle> moved_cells;         ///< new: mapped, and a vertex of theirs has moved
+  std::vector<VertexHandle> removed_vertices;  ///< old
+  std::vector<PlacedVertex> created_vertices;
+  std::vector<PlacedVertex> moved_vertices;  ///< by the repair itself
+
+  bool has_parents = false;  ///< false: nobody asked for them
+
+  bool empty() const {
+    return removed_cells.empty() && created_cells.empty() && moved_vertices.empty() &&
+           removed_vertices.empty() && created_vertices.empty();
+  }
+
+  /// The new array of a value per cell, of the old one: create(cell) gives those of created cells.
+  template <class T, class Create>
+  std::vector<T> cell_values(std::span<const T> old, Create&& create) const {
+    std::vector<T> now(maps.old_cells.size());
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (maps.old_cells[i].is_valid()) now[i] = old[maps.old_cells[i].idx()];
+    for (const CreatedCell& c : created_cells) now[c.cell.idx()] = create(c);
+    return now;
+  }
+  /// The same for vertices: place(vertex) gives the values of those that are created or have moved.
+  template <class T, class Place>
+  std::vector<T> vertex_values(std::span<const T> old, Place&& place) const {
+    std::vector<T> now(maps.old_vertices.size());
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (maps.old_vertices[i].is_valid()) now[i] = old[maps.old_vertices[i].idx()];
+    for (const auto* list : {&created_vertices, &moved_vertices})
+      for (const PlacedVertex& v : *list) now[v.vertex.idx()] = place(v);
+    return now;
+  }
+  /// The new vertices of the cells, of the old ones.
+  std::vector<std::array<VertexHandle, 4>> cell_vertices(
+      std::span<const std::array<VertexHandle, 4>> old) const;
+  /// The new points, of the old ones.
+  std::vector<Vec3> points(std::span<const Vec3> old) const;
+};
+
+/// What became of `old` in `now`, without deleted things in either, by maps between the two. Parents are
+/// found by intersecting the cells, which takes some 20 microseconds for each created one.
+Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Policy policy,
+                 bool with_parents = true);
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Transfer/Fields.hh"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "IO/FieldLayout.hh"
+#include "Transfer/Conserve.hh"
+
+namespace hfr {
+namespace {
+
+using detail::DenseStored;
+
+constexpr std::array<std::pair<std::string_view, Transfer>, 3> kNames = {
+    {{"linear", Transfer::kLinear}, {"inherit", Transfer::kInherit}, {"conserve", Transfer::kConserve}}};
+
+DenseStored* find(const PropertySet::DenseList& list, const std::string& name) {
+  for (const std::shared_ptr<DenseStored>& p : list)
+    if (p->name() == name && !p->is_anonymous()) return p.get();
+  return nullptr;
+}
+
+/// Floating-point values of one property, whatever its type, by item and component.
+class Values {
+ public:
+  virtual ~Values() = default;
+  virtual int n_components() const = 0;
+  virtual double get(std::size_t i, int k) const = 0;
+  virtual void set(std::size_t i, int k, double x) = 0;
+};
+
+template <class T>
+class ValuesOf final : public Values {
+ public:
+  explicit ValuesOf(detail::Dense<T>& property) : property_(property) {}
+  int n_components() const override {
+    if constexpr (std::same_as<T, std::vector<double>>)
+      return static_cast<int>(property_.preset.size());
+    else
+      return io::Layout<T>::kComponents;
+  }
+  double get(std::size_t i, int k) const override { return io::Layout<T>::get(property_.values[i], k); }
+  void set(std::size_t i, int k, double x) override { io::Layout<T>::set(property_.values[i], k, x); }
+
+ private:
+  detail::Dense<T>& property_;
+};
+
+template <class... T>
+std::unique_ptr<Values> values_of_one(DenseStored& property) {
+  std::unique_ptr<Values> found;
+  const auto try_one = [&]<class U>(std::type_identity<U>) {
+    if (property.type() == typeid(U))
+      found = std::make_unique<ValuesOf<U>>(static_cast<detail::Dense<U>&>(property));
+  };
+  (try_one(std::type_identity<T>{}), ...);
+  return found;
+}
+
+/// Null for a property of another type.
+std::unique_ptr<Values> values_of(DenseStored& property) {
+  return values_of_one<double, float, Vec3, std::vector<double>, std::array<double, 2>, std::array<double, 3>,
+                       std::array<double, 4>, std::array<double, 6>, std::array<double, 9>,
+                       std::array<float, 2>, std::array<float, 3>, std::array<float, 4>, std::array<float, 6>,
+                       std::array<float, 9>>(property);
+}
+
+/// The property that a transfer works on; throws InvalidInput where there is none that it could.
+DenseStored& required(const TetMesh& mesh, const std::string& name, Transfer how) {
+  const bool of_vertices = how == Transfer::kLinear;
+  const auto& list = of_vertices ? mesh.properties().vertices : mesh.properties().cells;
+  const auto& other = of_vertices ? mesh.properties().cells : mesh.properties().vertices;
+  DenseStored* found = find(list, name);
+  const std::string kind = of_vertices ? "vertices" : "cells";
+  if (!found && find(other, name))
+    throw InvalidInput("field '" + name + "' is one of " + (of_vertices ? "cells" : "vertices") +
+                       ", and is to be transferred as one of " + kind);
+  if (!found) throw InvalidInput("there is no field '" + name + "' of " + kind);
+  if (how != Transfer::kInherit && !values_of(*found))
+    throw InvalidInput("field '" + name + "' does not hold floating-point numbers: it can be inherited only" +
+                       (of_vertices ? ", as a field of cells" : ""));
+  return *found;
+}
+
+void transfer_linear(const TetMesh& old, TetMesh& now, const Edits& edits, const std::string& name,
+                     FieldReport& report) {
+  const auto from = values_of(required(old, name, Transfer::kLinear));
+  const auto to = values_of(required(now, name, Transfer::kLinear));
+  for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
+    for (const PlacedVertex& v : *list) {
+      if (!v.old_cell.is_valid()) {  // of its source, as it is
+        ++report.n_outside;
+        continue;
+      }
+      ++report.n_changed;
+      report.n_outside += v.inside ? 0 : 1;
+      const auto& corners = old.cell_vertices(v.old_cell);
+      for (int k = 0; k < from->n_components(); ++k) {
+        // In differences, so that a constant stays one.
+        const double first = from->get(corners[0].idx(), k);
+        double value = first;
+        for (std::size_t j = 1; j < 4; ++j) value += v.weights[j] * (from->get(corners[j].idx(), k) - first);
+        to->set(v.vertex.idx(), k, value);
+      }
+    }
+}
+
+void transfer_inherited(const TetMesh& old, TetMesh& now, const Edits& edits, const std::string& name,
+                        FieldReport& report) {
+  const DenseStored& from = required(old, name, Transfer::kInherit);
+  DenseStored& to = required(now, name, Transfer::kInherit);
+  for (const CreatedCell& c : edits.created_cells) {
+    if (c.n_parents == 0) {
+      ++report.n_outside;
+      continue;
+    }
+    ++report.n_changed;
+    to.copy_from(from, edits.parents[c.first_parent].old_cell.idx(), c.cell.idx());
+  }
+}
+
+std::vector<double> component(const Values& values, std::span<const CellHandle> cells, int k) {
+  std::vector<double> out(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) out[i] = values.get(cells[i].idx(), k);
+  return out;
+}
+
+void transfer_conserved(const TetMesh& old, TetMesh& now, const Cavities& cavities,
+                        const FieldTransfer& field, FieldReport& report) {
+  const auto from = values_of(required(old, field.name, Transfer::kConserve));
+  const auto to = values_of(required(now, field.name, Transfer::kConserve));
+  std::vector<double> old_density, new_density;
+  if (!field.density.empty()) {
+    old_density =
+        component(*values_of(required(old, field.density, Transfer::kConserve)), cavities.old_cells(), 0);
+    new_density =
+        component(*values_of(required(now, field.density, Transfer::kConserve)), cavities.new_cells(), 0);
+  }
+  report.n_changed = cavities.new_cells().size();
+  for (std::size_t i = 0; i < cavities.new_cells().size(); ++i)
+    report.n_outside += cavities.is_outside(i) ? 1 : 0;
+  for (int k = 0; k < from->n_components(); ++k) {
+    const Conserved conserved = conserve(cavities, component(*from, cavities.old_cells(), k), old_density,
+                                         new_density, component(*to, cavities.new_cells(), k));
+    for (std::size_t i = 0; i < conserved.values.size(); ++i)
+      to->set(cavities.new_cells()[i].idx(), k, conserved.values[i]);
+    report.integral.push_back(conserved.integral);
+    report.lost.push_back(conserved.lost);
+  }
+}
+
+}  // namespace
+
+Transfer transfer_from_name(std::string_view name) {
+  for (const auto& [known, transfer] : kNames)
+    if (name == known) return transfer;
+  throw InvalidInput("'" + std::string(name) + "' is no way to transfer a field: linear, inherit, conserve");
+}
+
+void validate_fields(const TetMesh& mesh, std::span<const FieldTransfer> fields) {
+  for (const FieldTransfer& field : fields) {
+    if (field.how == Transfer::kCallback) {
+      HFR_REQUIRE(field.callback,
+                  "field '" + field.name + "' is to be transferred by a callback, and has none");
+      continue;
+    }
+    required(mesh, field.name, field.how);
+    if (field.density.empty()) continue;
+    HFR_REQUIRE(field.how == Transfer::kConserve,
+                "field '" + field.name + "' has a density, which only conserved fields have");
+    const auto density = values_of(required(mesh, field.density, Transfer::kConserve));
+    HFR_REQUIRE(density->n_components() == 1, "the density '" + field.density + "' of field '" + field.name +
+                                                  "' has more than one component");
+    HFR_REQUIRE(
+        std::any_of(fields.begin(), fields.end(),
+                    [&](const FieldTransfer& f) {
+                      return f.name == field.density && f.how == Transfer::kConserve && f.density.empty();
+                    }),
+        "the density '" + field.density + "' of field '" + field.name + "' has to be conserved itself");
+  }
+}
+
+std::vector<FieldReport> transfer_fields(const TetMesh& old, TetMesh& now, const Edits& edits,
+                                         std::span<const FieldTransfer> fields, par::Policy policy) {
+  validate_fields(old, fields);
+  std::vector<FieldReport> reports(fields.size());
+  std::optional<Cavities> cavities;
+  // Densities before what they weigh, callbacks when all else is done.
+  for (const int turn : {0, 1, 2})
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const FieldTransfer& field = fields[i];
+      const bool is_callback = field.how == Transfer::kCallback;
+      if (turn != (is_callback ? 2 : field.density.empty() ? 0 : 1)) continue;
+      reports[i].name = field.name;
+      switch (field.how) {
+        case Transfer::kLinear:
+          transfer_linear(old, now, edits, field.name, reports[i]);
+          break;
+        case Transfer::kInherit:
+          transfer_inherited(old, now, edits, field.name, reports[i]);
+          break;
+        case Transfer::kConserve:
+          if (!cavities) cavities.emplace(old, now, edits, policy);
+          transfer_conserved(old, now, *cavities, field, reports[i]);
+          break;
+        case Transfer::kCallback:
+          field.callback(old, now, edits);
+          break;
+      }
+    }
+  return reports;
+}
+
+}  // namespace hfr

@@ -1,0 +1,523 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Remesher.hh"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+
+#include "HalfFace/CountingNew.hh"
+#include "HalfFace/Geometry.hh"
+#include "Remesh/Meshes.hh"
+
+namespace hfr::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kRadius = 0.3;
+
+/// A box whose vertices within a ball in the middle are turned about the z axis; those outside stay, but for
+/// a shell in between that follows in part.
+std::vector<Vec3> turn(const TetMesh& mesh, double degrees) {
+  std::vector<Vec3> d(mesh.n_vertices());
+  const double angle = degrees * std::numbers::pi / 180;
+  for (VertexHandle v : mesh.vertices()) {
+    const Vec3 p = mesh.point(v) - Vec3{0.5, 0.5, 0.5};
+    if (norm(p) > kRadius) continue;
+    const double c = std::cos(angle), s = std::sin(angle);
+    d[v.idx()] = Vec3{c * p.x - s * p.y, s * p.x + c * p.y, p.z} - p;
+  }
+  return d;
+}
+
+TetMesh box(Index n, double jitter = 0.1) { return built(generate::jittered_box({n, n, n}, jitter, 7)); }
+
+RemesherOptions options_for(double goal = 15, double trigger = 10) {
+  RemesherOptions options;
+  options.improve = serial();
+  options.improve.min_dihedral = goal;
+  options.triggers.min_dihedral = trigger;
+  return options;
+}
+
+std::vector<std::array<VertexHandle, 4>> cells_of(const TetMesh& mesh) {
+  std::vector<std::array<VertexHandle, 4>> out;
+  for (CellHandle c : mesh.cells()) out.push_back(mesh.cell_vertices(c));
+  return out;
+}
+
+std::size_t inverted_cells(const TetMesh& mesh) {
+  std::size_t n = 0;
+  for (CellHandle c : mesh.cells()) n += volume(mesh, c) > 0 ? 0 : 1;
+  return n;
+}
+
+TEST(Remesher, StepWithoutABadCellMovesAndLooksOnlyAtWhatMoved) {
+  TetMesh mesh = box(8);
+  Remesher remesher(mesh, options_for());
+  const TetMesh before = mesh;
+  std::vector<Vec3> d(mesh.n_vertices());
+  d[300] = {0.001, 0, 0};
+  const StepResult step = remesher.step(d);
+  EXPECT_FALSE(step.changed);
+  EXPECT_EQ(step.cause, RepairCause::kNone);
+  EXPECT_TRUE(step.repairs.empty());
+  std::size_t star = 0;
+  for ([[maybe_unused]] CellHandle c : mesh.vertex_cells(V(300))) ++star;
+  EXPECT_EQ(step.n_looked_at, star);
+  EXPECT_EQ(mesh.point(V(300)), before.point(V(300)) + Vec3(0.001, 0, 0));
+  EXPECT_EQ(cells_of(mesh), cells_of(before));
+  const Result nothing = improve(
+      mesh, remesher.n_inverted() ? serial() : [] {
+        ImproveOptions o = serial();
+        o.min_dihedral = 10;
+        return o;
+      }());
+  EXPECT_FALSE(nothing.changed);
+  EXPECT_DOUBLE_EQ(step.min_dihedral, nothing.after.min_dihedral.min);
+}
+
+TEST(Remesher, StepsThatRepairNothingAllocateNothing) {
+  TetMesh mesh = box(8);
+  Remesher remesher(mesh, options_for());
+  std::vector<Vec3> all(mesh.n_vertices(), Vec3{1e-4, 0, 0}), few(mesh.n_vertices());
+  few[300] = {1e-4, 0, 0};
+  remesher.step(all);  // makes room
+  remesher.step(few);
+  const std::size_t before = n_allocations();
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(remesher.step(all).changed);
+    EXPECT_FALSE(remesher.step(few).changed);
+  }
+  EXPECT_EQ(n_allocations(), before);
+}
+
+TEST(Remesher, TurningBodyIsRepairedStepByStepAndEditsFollowTheMesh) {
+  TetMesh mesh = box(8);
+  RemesherOptions options = options_for();
+  options.ids = true;
+  Remesher remesher(mesh, options);
+  auto cells = cells_of(mesh);
+  std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
+  std::map<std::uint64_t, Vec3> of_id;
+  std::size_t n_repairs = 0, n_created = 0;
+  for (int i = 0; i < 30; ++i) {
+    const std::vector<Vec3> d = turn(mesh, 6);
+    const StepResult step = remesher.step(d);
+    ASSERT_EQ(step.n_inverted, 0U) << "step " << i;
+    ASSERT_EQ(inverted_cells(mesh), 0U);
+    EXPECT_GE(step.min_dihedral, 10);
+    for (std::size_t v = 0; v < points.size(); ++v) points[v] = points[v] + d[v];
+    for (const RepairResult& repair : step.repairs) {
+      ++n_repairs;
+      n_created += repair.edits.created_vertices.size();
+      points = repair.edits.points(points);
+      cells = repair.edits.cell_vertices(cells);
+    }
+    EXPECT_EQ(step.changed, !step.repairs.empty());
+    ASSERT_EQ(cells, cells_of(mesh));
+    ASSERT_TRUE(std::equal(points.begin(), points.end(), mesh.points().begin(), mesh.points().end()));
+    ASSERT_EQ(check(mesh).message, "");
+    std::set<std::uint64_t> ids(remesher.vertex_ids().begin(), remesher.vertex_ids().end());
+    EXPECT_EQ(ids.size(), mesh.n_vertices());
+    EXPECT_EQ(std::set<std::uint64_t>(remesher.cell_ids().begin(), remesher.cell_ids().end()).size(),
+              mesh.n_cells());
+  }
+  EXPECT_GT(n_repairs, 3U);
+  EXPECT_LT(n_repairs, 30U) << "the goal is above the trigger, so that not each step repairs";
+}
+
+TEST(Remesher, FieldsAreCarriedOverEveryStep) {
+  for (const SurfaceMode mode : {SurfaceMode::kFrozen, SurfaceMode::kFlat, SurfaceMode::kFree}) {
+#ifndef HFR_HAS_SURFACE
+    if (mode != SurfaceMode::kFrozen) continue;
+#endif
+    TetMesh mesh = box(7);
+    auto linear = mesh.request_vertex_property<double>("linear");
+    auto constant = mesh.request_vertex_property<double>("constant");
+    auto mass = mesh.request_cell_property<double>("mass");
+    auto one = mesh.request_cell_property<double>("one");
+    auto part = mesh.request_cell_property<std::int64_t>("part");
+    const auto f = [](Vec3 p) { return 1 + 2 * p.x - 3 * p.y + 0.5 * p.z; };
+    for (VertexHandle v : mesh.vertices()) constant[v] = 0.1;
+    for (CellHandle c : mesh.cells()) {
+      mass[c] = generate::random_unit(5, c.idx());
+      one[c] = 0.3;
+      part[c] = c.idx() % 3;
+    }
+    RemesherOptions options = options_for();
+    options.improve.surface.mode = mode;
+    options.fields = {{.name = "linear"},
+                      {.name = "constant"},
+                      {.name = "mass", .how = Transfer::kConserve},
+                      {.name = "one", .how = Transfer::kConserve},
+                      {.name = "part", .how = Transfer::kInherit}};
+    Remesher remesher(mesh, options);
+    std::size_t n_repairs = 0;
+    for (int i = 0; i < 20; ++i) {
+      const std::vector<Vec3> d = turn(mesh, 7);
+      std::vector<Vec3> moved(mesh.points().begin(), mesh.points().end());
+      double held = 0;
+      for (std::size_t v = 0; v < d.size(); ++v) linear[V(v)] = f(moved[v] + d[v]);
+      for (CellHandle c : mesh.cells()) {
+        const auto& v = mesh.cell_vertices(c);
+        const auto at = [&](std::size_t k) { return moved[v[k].idx()] + d[v[k].idx()]; };
+        held += mass[c] * dot(at(1) - at(0), cross(at(2) - at(0), at(3) - at(0))) / 6;
+      }
+      const StepResult step = remesher.step(d);
+      n_repairs += step.repairs.size();
+      double lost = 0;
+      for (const RepairResult& repair : step.repairs)
+        for (const FieldReport& report : repair.fields)
+          if (report.name == "mass") lost += report.lost[0];
+      for (VertexHandle v : mesh.vertices()) {
+        ASSERT_NEAR(linear[v], f(mesh.point(v)), 1e-13);
+        ASSERT_EQ(constant[v], 0.1);
+      }
+      double holds = 0;
+      for (CellHandle c : mesh.cells()) {
+        holds += mass[c] * volume(mesh, c);
+        ASSERT_EQ(one[c], 0.3);
+        ASSERT_GE(mass[c], 0);
+        ASSERT_LE(mass[c], 1);
+        ASSERT_GE(part[c], 0);
+        ASSERT_LT(part[c], 3);
+      }
+      ASSERT_NEAR(holds + lost, held, 1e-13 * held);
+      if (mode != SurfaceMode::kFree) {
+        ASSERT_NEAR(lost, 0, 1e-13 * held);
+      }
+    }
+    EXPECT_GT(n_repairs, 2U);
+  }
+}
+
+TEST(Remesher, MotionThatInvertsIsRefusedWithTheCellsNamed) {
+  TetMesh mesh = box(5);
+  RemesherOptions options = options_for();
+  options.on_inversion = OnInversion::kRefuse;
+  Remesher remesher(mesh, options);
+  const TetMesh before = mesh;
+  std::vector<Vec3> d(mesh.n_vertices());
+  VertexHandle inner;
+  for (VertexHandle v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inner = v;
+  d[inner.idx()] = {0.5, 0, 0};
+  const StepResult step = remesher.step(d);
+  EXPECT_EQ(step.fraction, 0);
+  EXPECT_FALSE(step.changed);
+  ASSERT_FALSE(step.refused.empty());
+  for (CellHandle c : step.refused) EXPECT_TRUE(mesh.cell(c).has(inner));
+  EXPECT_TRUE(std::equal(mesh.points().begin(), mesh.points().end(), before.points().begin()));
+  EXPECT_EQ(step.n_inverted, 0U);
+  d[inner.idx()] = {0.01, 0, 0};
+  EXPECT_EQ(remesher.step(d).fraction, 1);
+}
+
+TEST(Remesher, LargeMotionIsTakenInSafePartsWithRepairsBetween) {
+  TetMesh whole = box(8), parts = whole;
+  RemesherOptions options = options_for();
+  Remesher at_once(whole, options);
+  options.on_inversion = OnInversion::kSubsteps;
+  Remesher in_parts(parts, options);
+  auto total = parts.request_vertex_property<Vec3>("where to");
+  const std::vector<Vec3> d = turn(parts, 60);
+  for (VertexHandle v : parts.vertices()) total[v] = parts.point(v) + d[v.idx()];
+  at_once.step(d);
+  const StepResult step = in_parts.step(d);
+  EXPECT_EQ(step.n_inverted, 0U);
+  EXPECT_DOUBLE_EQ(step.fraction, 1);
+  EXPECT_GT(step.repairs.size(), 1U);
+  EXPECT_EQ(check(parts).message, "");
+  EXPECT_TRUE(parts.properties().vertices.names() == std::vector<std::string>{"where to"});
+  for (VertexHandle v : parts.boundary_vertices()) EXPECT_EQ(parts.point(v), total[v]);
+}
+
+TEST(Remesher, WhatARepairHadToLeaveCallsForNoOtherUntilItIsWorse) {
+  // One cell whose four vertices lie on the boundary: nothing mends it.
+  TetMesh mesh = build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0.05}},
+                       std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
+  Remesher remesher(mesh, options_for());
+  EXPECT_EQ(remesher.needs_repair(), RepairCause::kAngle);
+  std::vector<Vec3> d(4);
+  d[3].z = 1e-5;
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kAngle);
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kNone);
+  d[3].z = -0.01;
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kAngle);
+  EXPECT_EQ(remesher.step(std::vector<Vec3>(4)).cause, RepairCause::kNone);
+}
+
+TEST(Remesher, EachTriggerCallsForARepair) {
+  const auto cause = [](const std::function<void(RemesherOptions&)>& set, double by) {
+    TetMesh mesh = box(5, 0);
+    RemesherOptions options = options_for(15, 0);
+    set(options);
+    Remesher remesher(mesh, options);
+    VertexHandle inner;
+    for (VertexHandle v : mesh.vertices())
+      if (!mesh.is_boundary(v)) inner = v;
+    std::vector<Vec3> d(mesh.n_vertices());
+    d[inner.idx()] = {by, 0, 0};
+    return remesher.step(d).cause;
+  };
+  using O = RemesherOptions;
+  EXPECT_EQ(cause([](O&) {}, 0.15), RepairCause::kNone);
+  EXPECT_EQ(cause([](O&) {}, 0.25), RepairCause::kInverted);
+  EXPECT_EQ(cause([](O& o) { o.triggers.inverted = false; }, 0.25), RepairCause::kNone);
+  EXPECT_EQ(cause([](O& o) { o.triggers.min_dihedral = 14; }, 0.18), RepairCause::kAngle);
+  EXPECT_EQ(cause(
+                [](O& o) {
+                  o.triggers.metrics = {{Metric::kVolumeLength, 0.5}};
+                },
+                0.15),
+            RepairCause::kMetric);
+  EXPECT_EQ(cause(
+                [](O& o) {
+                  o.triggers.metrics = {{Metric::kMaxDihedral, 120}};
+                },
+                0.15),
+            RepairCause::kMetric);
+  EXPECT_EQ(cause([](O& o) { o.triggers.jacobian_ratio = 0.5; }, 0.15), RepairCause::kJacobian);
+  EXPECT_EQ(cause([](O& o) { o.triggers.motion = 0.5; }, 0.15), RepairCause::kMotion);
+  EXPECT_EQ(cause([](O& o) { o.triggers.motion = 2; }, 0.15), RepairCause::kNone);
+  EXPECT_EQ(cause([](O& o) { o.triggers.every = 1; }, 0.01), RepairCause::kSteps);
+  EXPECT_EQ(
+      cause([](O& o) { o.triggers.indicator = [](const TetMesh&, CellHandle c) { return c.idx() > 0; }; },
+            0.01),
+      RepairCause::kIndicator);
+}
+
+TEST(Remesher, InnerVerticesFollowTheBoundary) {
+  for (const Motion motion : {Motion::kLaplace, Motion::kElastic}) {
+    TetMesh mesh = box(6, 0);  // cells of one size: none is stiffer than another
+    RemesherOptions options = options_for();
+    options.motion = motion;
+    Remesher remesher(mesh, options);
+    const TetMesh before = mesh;
+    // A linear motion of the boundary: Laplace's equation and elasticity both carry it on inside.
+    std::vector<Vec3> d(mesh.n_vertices(), Vec3{9, 9, 9});
+    const auto f = [](Vec3 p) { return Vec3{0.2 * p.x + 0.1 * p.y, 0.05 * p.z, -0.1 * p.x}; };
+    for (VertexHandle v : mesh.boundary_vertices()) d[v.idx()] = f(mesh.point(v));
+    const StepResult step = remesher.step(d);
+    EXPECT_FALSE(step.changed);
+    for (VertexHandle v : mesh.vertices())
+      EXPECT_NEAR(norm(mesh.point(v) - before.point(v) - f(before.point(v))), 0, 1e-6);
+  }
+}
+
+TEST(Remesher, ExceptionOfACallbackLeavesMeshAndFieldsAsBeforeTheStep) {
+  for (const int where : {0, 1, 2}) {
+    TetMesh mesh = box(8);
+    auto t = mesh.request_vertex_property<double>("T");
+    for (VertexHandle v : mesh.vertices()) t[v] = mesh.point(v).x;
+    bool armed = false;
+    RemesherOptions options = options_for();
+    options.on_inversion = where == 1 ? OnInversion::kSubsteps : OnInversion::kRepair;
+    options.ids = true;
+    options.fields = {{.name = "T"}};
+    if (where < 2)
+      options.improve.progress = [&](const Progress&) {
+        if (armed) throw std::runtime_error("enough");
+      };
+    else
+      options.triggers.indicator = [&](const TetMesh&, CellHandle c) {
+        if (armed && c.idx() % 100 == 99) throw std::runtime_error("enough");
+        return false;
+      };
+    Remesher remesher(mesh, options);
+    const auto cells = cells_of(mesh);
+    const std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
+    const std::vector<double> values(t.values().begin(), t.values().end());
+    const std::vector<std::uint64_t> ids(remesher.cell_ids().begin(), remesher.cell_ids().end());
+    armed = true;
+    EXPECT_THROW(remesher.step(turn(mesh, 40)), std::runtime_error);
+    armed = false;
+    EXPECT_EQ(cells_of(mesh), cells);
+    EXPECT_TRUE(std::equal(points.begin(), points.end(), mesh.points().begin(), mesh.points().end()));
+    EXPECT_TRUE(std::equal(values.begin(), values.end(), t.values().begin(), t.values().end()));
+    EXPECT_TRUE(std::equal(ids.begin(), ids.end(), remesher.cell_ids().begin(), remesher.cell_ids().end()));
+    EXPECT_EQ(remesher.n_inverted(), 0U);
+    const StepResult step = remesher.step(turn(mesh, 6));
+    EXPECT_EQ(step.n_inverted, 0U);
+    for (VertexHandle v : mesh.vertices()) ASSERT_TRUE(std::isfinite(t[v]));
+  }
+}
+
+TEST(Remesher, StepThatThrowsCountsForNoTrigger) {
+  for (const bool in_the_look : {false, true}) {
+    TetMesh mesh = box(8);
+    bool armed = false;
+    RemesherOptions options = options_for();
+    options.triggers.every = 3;
+    options.triggers.motion = 1;
+    if (in_the_look)  // throws again while the step is taken back
+      options.triggers.indicator = [&](const TetMesh&, CellHandle c) {
+        if (armed && c.idx() % 100 == 99) throw std::runtime_error("enough");
+        return false;
+      };
+    else
+      options.improve.progress = [&](const Progress&) {
+        if (armed) throw std::runtime_error("enough");
+      };
+    Remesher remesher(mesh, options);
+    const double before = remesher.min_dihedral();
+    EXPECT_EQ(remesher.step(turn(mesh, 0.1)).cause, RepairCause::kNone);
+    armed = true;
+    EXPECT_THROW(remesher.step(turn(mesh, 40)), std::runtime_error);
+    EXPECT_EQ(remesher.n_inverted(), 0U);
+    armed = false;
+    const StepResult second = remesher.step(turn(mesh, 0.1));
+    EXPECT_EQ(second.cause, RepairCause::kNone);
+    EXPECT_NEAR(second.min_dihedral, before, 1);
+    EXPECT_EQ(remesher.step(turn(mesh, 0.1)).cause, RepairCause::kSteps);
+  }
+}
+
+#ifdef HFR_HAS_SURFACE
+TEST(Remesher, FixedVerticesStayFixedUnderTheirNewHandles) {
+  TetMesh mesh = box(8);
+  RemesherOptions options = options_for(30, 29);
+  options.improve.surface.mode = SurfaceMode::kFlat;
+  options.ids = true;
+  std::vector<std::uint64_t> fixed;
+  for (VertexHandle v : mesh.vertices())
+    if (v.idx() % 9 == 7 && mesh.is_boundary(v)) {
+      options.improve.surface.fixed_vertices.push_back(v);
+      fixed.push_back(v.idx());
+    }
+  ASSERT_GT(fixed.size(), 5U);
+  Remesher remesher(mesh, options);
+  std::map<std::uint64_t, Vec3> where;
+  bool renumbered = false;
+  for (const std::uint64_t id : fixed) where[id] = mesh.point(VertexHandle(id));
+  for (int i = 0; i < 12; ++i) {
+    const std::vector<Vec3> d = turn(mesh, 6);
+    for (VertexHandle v : mesh.vertices())
+      if (where.contains(remesher.vertex_ids()[v.idx()]))
+        where[remesher.vertex_ids()[v.idx()]] = mesh.point(v) + d[v.idx()];
+    remesher.step(d);
+    std::size_t n_found = 0;
+    for (VertexHandle v : mesh.vertices()) {
+      const auto at = where.find(remesher.vertex_ids()[v.idx()]);
+      if (at == where.end()) continue;
+      ++n_found;
+      renumbered = renumbered || v.idx() != at->first;
+      ASSERT_EQ(mesh.point(v), at->second) << "step " << i;
+    }
+    ASSERT_EQ(n_found, fixed.size());
+  }
+  EXPECT_TRUE(renumbered) << "no handle changed, so that nothing was shown";
+}
+#endif
+
+TEST(Remesher, CancelledStepThatWouldLeaveInvertedCellsIsUndone) {
+  TetMesh mesh = box(8);
+  bool cancel = false;
+  RemesherOptions options = options_for();
+  options.improve.cancel = [&] { return cancel; };
+  Remesher remesher(mesh, options);
+  const auto cells = cells_of(mesh);
+  const std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
+  cancel = true;
+  const StepResult step = remesher.step(turn(mesh, 40));
+  EXPECT_EQ(step.stop, Stop::kCancelled);
+  EXPECT_TRUE(step.undone);
+  EXPECT_FALSE(step.changed);
+  EXPECT_EQ(step.n_inverted, 0U);
+  EXPECT_EQ(cells_of(mesh), cells);
+  EXPECT_TRUE(std::equal(points.begin(), points.end(), mesh.points().begin(), mesh.points().end()));
+  cancel = false;
+  EXPECT_FALSE(remesher.step(turn(mesh, 6)).undone);
+}
+
+TEST(Remesher, PartsOfAStepCalledAloneDoTheSame) {
+  TetMesh one = box(8), other = one;
+  RemesherOptions options = options_for();
+  auto t = one.request_vertex_property<double>("T");
+  auto u = other.request_vertex_property<double>("T");
+  for (VertexHandle v : one.vertices()) u[v] = t[v] = std::sin(9 * one.point(v).x);
+  options.fields = {{.name = "T"}};
+  Remesher steps(one, options), alone(other, options);
+  for (int i = 0; i < 8; ++i) {
+    const std::vector<Vec3> d = turn(one, 8);
+    steps.step(d);
+    alone.move(d);
+    if (alone.needs_repair() == RepairCause::kNone) continue;
+    alone.repair();
+    if (i % 2 == 0) alone.transfer();  // the next move does it otherwise
+  }
+  alone.transfer();
+  EXPECT_EQ(cells_of(one), cells_of(other));
+  EXPECT_TRUE(std::equal(t.values().begin(), t.values().end(), u.values().begin(), u.values().end()));
+}
+
+TEST(Remesher, SameBitsForAnyNumberOfThreads) {
+  std::map<int, std::vector<double>> results;
+  for (const int threads : {1, 2, 7}) {
+    TetMesh mesh = box(7);
+    auto t = mesh.request_vertex_property<double>("T");
+    auto mass = mesh.request_cell_property<double>("mass");
+    for (VertexHandle v : mesh.vertices()) t[v] = std::sin(9 * mesh.point(v).x);
+    for (CellHandle c : mesh.cells()) mass[c] = generate::random_unit(5, c.idx());
+    RemesherOptions options = options_for();
+    options.improve.policy = {.threads = threads, .serial_below = 0};
+    options.on_inversion = OnInversion::kSubsteps;
+    options.fields = {{.name = "T"}, {.name = "mass", .how = Transfer::kConserve}};
+    Remesher remesher(mesh, options);
+    auto& out = results[threads];
+    for (int i = 0; i < 6; ++i) {
+      const StepResult step = remesher.step(turn(mesh, 12));
+      out.push_back(static_cast<double>(step.repairs.size()));
+      for (const RepairResult& repair : step.repairs)
+        for (const ParentCell& parent : repair.edits.parents) out.push_back(parent.share);
+    }
+    for (Vec3 p : mesh.points()) out.insert(out.end(), {p.x, p.y, p.z});
+    for (const auto& c : cells_of(mesh))
+      for (VertexHandle v : c) out.push_back(static_cast<double>(v.idx()));
+    out.insert(out.end(), t.values().begin(), t.values().end());
+    out.insert(out.end(), mass.values().begin(), mass.values().end());
+  }
+  EXPECT_EQ(results[1], results[2]);
+  EXPECT_EQ(results[1], results[7]);
+}
+
+TEST(Remesher, BadInputIsNamedBeforeAnythingMoves) {
+  TetMesh mesh = box(3);
+  const auto says = [&](const std::function<void()>& f) -> std::string {
+    try {
+      f();
+    } catch (const InvalidInput& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(says([&] { Remesher(mesh, options_for(15, 20)); }), HasSubstr("must not be above the goal"));
+  EXPECT_THAT(says([&] {
+                RemesherOptions o = options_for();
+                o.fields = {{.name = "T"}};
+                Remesher(mesh, o);
+              }),
+              HasSubstr("no field 'T'"));
+  EXPECT_THAT(says([&] {
+                RemesherOptions o = options_for();
+                o.max_substeps = 0;
+                Remesher(mesh, o);
+              }),
+              HasSubstr("max_substeps"));
+  Remesher remesher(mesh, options_for());
+  const std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
+  std::vector<Vec3> d(mesh.n_vertices(), Vec3{1, 1, 1});
+  d[17].y = std::nan("");
+  EXPECT_THAT(says([&] { remesher.step(d); }), HasSubstr("vertex 17 is not finite"));
+  d.pop_back();
+  EXPECT_THAT(says([&] { remesher.step(d); }), HasSubstr("has 63 entries for 64 vertices"));
+  EXPECT_TRUE(std::equal(points.begin(), points.end(), mesh.points().begin(), mesh.points().end()));
+}
+
+}  // namespace
+}  // namespace hfr::test

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Compiles, links and runs an example in C, or with FORTRAN in Fortran, against the installed shared library.
+separate_arguments(FLAGS UNIX_COMMAND "${FLAGS}")
+set(ENV{PKG_CONFIG_PATH} ${PREFIX}/${LIBDIR}/pkgconfig)
+function(pkg_config VARIABLE)
+  execute_process(COMMAND ${PKG_CONFIG} ${ARGN} hfremesh_c OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE
+    COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  set(${VARIABLE} ${flags} PARENT_SCOPE)
+endfunction()
+pkg_config(libs --cflags --libs)
+if(FORTRAN)
+  string(APPEND WORK /fortran_program)
+  pkg_config(sources --variable=fortran_module)
+  list(APPEND sources ${EXAMPLES}/fortran/improve.f90)
+  pkg_config(libs --libs)
+else()
+  string(APPEND WORK /c_program)
+  set(sources -std=c99 ${EXAMPLES}/c/improve.c)
+  list(APPEND libs -lm)
+endif()
+file(REMOVE_RECURSE ${WORK})
+file(MAKE_DIRECTORY ${WORK})
+execute_process(COMMAND ${COMPILER} ${FLAGS} ${sources} ${libs} -o improve WORKING_DIRECTORY ${WORK}
+  COMMAND_ERROR_IS_FATAL ANY)
+set(ENV{LD_LIBRARY_PATH} ${PREFIX}/${LIBDIR}:$ENV{LD_LIBRARY_PATH})
+execute_process(COMMAND ${WORK}/improve COMMAND_ERROR_IS_FATAL ANY)
