@@ -70,6 +70,12 @@ HFR_FN void evaluate_cell(CellBlock& b, std::size_t i) {
   b.max_dihedral[i] = hfr_max_dihedral_of(f);
   b.volume_length[i] = volume_length;
   b.q[i] = hfr_volume_length_report(volume_length);
+  b.length2[0][i] = f.l01;
+  b.length2[1][i] = f.l02;
+  b.length2[2][i] = f.l03;
+  b.length2[3][i] = f.l12;
+  b.length2[4][i] = f.l13;
+  b.length2[5][i] = f.l23;
   b.min_length2[i] = hfr_min(hfr_min(hfr_min(f.l01, f.l02), hfr_min(f.l03, f.l12)), hfr_min(f.l13, f.l23));
   b.max_length2[i] = hfr_max(hfr_max(hfr_max(f.l01, f.l02), hfr_max(f.l03, f.l12)), hfr_max(f.l13, f.l23));
   const double l01 = std::sqrt(f.l01), l02 = std::sqrt(f.l02), l03 = std::sqrt(f.l03);

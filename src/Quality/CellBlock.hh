@@ -23,11 +23,12 @@ struct CellBlock {
 
   std::array<Lane, 4> x{}, y{}, z{};
 
-  Lane det;            ///< 6V, 0 when flat
-  Lane min_dihedral;   ///< decision form
-  Lane max_dihedral;   ///< decision form
-  Lane volume_length;  ///< decision form
-  Lane q;              ///< report form of volume_length
+  Lane det;                     ///< 6V, 0 when flat
+  Lane min_dihedral;            ///< decision form
+  Lane max_dihedral;            ///< decision form
+  Lane volume_length;           ///< decision form
+  Lane q;                       ///< report form of volume_length
+  std::array<Lane, 6> length2;  ///< of the edges, squared
   Lane min_length2, max_length2;
   Lane length_sum;  ///< of the six edges
   /// Only for cells with min_dihedral > 0:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "Quality/CellBlock.hh"
 #include "Quality/Metrics.hh"
@@ -50,8 +51,10 @@ class AngleBins {
 // Gathers cells into blocks and adds up what comes out.
 class CellPass {
  public:
-  CellPass(const TetMesh& mesh, const AngleBins& bins, CellValues& values, CellTotals& totals)
-      : mesh_(mesh), bins_(bins), values_(values), totals_(totals) {}
+  /// `held`: 1 for the vertices of labelled and of fixed faces; empty where there are none.
+  CellPass(const TetMesh& mesh, const AngleBins& bins, std::span<const std::uint8_t> held, CellValues& values,
+           CellTotals& totals)
+      : mesh_(mesh), bins_(bins), held_(held), values_(values), totals_(totals) {}
 
   void visit(CellHandle c) {
     const Cell& cell = mesh_.cell(c);
@@ -82,6 +85,7 @@ class CellPass {
         totals_.cells == 1 ? block_.min_length2[i] : std::min(totals_.min_length2, block_.min_length2[i]);
     totals_.max_length2 = std::max(totals_.max_length2, block_.max_length2[i]);
     totals_.lengths.add(block_.length_sum[i]);
+    for (const CellBlock::Lane& length2 : block_.length2) totals_.length_bins.add(length2[i]);
     if (min_dihedral < totals_.min_decision || !totals_.worst_cell.is_valid()) {
       totals_.min_decision = min_dihedral;
       totals_.worst_cell = c;
@@ -102,12 +106,23 @@ class CellPass {
   }
 
   void count_faces(CellHandle c, const Cell& cell) {
-    for (const HalfFaceHandle m : cell.mate) {
-      if (!m.is_valid())
-        ++totals_.boundary_faces;
-      else if (mesh_.has_regions() && mesh_.region(cell_of(m)) != mesh_.region(c))
-        ++totals_.interface_halffaces;
+    for (int corner = 0; corner < 4; ++corner) {
+      const HalfFaceHandle h = halfface_of(c, corner);
+      const HalfFaceHandle m = cell.mate[static_cast<std::size_t>(corner)];
+      const bool is_boundary = !m.is_valid();
+      const bool is_interface = !is_boundary && has_regions_ && mesh_.region(cell_of(m)) != mesh_.region(c);
+      totals_.boundary_faces += is_boundary ? 1 : 0;
+      totals_.interface_halffaces += is_interface ? 1 : 0;
+      if (is_boundary || is_interface || (may_be_held(h) && mesh_.is_constrained(h)))
+        totals_.constrained.push_back(h);
     }
+  }
+
+  /// False for nearly all faces inside, without a look at what is labelled or fixed.
+  bool may_be_held(HalfFaceHandle h) const {
+    if (held_.empty()) return false;
+    const auto f = mesh_.halfface_vertices(h);
+    return held_[f[0].idx()] && held_[f[1].idx()] && held_[f[2].idx()];
   }
 
   void add_region(CellHandle c, double det, double min_dihedral) {
@@ -151,20 +166,40 @@ class CellPass {
 
   const TetMesh& mesh_;
   const AngleBins& bins_;
+  const std::span<const std::uint8_t> held_;
   CellValues& values_;
   CellTotals& totals_;
   CellBlock block_;
   std::array<CellHandle, CellBlock::kSize> cells_;
   std::size_t in_block_ = 0;
+  const bool has_regions_ = mesh_.has_regions();
+  const bool has_inner_constraints_ = has_regions_ || !mesh_.labels().faces.empty() || !mesh_.locks().empty();
   const FixedSum empty_det_ = totals_.negative_det;
   RegionTotals* region_ = nullptr;
   int region_number_ = 0;
 };
 
+std::vector<std::uint8_t> vertices_of_held_faces(const TetMesh& mesh) {
+  std::vector<std::uint8_t> held;
+  const auto mark = [&](const auto& entries) {
+    if (!entries.empty()) held.resize(mesh.n_vertices(), 0);
+    for (const auto& entry : entries)
+      for (const VertexHandle v : entry.vertices) held[v.idx()] = 1;
+  };
+  mark(mesh.labels().faces.entries());
+  mark(mesh.locks().faces.entries());
+  return held;
+}
+
 }  // namespace
 
 CellTotals::CellTotals(double max_det, double max_length)
-    : negative_det(max_det), angles(32.0), min_angles(4.0), volume_length(2.0), lengths(8.0 * max_length) {}
+    : negative_det(max_det),
+      angles(32.0),
+      min_angles(4.0),
+      volume_length(2.0),
+      lengths(8.0 * max_length),
+      length_bins(max_length) {}
 
 void CellTotals::merge(const CellTotals& next) {
   if (next.cells == 0) return;
@@ -176,6 +211,7 @@ void CellTotals::merge(const CellTotals& next) {
   cells += next.cells;
   boundary_faces += next.boundary_faces;
   interface_halffaces += next.interface_halffaces;
+  constrained.insert(constrained.end(), next.constrained.begin(), next.constrained.end());
   inverted.insert(inverted.end(), next.inverted.begin(), next.inverted.end());
   flat.insert(flat.end(), next.flat.begin(), next.flat.end());
   for (std::size_t i = 0; i < dihedral_histogram.size(); ++i)
@@ -187,6 +223,7 @@ void CellTotals::merge(const CellTotals& next) {
   min_angles.add(next.min_angles);
   volume_length.add(next.volume_length);
   lengths.add(next.lengths);
+  length_bins.add(next.length_bins);
   for (const auto& [region, theirs] : next.regions) {
     const auto [at, is_new] = regions.try_emplace(region, theirs);
     if (is_new) continue;
@@ -204,10 +241,11 @@ CellTotals gather_cells(const TetMesh& mesh, par::Policy policy, double max_det,
   values.min_dihedral.resize(n);
   values.volume_length.resize(n);
   const AngleBins bins;
+  const std::vector<std::uint8_t> held = vertices_of_held_faces(mesh);
   const int n_parts = par::thread_count(policy, n);
   std::vector<CellTotals> totals(static_cast<std::size_t>(n_parts), CellTotals(max_det, max_length));
   par::parts(n_parts, [&](int part) {
-    CellPass pass(mesh, bins, values, totals[static_cast<std::size_t>(part)]);
+    CellPass pass(mesh, bins, held, values, totals[static_cast<std::size_t>(part)]);
     const std::size_t end = par::part_begin(n, n_parts, part + 1);
     for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i)
       if (!mesh.is_deleted(CellHandle(i))) pass.visit(CellHandle(i));
@@ -227,30 +265,17 @@ CellTotals gather_cells(const TetMesh& mesh, par::Policy policy, double max_det,
   return all;
 }
 
-double boundary_determinant(const TetMesh& mesh, par::Policy policy, Vec3 centre, double max_det) {
-  const std::size_t n = mesh.n_cells();
-  const int n_parts = par::thread_count(policy, n);
-  std::vector<FixedSum> sums(static_cast<std::size_t>(n_parts), FixedSum(max_det));
-  par::parts(n_parts, [&](int part) {
-    FixedSum mine(max_det);
-    const std::size_t end = par::part_begin(n, n_parts, part + 1);
-    for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i) {
-      const CellHandle c(i);
-      if (mesh.is_deleted(c)) continue;
-      for (int corner = 0; corner < 4; ++corner) {
-        const HalfFaceHandle h = halfface_of(c, corner);
-        if (mesh.opposite_halfface(h).is_valid()) continue;
-        const auto [x, y, z] = mesh.halfface_vertices(h);
-        // (x, y, z, opposite corner) is positive, so from outside the face turns the other way
-        mine.add(hfr_orient6(to_real3(centre), to_real3(mesh.point(x)), to_real3(mesh.point(z)),
-                             to_real3(mesh.point(y))));
-      }
-    }
-    sums[static_cast<std::size_t>(part)] = mine;
-  });
-  FixedSum all(max_det);
-  for (const FixedSum& part : sums) all.add(part);
-  return all.value();
+double boundary_determinant(const TetMesh& mesh, std::span<const HalfFaceHandle> faces, Vec3 centre,
+                            double max_det) {
+  FixedSum sum(max_det);
+  for (const HalfFaceHandle h : faces) {
+    if (mesh.opposite_halfface(h).is_valid()) continue;
+    const auto [x, y, z] = mesh.halfface_vertices(h);
+    // (x, y, z, opposite corner) is positive, so from outside the face turns the other way
+    sum.add(hfr_orient6(to_real3(centre), to_real3(mesh.point(x)), to_real3(mesh.point(z)),
+                        to_real3(mesh.point(y))));
+  }
+  return sum.value();
 }
 
 }  // namespace hfr::detail

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Quality/EdgeLengths.hh"
 #include "Quality/FixedSum.hh"
 
 /// What statistics() gathers in its pass over the cells; internal to this folder.
@@ -29,6 +31,7 @@ struct CellTotals {
 
   std::size_t cells = 0;
   std::size_t boundary_faces = 0;
+  std::vector<HalfFaceHandle> constrained;  ///< TetMesh::is_constrained(); ascending
   std::size_t interface_halffaces = 0;
   std::vector<CellHandle> inverted;
   std::vector<CellHandle> flat;
@@ -44,6 +47,7 @@ struct CellTotals {
   CoarseSum min_angles;   ///< the smallest of each cell, radians
   CoarseSum volume_length;
   CoarseSum lengths;
+  EdgeLengthBins length_bins;
   std::map<int, RegionTotals> regions;
 };
 
@@ -57,9 +61,10 @@ struct CellValues {
 CellTotals gather_cells(const TetMesh& mesh, par::Policy policy, double max_det, double max_length,
                         CellValues& values);
 
-/// Sum over the boundary faces of the determinant of their corners about `centre`: six times the enclosed
-/// volume.
-double boundary_determinant(const TetMesh& mesh, par::Policy policy, Vec3 centre, double max_det);
+/// Sum over those of `faces` that are boundary of the determinant of their corners about `centre`: six times
+/// the enclosed volume.
+double boundary_determinant(const TetMesh& mesh, std::span<const HalfFaceHandle> faces, Vec3 centre,
+                            double max_det);
 
 }  // namespace hfr::detail
 

@@ -2,15 +2,43 @@
 #ifndef HFR_QUALITY_EDGE_LENGTHS_HH
 #define HFR_QUALITY_EDGE_LENGTHS_HH
 
-#include "Parallel/Policy.hh"
+#include <bit>
+#include <cstdint>
+#include <vector>
+
 #include "Quality/Statistics.hh"
 
 /// The part of statistics() that tells how long edges are; internal to this folder.
 namespace hfr::detail {
 
-/// Percentiles over the six edges of every cell, to 1.1 % (from counts in bins of equal ratio). `least` and
-/// `most`: lengths of the shortest and the longest edge. Minimum, mean and maximum are left to the caller.
-Distribution edge_length_percentiles(const TetMesh& mesh, par::Policy policy, double least, double most);
+/// Counts of lengths in bins of equal ratio, 64 of which double a length. Counts merge exactly.
+class EdgeLengthBins {
+ public:
+  /// No length is larger than `most`.
+  explicit EdgeLengthBins(double most) : top_(bin_of(most * most) + 1) {}
+
+  /// The square of a length.
+  void add(double length2) {
+    const std::uint64_t bin = bin_of(length2);
+    const std::uint64_t at = bin < top_ ? top_ - bin : 0;
+    if (at >= counts_.size()) counts_.resize(at + 1, 0);
+    ++counts_[at];
+  }
+  void add(const EdgeLengthBins& other);
+
+  /// To 1.1 %, and within [least, most]. Minimum, mean and maximum are left to the caller.
+  Distribution percentiles(double least, double most) const;
+
+ private:
+  /// Bits of a squared length below those that number its bin: 32 bins double it.
+  static constexpr int kShift = 47;
+
+  static std::uint64_t bin_of(double length2) { return std::bit_cast<std::uint64_t>(length2) >> kShift; }
+  static double end_of(std::uint64_t bin) { return std::bit_cast<double>((bin + 1) << kShift); }
+
+  std::uint64_t top_;
+  std::vector<std::uint64_t> counts_;  // from the bin top_ downwards
+};
 
 }  // namespace hfr::detail
 

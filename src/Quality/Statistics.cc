@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include "Parallel/DisjointSets.hh"
 #include "Quality/CellTotals.hh"
-#include "Quality/EdgeLengths.hh"
 #include "Quality/FixedSum.hh"
 #include "Quality/Metrics.hh"
+#include "Quality/Ranks.hh"
 #include "Quality/SurfaceStatistics.hh"
 
 namespace hfr {
@@ -53,45 +52,29 @@ void add_vertices(const TetMesh& mesh, par::Policy policy, Statistics& s) {
   s.box_high = box.high;
 }
 
-// Puts the values of the given ranks, ascending, to their places in the sorted order: the middle rank first,
-// so that each half of the ranks sees its half of the values only.
-void select_ranks(std::span<double> values, std::span<const std::size_t> ranks, std::size_t offset = 0) {
-  if (ranks.empty() || values.empty()) return;
-  const std::size_t middle = ranks.size() / 2;
-  const std::size_t at = ranks[middle] - offset;
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  select_ranks(values.first(at), ranks.first(middle), offset);
-  const auto above = ranks.subspan(middle + 1);
-  const auto is_same = [&](std::size_t rank) { return rank == ranks[middle]; };
-  const auto first_above = std::find_if_not(above.begin(), above.end(), is_same);
-  select_ranks(values.subspan(at + 1), above.subspan(static_cast<std::size_t>(first_above - above.begin())),
-               offset + at + 1);
-}
-
-// Of decision values; the mean is left to the caller. Reorders the values.
-Distribution distribution(Metric metric, std::vector<double>& values) {
+// Of decision values; the mean is left to the caller.
+Distribution distribution(Metric metric, const std::vector<double>& values) {
   Distribution d;
   if (values.empty()) return d;
   const std::size_t n = values.size();
-  std::array<std::size_t, kPercentiles.size() + 1> ranks{};
+  std::array<std::size_t, kPercentiles.size() + 1> ranks{};  // that of the smallest first
   for (std::size_t i = 0; i < kPercentiles.size(); ++i) {
     const auto rank = static_cast<std::size_t>(std::ceil(kPercentiles[i] / 100.0 * static_cast<double>(n)));
     ranks[i + 1] = std::clamp<std::size_t>(rank, 1, n) - 1;
   }
-  select_ranks(values, ranks);
-  for (std::size_t i = 0; i < kPercentiles.size(); ++i)
-    d.percentiles[i] = report_value(metric, values[ranks[i + 1]]);
-  d.min = report_value(metric, values[0]);
+  const std::vector<double> found = detail::values_at(values, ranks);
+  for (std::size_t i = 0; i < kPercentiles.size(); ++i) d.percentiles[i] = report_value(metric, found[i + 1]);
+  d.min = report_value(metric, found[0]);
   d.max = d.percentiles.back();
   return d;
 }
 
 // Euler's formula; the characteristic of a solid is half that of its boundary.
-std::size_t edge_count(const TetMesh& mesh, const Statistics& s) {
+std::size_t edge_count(const TetMesh& mesh, std::span<const HalfFaceHandle> constrained,
+                       const Statistics& s) {
   std::vector<bool> on_boundary(mesh.n_vertices(), false);
-  for (std::size_t i = 0; i < 4 * mesh.n_cells(); ++i) {
-    const HalfFaceHandle h(i);
-    if (mesh.opposite_halfface(h).is_valid() || mesh.is_deleted(cell_of(h))) continue;
+  for (const HalfFaceHandle h : constrained) {
+    if (mesh.opposite_halfface(h).is_valid()) continue;
     for (const VertexHandle v : mesh.halfface_vertices(h)) on_boundary[v.idx()] = true;
   }
   const auto boundary_vertices =
@@ -102,14 +85,29 @@ std::size_t edge_count(const TetMesh& mesh, const Statistics& s) {
   return static_cast<std::size_t>(std::llround(edges));
 }
 
+// A cell belongs to the root of its smallest neighbour, if that is smaller than itself: one look for most
+// cells, and few roots are left to be joined.
 std::size_t count_components(const TetMesh& mesh) {
-  par::DisjointSets<Index> cells(mesh.n_cells());
-  std::size_t components = mesh.n_logical_cells();
-  for (std::size_t i = 0; i < 4 * mesh.n_cells(); ++i) {
-    const HalfFaceHandle h(i);
-    const HalfFaceHandle m = mesh.opposite_halfface(h);
-    if (!m.is_valid() || m < h || mesh.is_deleted(cell_of(h))) continue;
-    if (cells.join(cell_of(h).idx(), cell_of(m).idx())) --components;
+  std::vector<Index> root(mesh.n_cells());
+  std::vector<Index> number(mesh.n_cells());  // of a root among these
+  std::size_t n_roots = 0;
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+    if (mesh.is_deleted(CellHandle(i))) continue;
+    auto least = static_cast<Index>(i);
+    for (const HalfFaceHandle m : mesh.cell(CellHandle(i)).mate)
+      if (m.is_valid()) least = std::min(least, static_cast<Index>(cell_of(m).idx()));
+    if (least == i) number[i] = static_cast<Index>(n_roots++);
+    root[i] = least == i ? least : root[least];
+  }
+  par::DisjointSets<Index> sets(n_roots);
+  std::size_t components = n_roots;
+  if (n_roots < 2) return n_roots;
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+    if (mesh.is_deleted(CellHandle(i))) continue;
+    for (const HalfFaceHandle m : mesh.cell(CellHandle(i)).mate) {
+      if (!m.is_valid() || cell_of(m).idx() > i || root[cell_of(m).idx()] == root[i]) continue;
+      if (sets.join(number[root[i]], number[root[cell_of(m).idx()]])) --components;
+    }
   }
   return components;
 }
@@ -152,7 +150,7 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
   detail::CellValues values;
   const detail::CellTotals totals = detail::gather_cells(mesh, policy, max_det, diagonal, values);
   add_cells(totals, max_det, s);
-  s.edge_length = detail::edge_length_percentiles(mesh, policy, s.min_edge, s.max_edge);
+  s.edge_length = totals.length_bins.percentiles(s.min_edge, s.max_edge);
   s.edge_length.min = s.min_edge;
   s.edge_length.mean = s.mean_edge;
   s.edge_length.max = s.max_edge;
@@ -171,11 +169,12 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
     s.volume_length.mean = totals.volume_length.value() / n;
   }
   const Vec3 centre = 0.5 * (s.box_low + s.box_high);
-  s.enclosed_volume = detail::boundary_determinant(mesh, policy, centre, max_det) / 6.0;
+  s.enclosed_volume = detail::boundary_determinant(mesh, totals.constrained, centre, max_det) / 6.0;
   if (s.enclosed_volume != 0.0) s.overlap = s.absolute_volume / std::abs(s.enclosed_volume) - 1.0;
-  s.edges = edge_count(mesh, s);
+  s.edges = edge_count(mesh, totals.constrained, s);
   if (options.surface) {
-    detail::SurfaceTotals surface = detail::gather_surface(mesh, policy, diagonal * diagonal);
+    detail::SurfaceTotals surface =
+        detail::gather_surface(mesh, policy, totals.constrained, diagonal * diagonal);
     s.patches = std::move(surface.patches);
     s.surface_ceiling = surface.surface_ceiling;
     s.interface_ceiling = surface.interface_ceiling;

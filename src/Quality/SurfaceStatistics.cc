@@ -9,29 +9,20 @@
 namespace hfr::detail {
 namespace {
 
-// Half-faces with frozen faces, ascending.
-std::vector<Index> frozen_halffaces(const TetMesh& mesh, par::Policy policy) {
-  return par::compact<Index>(policy, 4 * mesh.n_cells(), [&](std::size_t i) {
-    const HalfFaceHandle h(i);
-    return !mesh.is_deleted(cell_of(h)) && mesh.is_constrained(h);
-  });
-}
-
 double face_area(const TetMesh& mesh, HalfFaceHandle h) {
   const auto [a, b, c] = mesh.halfface_vertices(h);
   const Vec3 p = mesh.point(a);
   return 0.5 * norm(cross(mesh.point(b) - p, mesh.point(c) - p));
 }
 
-std::vector<PatchStatistics> gather_patches(const TetMesh& mesh, const std::vector<Index>& frozen,
+std::vector<PatchStatistics> gather_patches(const TetMesh& mesh, std::span<const HalfFaceHandle> constrained,
                                             double max_area) {
   struct Totals {
     std::size_t faces = 0;
     FixedSum area;
   };
   std::map<int, Totals> patches;
-  for (const Index i : frozen) {
-    const HalfFaceHandle h(i);
+  for (const HalfFaceHandle h : constrained) {
     const HalfFaceHandle mate = mesh.opposite_halfface(h);
     if (mate.is_valid() && mate < h) continue;
     const auto& labels = mesh.labels().faces;
@@ -93,15 +84,16 @@ void lower_at(const TetMesh& mesh, HalfFaceHandle h, std::size_t side, EdgeWedge
   for (const Wedge& wedge : scratch.wedges) Ceilings::lower(ceilings.interface, wedge, a, b);
 }
 
-Ceilings gather_ceilings(const TetMesh& mesh, par::Policy policy, const std::vector<Index>& frozen) {
-  const int n_parts = par::thread_count(policy, frozen.size());
+Ceilings gather_ceilings(const TetMesh& mesh, par::Policy policy,
+                         std::span<const HalfFaceHandle> constrained) {
+  const int n_parts = par::thread_count(policy, constrained.size());
   std::vector<Ceilings> found(static_cast<std::size_t>(n_parts));
   par::parts(n_parts, [&](int part) {
-    const std::size_t end = par::part_begin(frozen.size(), n_parts, part + 1);
+    const std::size_t end = par::part_begin(constrained.size(), n_parts, part + 1);
     EdgeWedges scratch;
-    for (std::size_t i = par::part_begin(frozen.size(), n_parts, part); i < end; ++i) {
+    for (std::size_t i = par::part_begin(constrained.size(), n_parts, part); i < end; ++i) {
       for (std::size_t side = 0; side < 3; ++side)
-        lower_at(mesh, HalfFaceHandle(frozen[i]), side, scratch, found[static_cast<std::size_t>(part)]);
+        lower_at(mesh, constrained[i], side, scratch, found[static_cast<std::size_t>(part)]);
     }
   });
   Ceilings all;
@@ -111,10 +103,10 @@ Ceilings gather_ceilings(const TetMesh& mesh, par::Policy policy, const std::vec
 
 }  // namespace
 
-SurfaceTotals gather_surface(const TetMesh& mesh, par::Policy policy, double max_area) {
-  const std::vector<Index> frozen = frozen_halffaces(mesh, policy);
-  const Ceilings ceilings = gather_ceilings(mesh, policy, frozen);
-  return {gather_patches(mesh, frozen, max_area), ceilings.surface, ceilings.interface};
+SurfaceTotals gather_surface(const TetMesh& mesh, par::Policy policy,
+                             std::span<const HalfFaceHandle> constrained, double max_area) {
+  const Ceilings ceilings = gather_ceilings(mesh, policy, constrained);
+  return {gather_patches(mesh, constrained, max_area), ceilings.surface, ceilings.interface};
 }
 
 }  // namespace hfr::detail

@@ -2,6 +2,7 @@
 #ifndef HFR_QUALITY_SURFACE_STATISTICS_HH
 #define HFR_QUALITY_SURFACE_STATISTICS_HH
 
+#include <span>
 #include <vector>
 
 #include "Quality/Statistics.hh"
@@ -15,8 +16,9 @@ struct SurfaceTotals {
   EdgeWedge interface_ceiling;
 };
 
-/// max_area bounds the area of a face.
-SurfaceTotals gather_surface(const TetMesh& mesh, par::Policy policy, double max_area);
+/// `constrained`: half-faces whose faces may not change, ascending. max_area bounds the area of a face.
+SurfaceTotals gather_surface(const TetMesh& mesh, par::Policy policy,
+                             std::span<const HalfFaceHandle> constrained, double max_area);
 
 }  // namespace hfr::detail
 
