@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "Json.hh"
@@ -207,7 +208,8 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   const bool free = line.surface == "free" || (line.surface.empty() && !on_tetrahedra);
   idle(!free && line.hausdorff >= 0, "--hausdorff", "--surface free");
   idle(!free && line.feature_angle, "--feature-angle", "--surface free");
-  idle(frozen && !line.fix.empty(), "--fix", "--surface flat or free");
+  const auto is_patch = [](const std::string& what) { return what.starts_with("patch:"); };
+  idle(frozen && std::ranges::any_of(line.fix, is_patch), "--fix patch", "--surface flat or free");
   idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
   const bool on_cpu = line.device.empty() || line.device == "cpu";
   idle(on_cpu && line.improve.hybrid, "--hybrid", "--device");

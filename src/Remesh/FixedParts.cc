@@ -2,7 +2,6 @@
 #include "Remesh/FixedParts.hh"
 
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include "HalfFace/Errors.hh"
@@ -41,6 +40,34 @@ void require_fixed_parts(const TetMesh& mesh, const SurfaceOptions& options) {
   for (int patch : options.fixed_patches)
     HFR_REQUIRE(std::ranges::any_of(labelled, [&](const auto& entry) { return entry.value == patch; }),
                 "fix patch:" + std::to_string(patch) + ": no face has this label");
+}
+
+namespace {
+
+/// Fixes x, and keeps what it was named by if that is new.
+template <class Handle, class Name>
+void fix(TetMesh& mesh, Handle x, const Name& name, std::vector<Name>& fixed) {
+  if (mesh.is_fixed(x)) return;
+  mesh.set_fixed(x);
+  fixed.push_back(name);
+}
+
+}  // namespace
+
+// A patch is labelled, and so kept already where no surface is allowed to change; where one is, Features
+// reads the options.
+FixedParts::FixedParts(TetMesh& mesh, const SurfaceOptions& options) {
+  for (VertexHandle v : options.fixed_vertices) fix(mesh, v, v, vertices_);
+  for (const auto& edge : options.fixed_edges) fix(mesh, mesh.find_edge(edge[0], edge[1]), edge, edges_);
+  for (const auto& face : options.fixed_faces) fix(mesh, mesh.find_face(face), face, faces_);
+}
+
+void FixedParts::release(TetMesh& mesh, std::span<const VertexHandle> vertices) {
+  const auto now = [&](VertexHandle v) { return vertices.empty() ? v : vertices[v.idx()]; };
+  for (VertexHandle v : vertices_) mesh.set_fixed(now(v), false);
+  for (const auto& e : edges_) mesh.set_fixed(mesh.find_edge(now(e[0]), now(e[1])), false);
+  for (const auto& f : faces_)
+    mesh.set_fixed(mesh.find_face(std::array{now(f[0]), now(f[1]), now(f[2])}), false);
 }
 
 }  // namespace hfr

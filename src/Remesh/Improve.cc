@@ -155,13 +155,14 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   if (options.maps) recorder.emplace(mesh);
   GarbageMap order;
   bool known_to_meet = nothing_to_do;
+  FixedParts fixed(mesh, options.surface);
   try {
     if (!nothing_to_do)
       known_to_meet =
           run(mesh, {options, strategy, control, findings, device, checkpoint}, order, result.surface);
   } catch (...) {  // of a callback, most likely
     checkpoint.settle_after_failure(mesh);
-    tidy(mesh, options, !checkpoint.is_input(), order);
+    fixed.release(mesh, tidy(mesh, options, !checkpoint.is_input(), order).vertices);
     throw;
   }
   result.passes = std::move(control.passes());
@@ -169,6 +170,7 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   if (device.mesh()) result.kernel_times = device.mesh()->profile();
   result.changed = control.n_changes() > 0;
   const GarbageMap garbage = tidy(mesh, options, result.changed, order);
+  fixed.release(mesh, garbage.vertices);
   if (recorder) result.maps = recorder->maps(order, garbage);
   if (!known_to_meet) {
     if (result.changed) found = survey(mesh, options.policy);

@@ -153,7 +153,7 @@ constexpr std::array kRows = std::to_array<Row<O>>({
       "Surface edges sharper than this stay, with surface free; 40 by default.", false},
      [](O& o, Text t) { o.surface.feature_angle = number(t, 0.0, 180.0); }},
     {{"fix", "patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0",
-      "Keep this as it is, with surface flat or free.", true},
+      "Keep this as it is, on the surface and inside.", true},
      add_fixed},
     {{"periodic", "A:B, two patches",
       "Patches that match each other by a translation: their vertices move together.", true},

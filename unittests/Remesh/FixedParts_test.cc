@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <map>
+#include <vector>
+
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Generate.hh"
 #include "Remesh/Improve.hh"
@@ -65,6 +69,52 @@ TEST(FixedParts, WhatItHasIsTaken) {
               s.fixed_faces = {{V(4), V(1), V(0)}};
             }),
             "");
+}
+
+/// A box whose inner vertices are displaced, so that a run has them all to move.
+TetMesh shaken_box() {
+  generate::Arrays arrays = generate::box({8, 8, 8});
+  generate::jitter_inner(arrays, 0.45, 7);
+  return build(arrays.points, arrays.cells);
+}
+
+// It counted for parts of the surface only.
+TEST(FixedParts, WhatIsInsideStaysInEveryMode) {
+  for (const SurfaceMode mode : {SurfaceMode::kFrozen, SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    TetMesh mesh = shaken_box();
+    std::vector<V> inside;
+    for (V v : mesh.vertices())
+      if (!mesh.is_boundary(v)) inside.push_back(v);
+    ASSERT_GT(inside.size(), 100U);
+    ImproveOptions options;
+    options.maps = true;
+    options.surface.mode = mode;
+    options.surface.fixed_vertices = {inside[10], inside[20], inside[30]};
+    const auto edges = mesh.vertex_edges(inside[40]);
+    const EdgeHandle e = *edges.begin();
+    options.surface.fixed_edges = {mesh.edge_vertices(e)};
+    const auto face = mesh.halfface_vertices(halfface_of(mesh.incident_cell(inside[60]), 1));
+    options.surface.fixed_faces = {face};
+    mesh.set_fixed(inside[10]);  // by the caller, who finds it so again
+    std::map<V, Vec3> where;
+    for (V v : options.surface.fixed_vertices) where[v] = mesh.point(v);
+    for (V v : mesh.edge_vertices(e)) where[v] = mesh.point(v);
+    for (V v : face) where[v] = mesh.point(v);
+
+    const Result result = improve(mesh, options);
+    ASSERT_TRUE(result.changed);
+    const auto now = [&](V v) { return result.maps.vertices.empty() ? v : result.maps.vertices[v.idx()]; };
+    for (const auto& [v, point] : where) {
+      ASSERT_TRUE(now(v).is_valid()) << v.idx();
+      EXPECT_EQ(mesh.point(now(v)), point) << v.idx();
+    }
+    const auto& edge = options.surface.fixed_edges[0];
+    EXPECT_TRUE(mesh.find_edge(now(edge[0]), now(edge[1])).is_valid());
+    EXPECT_TRUE(mesh.find_face(std::array{now(face[0]), now(face[1]), now(face[2])}).is_valid());
+    EXPECT_TRUE(mesh.locks().empty());
+    EXPECT_EQ(std::ranges::count_if(mesh.vertices(), [&](V v) { return mesh.is_fixed(v); }), 1);
+    EXPECT_TRUE(mesh.is_fixed(now(inside[10])));
+  }
 }
 
 }  // namespace
