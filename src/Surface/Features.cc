@@ -387,49 +387,48 @@ double allowed_distance(const Arrays& arrays, const SurfaceOptions& options) {
   return std::min(kOfEdge * mean_edge(arrays), kOfDiagonal * diagonal(arrays));
 }
 
-Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance) {
-  const bool flat = options.mode != SurfaceMode::kFree;
-  const double tolerance = kCoplanar * diagonal(arrays);
-  const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
-  const std::size_t n_vertices = arrays.points.size();
-  Features found;
-  found.edges = find_edges(arrays);
-  std::vector<MotionConstraint> planes;
-  if (flat) found.facet = find_facets(arrays, found.edges, tolerance, planes);
+namespace {
 
-  std::vector<Incidence> at(n_vertices);
-  std::vector<std::uint8_t> on_surface(n_vertices, 0);
-  std::vector<Vec3> normal;
+/// What the faces at each vertex say of it, before edges do; `on_surface` is set where there is one.
+std::vector<Incidence> incidences(const Arrays& arrays, std::vector<std::uint8_t>& on_surface) {
+  std::vector<Incidence> at(arrays.points.size());
+  on_surface.assign(arrays.points.size(), 0);
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
-    normal.push_back(unit(scaled_normal(corners(arrays.points, arrays.faces[i]))));
     for (VertexHandle v : arrays.faces[i]) {
       on_surface[v.idx()] = 1;
       at[v.idx()].face = static_cast<std::uint32_t>(i);
       if (arrays.fixed[i]) at[v.idx()].locked = true;
     }
   }
+  return at;
+}
+
+/// Sets `locked` and `feature` of the edges by facet or, without facets, by the angle between the faces.
+/// Returns 1 for edges that are features, if at all, by that alone.
+std::vector<std::uint8_t> mark_edges(const Arrays& arrays, std::span<const Vec3> normal, double cosine,
+                                     Features& found) {
   std::vector<std::uint8_t> only_turns;
   for (Edge& e : found.edges) {
-    const bool turns = flat ? e.manifold && found.facet[e.f[0]] != found.facet[e.f[1]]
-                            : e.manifold && dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
+    const bool turns = !found.facet.empty() ? e.manifold && found.facet[e.f[0]] != found.facet[e.f[1]]
+                                            : e.manifold && dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
     e.locked = std::binary_search(arrays.locked_edges.begin(), arrays.locked_edges.end(),
                                   std::array<VertexHandle, 2>{e.a, e.b});
     const bool other = !e.manifold || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] || e.locked;
     e.feature = turns || other;
     only_turns.push_back(other ? 0 : 1);
   }
-  if (!flat && distance > 0) {
-    constexpr double kReach = 3;
-    Regions(arrays, found.edges, only_turns, kReach * distance, cosine).drop_noise();
-    drop_small(arrays.points, found.edges, only_turns, distance);
-  }
+  return only_turns;
+}
+
+/// The features at each vertex; with facets also those beside them.
+void count_features(const Features& found, std::span<Incidence> at) {
   for (const Edge& e : found.edges) {
     if (!e.feature) continue;
     const std::array<VertexHandle, 2> ends = {e.a, e.b};
     for (std::size_t i = 0; i < 2; ++i) {
       Incidence& here = at[ends[i].idx()];
       here.crosses = here.crosses || !e.manifold || here.n_features >= 2;
-      if (flat && !here.crosses)
+      if (!found.facet.empty() && !here.crosses)
         for (std::size_t side = 0; side < 2; ++side)
           here.beside[2 * here.n_features + side] = found.facet[e.f[side]];
       if (here.n_features < 2) here.along[here.n_features] = ends[1 - i];
@@ -437,20 +436,50 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
       here.locked = here.locked || e.locked;
     }
   }
-  // Sheets that meet in a vertex alone: to move it in the facet of one would take it out of that of another.
-  for (std::size_t i = 0; flat && i < arrays.faces.size(); ++i) {
+}
+
+/// Locks vertices in which sheets of several facets meet without an edge in common: to move such a vertex in
+/// the facet of one would take it out of that of another.
+void lock_meeting_sheets(const Arrays& arrays, std::span<const std::uint32_t> facet,
+                         std::span<Incidence> at) {
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
     for (VertexHandle v : arrays.faces[i]) {
       Incidence& here = at[v.idx()];
       const auto end = here.beside.begin() + 2 * here.n_features;
       if (here.n_features == 0)
-        here.locked = here.locked || found.facet[i] != found.facet[here.face];
+        here.locked = here.locked || facet[i] != facet[here.face];
       else if (!here.crosses)
-        here.locked = here.locked || std::find(here.beside.begin(), end, found.facet[i]) == end;
+        here.locked = here.locked || std::find(here.beside.begin(), end, facet[i]) == end;
     }
   }
+}
+
+}  // namespace
+
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance) {
+  const bool flat = options.mode != SurfaceMode::kFree;
+  const double tolerance = kCoplanar * diagonal(arrays);
+  const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
+  Features found;
+  found.edges = find_edges(arrays);
+  std::vector<MotionConstraint> planes;
+  if (flat) found.facet = find_facets(arrays, found.edges, tolerance, planes);
+
+  std::vector<Vec3> normal;
+  for (const auto& face : arrays.faces) normal.push_back(unit(scaled_normal(corners(arrays.points, face))));
+  std::vector<std::uint8_t> only_turns = mark_edges(arrays, normal, cosine, found);
+  if (!flat && distance > 0) {
+    constexpr double kReach = 3;
+    Regions(arrays, found.edges, only_turns, kReach * distance, cosine).drop_noise();
+    drop_small(arrays.points, found.edges, only_turns, distance);
+  }
+  std::vector<std::uint8_t> on_surface;
+  std::vector<Incidence> at = incidences(arrays, on_surface);
+  count_features(found, at);
+  if (flat) lock_meeting_sheets(arrays, found.facet, at);
   for (VertexHandle v : arrays.locked_vertices) at[v.idx()].locked = true;
-  found.motion_constraint.resize(n_vertices);
-  for (std::size_t i = 0; i < n_vertices; ++i) {
+  found.motion_constraint.resize(arrays.points.size());
+  for (std::size_t i = 0; i < at.size(); ++i) {
     if (!on_surface[i]) continue;
     const std::uint32_t f = at[i].face;
     const MotionConstraint plane =

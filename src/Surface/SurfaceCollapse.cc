@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "Operators/Metrics.hh"
 
@@ -20,28 +21,20 @@ struct Cluster {
   std::size_t n_first = 0;                         // of the smaller region, where there are two
 };
 
-/// A vertex that has only one or two cells of the star may have none left that is created anew; the incident
-/// cell of such a vertex would point nowhere. So the cells behind those that belong to it come along. Which
-/// these are must not depend on the target: all cells behind link faces at vertices with at most two cells in
-/// the star. No cells where they are too many, or of more than two regions.
-void gather_cluster(const TetMesh& mesh, VertexHandle v, Cluster& out) {
-  out.cells.clear();
-  out.n_first = 0;
-  Star& star = out.star;
-  if (!mesh.gather_star(v, star)) return;
-  const auto n = static_cast<std::size_t>(star.size);
+/// The cells behind link faces at vertices with at most two cells in the star, which are not of the star.
+Scope cells_behind(const TetMesh& mesh, const Star& star) {
   struct Count {
     VertexHandle v;
     int n = 0;
   };
   FixedVector<Count, 3 * Star::kCapacity> counts;
-  const auto in_star = [&](CellHandle c) {
-    return std::find(star.cells.begin(), star.cells.begin() + static_cast<std::ptrdiff_t>(n), c) !=
-           star.cells.begin() + static_cast<std::ptrdiff_t>(n);
+  const std::span cells(star.cells.begin(), static_cast<std::size_t>(star.size));
+  const auto count_of = [&](VertexHandle v) {
+    return std::find_if(counts.begin(), counts.end(), [&](const Count& c) { return c.v == v; });
   };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (VertexHandle w : mesh.halfface_vertices(halfface_of(star.cells[i], star.corners[i]))) {
-      auto at = std::find_if(counts.begin(), counts.end(), [&](const Count& c) { return c.v == w; });
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (VertexHandle w : mesh.halfface_vertices(halfface_of(cells[i], star.corners[i]))) {
+      const auto at = count_of(w);
       if (at != counts.end())
         ++at->n;
       else
@@ -49,16 +42,28 @@ void gather_cluster(const TetMesh& mesh, VertexHandle v, Cluster& out) {
     }
   }
   Scope behind;
-  for (std::size_t i = 0; i < n; ++i) {
-    const HalfFaceHandle h = halfface_of(star.cells[i], star.corners[i]);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const HalfFaceHandle h = halfface_of(cells[i], star.corners[i]);
     const auto f = mesh.halfface_vertices(h);
-    const bool rare = std::any_of(f.begin(), f.end(), [&](VertexHandle w) {
-      return std::find_if(counts.begin(), counts.end(), [&](const Count& c) { return c.v == w; })->n <= 2;
-    });
+    const bool rare = std::any_of(f.begin(), f.end(), [&](VertexHandle w) { return count_of(w)->n <= 2; });
     const HalfFaceHandle m = mesh.opposite_halfface(h);
-    if (!rare || !m.is_valid() || in_star(cell_of(m))) continue;
+    if (!rare || !m.is_valid() || std::find(cells.begin(), cells.end(), cell_of(m)) != cells.end()) continue;
     if (std::find(behind.begin(), behind.end(), cell_of(m)) == behind.end()) behind.push_back(cell_of(m));
   }
+  return behind;
+}
+
+/// A vertex that has only one or two cells of the star may have none left that is created anew; the incident
+/// cell of such a vertex would point nowhere. So the cells behind those that belong to it come along. Which
+/// these are must not depend on the target: cells_behind(). No cells where they are too many, or of more than
+/// two regions.
+void gather_cluster(const TetMesh& mesh, VertexHandle v, Cluster& out) {
+  out.cells.clear();
+  out.n_first = 0;
+  Star& star = out.star;
+  if (!mesh.gather_star(v, star)) return;
+  const auto n = static_cast<std::size_t>(star.size);
+  const Scope behind = cells_behind(mesh, star);
   if (behind.size() + n > Star::kCapacity) return;
   int low = mesh.region(star.cells[0]);
   int high = low;
@@ -103,6 +108,27 @@ bool gather_faces(const TetMesh& mesh, VertexHandle v, const Star& star, Faces& 
     }
   }
   return true;
+}
+
+/// True where the star has an inner face (v, onto, x) whose edge (v, x) is on the surface: then two edges of
+/// it would become one.
+template <class Faces>
+bool meets_twice(const TetMesh& mesh, const Star& star, const Faces& faces, VertexHandle onto) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(star.size); ++k) {
+    const auto f = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
+    if (!has(f, onto)) continue;
+    for (VertexHandle x : f) {
+      if (x == onto) continue;
+      bool is_with_x = false;
+      bool is_with_both = false;
+      for (const auto& g : faces) {
+        is_with_x = is_with_x || has(g, x);
+        is_with_both = is_with_both || (has(g, x) && has(g, onto));
+      }
+      if (is_with_x && !is_with_both) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -186,7 +212,6 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
     }
     if (!(worst > plan.new_worst) || n_created == 0) continue;
     FixedVector<Triangle, kMaxFaces> removed, created;
-    bool meets_twice = false;  // an inner face (v, onto, x) whose edge (v, x) is on the surface
     for (const auto& f : faces) {
       Triangle t = {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
       removed.push_back(t);
@@ -195,21 +220,7 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
         if (f[k] == v) t[k] = p;
       created.push_back(t);
     }
-    for (std::size_t k = 0; k < n && !meets_twice; ++k) {
-      const auto f = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
-      if (!has(f, onto)) continue;
-      for (VertexHandle x : f) {
-        if (x == onto) continue;
-        int n_with_x = 0;
-        int n_with_both = 0;
-        for (const auto& g : faces) {
-          n_with_x += has(g, x) ? 1 : 0;
-          n_with_both += has(g, x) && has(g, onto) ? 1 : 0;
-        }
-        meets_twice = meets_twice || (n_with_x > 0 && n_with_both == 0);
-      }
-    }
-    if (meets_twice || !surface->keeps_shape(faces, removed, created)) continue;
+    if (meets_twice(mesh, star, faces, onto) || !surface->keeps_shape(faces, removed, created)) continue;
     plan.new_worst = worst;
     plan.onto = onto;
     plan.n_created = n_created + static_cast<std::uint32_t>(n_behind);

@@ -42,6 +42,24 @@ OmVertex SurfaceMesh::Impl::add_vertex(VertexHandle v, Vec3 p) {
   return w;
 }
 
+namespace {
+
+/// What face i of the arrays is to be known for. `numbers`: the regions, ascending.
+void fill_record(FaceRecord& record, const Arrays& arrays, const surface::Features& features,
+                 const std::vector<int>& numbers, std::size_t i) {
+  record.patch = arrays.patch[i];
+  record.locked = arrays.locked[i] != 0;
+  record.interface = arrays.interface[i] != 0;
+  for (std::size_t k = 0; k < 2; ++k)
+    record.sides[k] = static_cast<std::uint32_t>(
+        std::lower_bound(numbers.begin(), numbers.end(), arrays.regions[i][k]) - numbers.begin());
+  record.inward = arrays.inward[i] != 0;
+  record.inside = arrays.halffaces[i];
+  if (!features.facet.empty()) record.facet = features.facet[i];
+}
+
+}  // namespace
+
 void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& features) {
   const std::size_t n = arrays.faces.size();
   par::DisjointSets<std::uint32_t> corners_of(3 * n);
@@ -81,17 +99,8 @@ void SurfaceMesh::Impl::build(const Arrays& arrays, const surface::Features& fea
     const OmFace f = om.add_face(w[0], w[1], w[2]);
     HFR_ASSERT(f.is_valid());
     faces.resize(om.n_faces());
-    FaceRecord& record_of_f = record(f);
-    record_of_f.patch = arrays.patch[i];
-    record_of_f.locked = arrays.locked[i] != 0;
-    record_of_f.interface = arrays.interface[i] != 0;
-    has_interfaces = has_interfaces || record_of_f.interface;
-    for (std::size_t k = 0; k < 2; ++k)
-      record_of_f.sides[k] = static_cast<std::uint32_t>(
-          std::lower_bound(numbers.begin(), numbers.end(), arrays.regions[i][k]) - numbers.begin());
-    record_of_f.inward = arrays.inward[i] != 0;
-    record_of_f.inside = arrays.halffaces[i];
-    if (!features.facet.empty()) record_of_f.facet = features.facet[i];
+    fill_record(record(f), arrays, features, numbers, i);
+    has_interfaces = has_interfaces || arrays.interface[i] != 0;
   }
   std::sort(more.begin(), more.end());
   for (const surface::Edge& e : features.edges) {
