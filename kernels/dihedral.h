@@ -130,6 +130,15 @@ HFR_FN double hfr_max_dihedral_decision(hfr_real3 a, hfr_real3 b, hfr_real3 c, h
   return hfr_max_dihedral_of(hfr_make_frame(a, b, c, d));
 }
 
+/* sin^2 of half the dihedral that a positive cell with the face (a, c, d) and the face (b, c, d) has at their
+ * edge (c, d). NaN where one of the faces has no area. */
+HFR_FN double hfr_half_dihedral_sin2(hfr_real3 a, hfr_real3 b, hfr_real3 c, hfr_real3 d) {
+  const hfr_real3 edge = hfr_sub3(d, c);
+  const hfr_real3 na = hfr_cross3(edge, hfr_sub3(a, c));
+  const hfr_real3 nb = hfr_cross3(edge, hfr_sub3(b, c));
+  return 0.5 - 0.5 * (hfr_dot3(na, nb) / HFR_SQRT(hfr_dot3(na, na) * hfr_dot3(nb, nb)));
+}
+
 /* Cosine and sine of a dihedral, both times the same factor >= 0: t = atan2(sine, cosine), negative in an
  * inverted cell; 0 or 180 degrees in a flat one. For reports. */
 typedef struct hfr_cos_sin {

@@ -14,6 +14,30 @@ namespace hfr {
 
 static_assert(EdgeRemoval<VolumeLength>::kMaxRing == HFR_MAX_RING);
 
+namespace {
+
+/// True where no triangulation of the ring is better: at the side of the polygon that a cell has, its
+/// dihedral is shared out between the two new cells there, one of which has no more than half of it. Looks at
+/// no cell whose angles are twice those of the worst. The margin is for the rounding of this and of the
+/// metric, so that what is refused is what the search would refuse.
+bool halves_are_worse(const TetMesh& mesh, const EdgeRing& ring, std::span<const double> quality,
+                      std::span<const Vec3> p, double old_worst) {
+  constexpr double kLeast = 1e-8, kMargin = 1 - 1e-6;
+  if (!(old_worst > kLeast)) return false;
+  const Vec3 a = mesh.point(ring.a);
+  const Vec3 b = mesh.point(ring.b);
+  const auto n = static_cast<std::size_t>(ring.n_cells);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(quality[ring.cells[i].idx()] < 4 * old_worst)) continue;
+    const double half =
+        hfr_half_dihedral_sin2(to_real3(a), to_real3(b), to_real3(p[i]), to_real3(p[(i + 1) % n]));
+    if (half < kMargin * old_worst) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 template <class Metric>
 void EdgeRemoval<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
   EdgeRing ring;
@@ -34,6 +58,8 @@ std::optional<typename EdgeRemoval<Metric>::Plan> EdgeRemoval<Metric>::evaluate(
     old_worst = std::min(old_worst, quality[ring.cells[i].idx()]);
     p[i] = mesh.point(ring.vertices[i]);
   }
+  if constexpr (kMeasuresAngles<Metric>)
+    if (halves_are_worse(mesh, ring, quality, p, old_worst)) return std::nullopt;
   RingTriangulation table(ring.n_cells);
   const double new_worst =
       table.solve(old_worst, ring_value(metric, p, mesh.point(ring.a), mesh.point(ring.b)));
