@@ -36,7 +36,9 @@ class Judge {
     constraints(before, after);
     if (after.worst <= before.worst + kAngleRounding && after.p1 <= before.p1 + kAngleRounding &&
         after.inverted + after.flat >= before.inverted + before.flat &&
-        below_goal(after) >= below_goal(before) && after.cells > 2 * before.cells + 30)
+        below_goal(after) >= below_goal(before) &&
+        worst_of_others(after) <= worst_of_others(before) + kAngleRounding &&
+        after.cells > 2 * before.cells + 30)
       find("cells for nothing", "{} -> {} cells, worst {:.4f} -> {:.4f}, p1 {:.4f} -> {:.4f}", before.cells,
            after.cells, before.worst, after.worst, before.p1, after.p1);
   }
@@ -69,6 +71,13 @@ class Judge {
   std::ptrdiff_t below_goal(const Measure& m) const {
     const double goal = options_.min_dihedral.value_or(0) - kAngleRounding;
     return std::lower_bound(m.angles.begin(), m.angles.end(), goal) - m.angles.begin();
+  }
+
+  /// The smallest angle beside those of inverted and flat cells: where these stay, neither the worst angle
+  /// nor the 1st percentile of a small mesh tells of its other cells.
+  static double worst_of_others(const Measure& m) {
+    const std::size_t n_invalid = m.inverted + m.flat;
+    return n_invalid < m.angles.size() ? m.angles[n_invalid] : m.worst;
   }
 
   void structure(const Measure& before, const Measure& after) {

@@ -86,6 +86,10 @@ TEST(Promises, AreBrokenByCellsForNothingButNotByThoseThatLeaveFewerBelowTheGoal
   EXPECT_EQ(n_findings(), 0);
   options.improve.min_dihedral.reset();
   EXPECT_EQ(n_findings(), 1) << "there is no goal";
+  before.inverted = after.inverted = 1;
+  EXPECT_EQ(n_findings(), 0) << "the worst beside the inverted one has risen";
+  after.angles = before.angles;
+  EXPECT_EQ(n_findings(), 1);
 }
 
 TEST(Promises, AreBrokenByABoundaryThatMoves) {
