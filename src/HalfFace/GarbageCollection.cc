@@ -28,6 +28,44 @@ std::vector<H> close_up(std::size_t n, std::size_t& n_new, Keep&& keep) {
   return to;
 }
 
+/// The same where the order of what is kept stays: in place, so that nothing is allocated, and what was
+/// reserved is there the next time. `gap`: the first that goes.
+template <class Kind, class T>
+void close_gaps(const std::vector<Handle<Kind>>& to, std::size_t gap, std::size_t n_new,
+                std::vector<T>& values) {
+  if (values.empty()) return;
+  for (std::size_t i = gap; i < to.size(); ++i)
+    if (to[i].is_valid()) values[to[i].idx()] = std::move(values[i]);
+  values.resize(n_new);
+  constexpr std::size_t kLargestSlack = 8;  // of so many
+  if (values.capacity() - n_new > n_new / kLargestSlack + kLargestSlack) values.shrink_to_fit();
+}
+
+/// Of a list from close_up().
+template <class H>
+std::size_t first_gap(const std::vector<H>& to, std::size_t n_new) {
+  if (n_new == to.size()) return n_new;
+  std::size_t low = 0, high = to.size() - 1;  // valid with its own index below low, not so from high on
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (to[middle].is_valid() && to[middle].idx() == middle)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+Cell renamed(const Cell& cell, const GarbageMap& map) {
+  Cell now;
+  for (std::size_t k = 0; k < 4; ++k) {
+    now.v[k] = map.vertices[cell.v[k].idx()];
+    const HalfFaceHandle m = cell.mate[k];
+    if (m.is_valid()) now.mate[k] = halfface_of(map.cells[cell_of(m).idx()], corner_of(m));
+  }
+  return now;
+}
+
 template <std::size_t N, class T>
 void rename_used(const TetMesh& mesh, const std::vector<VertexHandle>& to, TupleMap<N, T>& map) {
   if (map.empty()) return;
@@ -39,13 +77,25 @@ void rename_used(const TetMesh& mesh, const std::vector<VertexHandle>& to, Tuple
 
 }  // namespace
 
-void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells,
-                       par::Policy policy) {
+/// All that hangs on handles but the arrays of vertices and cells.
+void TetMesh::renumber_attached(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells) {
   rename_used(*this, map.vertices, labels_.faces);
   rename_used(*this, map.vertices, labels_.edges);
   rename_used(*this, map.vertices, locks_.faces);
   rename_used(*this, map.vertices, locks_.edges);
   properties_.renumber(*this, map.vertices, n_vertices, map.cells, n_cells);
+  hand_index_state_ = kVoid;
+}
+
+void TetMesh::find_incident_cells() {
+  incident_cell_.assign(points_.size(), CellHandle());
+  for (std::size_t i = cells_.size(); i-- > 0;)  // downwards, so that the smallest cell stays
+    for (VertexHandle v : cells_[i].v) incident_cell_[v.idx()] = CellHandle(i);
+}
+
+void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells,
+                       par::Policy policy) {
+  renumber_attached(map, n_vertices, n_cells);
   permute(policy, map.vertices, n_vertices, labels_.vertices);
   permute(policy, map.vertices, n_vertices, points_);
   permute(policy, map.vertices, n_vertices, vertex_status_);
@@ -53,21 +103,12 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
   permute(policy, map.cells, n_cells, cell_status_);
   std::vector<Cell> cells(n_cells);
   par::for_each(policy, cells_.size(), [&](std::size_t i) {
-    if (!map.cells[i].is_valid()) return;
-    Cell& to = cells[map.cells[i].idx()];
-    for (std::size_t k = 0; k < 4; ++k) {
-      to.v[k] = map.vertices[cells_[i].v[k].idx()];
-      const HalfFaceHandle m = cells_[i].mate[k];
-      if (m.is_valid()) to.mate[k] = halfface_of(map.cells[cell_of(m).idx()], corner_of(m));
-    }
+    if (map.cells[i].is_valid()) cells[map.cells[i].idx()] = renamed(cells_[i], map);
   });
   cells_ = std::move(cells);
-  hand_index_state_ = kVoid;
   free_cells_.clear();
   n_deleted_vertices_ = 0;
-  incident_cell_.assign(n_vertices, CellHandle());
-  for (std::size_t i = n_cells; i-- > 0;)  // downwards, so that the smallest cell stays
-    for (VertexHandle v : cells_[i].v) incident_cell_[v.idx()] = CellHandle(i);
+  find_incident_cells();
 }
 
 GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
@@ -80,7 +121,21 @@ GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
   });
   map.cells =
       close_up<CellHandle>(cells_.size(), n_cells, [&](std::size_t i) { return !is_deleted(CellHandle(i)); });
-  renumber(map, n_vertices, n_cells, options.policy);
+  renumber_attached(map, n_vertices, n_cells);
+  const std::size_t vertex_gap = first_gap(map.vertices, n_vertices);
+  close_gaps(map.vertices, vertex_gap, n_vertices, labels_.vertices);
+  close_gaps(map.vertices, vertex_gap, n_vertices, points_);
+  close_gaps(map.vertices, vertex_gap, n_vertices, vertex_status_);
+  par::for_each(options.policy, cells_.size(), [&](std::size_t i) {
+    if (map.cells[i].is_valid()) cells_[i] = renamed(cells_[i], map);
+  });
+  const std::size_t cell_gap = first_gap(map.cells, n_cells);
+  close_gaps(map.cells, cell_gap, n_cells, regions_);
+  close_gaps(map.cells, cell_gap, n_cells, cell_status_);
+  close_gaps(map.cells, cell_gap, n_cells, cells_);
+  free_cells_.clear();
+  n_deleted_vertices_ = 0;
+  find_incident_cells();
   return map;
 }
 

@@ -73,6 +73,14 @@ class DenseStored : public StoredProperty {
   virtual void permute(std::span<const Index> new_index, std::size_t n_new) = 0;
 };
 
+/// Whether what is kept stays in its order, without gaps.
+inline bool keeps_order(std::span<const Index> new_index) {
+  Index next = 0;
+  for (const Index i : new_index)
+    if (i != VertexHandle::kInvalid && i != next++) return false;
+  return true;
+}
+
 template <class T>
 class Dense final : public DenseStored {
  public:
@@ -95,6 +103,13 @@ class Dense final : public DenseStored {
   }
   void swap(std::size_t i, std::size_t j) override { std::swap(values[i], values[j]); }
   void permute(std::span<const Index> new_index, std::size_t n_new) override {
+    if (keeps_order(new_index)) {  // in place: nothing is allocated
+      for (std::size_t i = 0; i < new_index.size(); ++i)
+        if (new_index[i] != VertexHandle::kInvalid && new_index[i] != i)
+          values[new_index[i]] = std::move(values[i]);
+      values.resize(n_new, Element{preset});
+      return;
+    }
     std::vector<Element> moved(n_new, Element{preset});
     for (std::size_t i = 0; i < new_index.size(); ++i)
       if (new_index[i] != VertexHandle::kInvalid) moved[new_index[i]] = std::move(values[i]);
