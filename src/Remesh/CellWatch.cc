@@ -40,8 +40,7 @@ void CellWatch::forget_looks() {
 void CellWatch::reset() {
   const std::size_t n = mesh_.n_cells();
   forget_looks();
-  excused_.assign(n, 0);
-  left_.assign(n, kNever);
+  forget_excuses();
   if (triggers_.jacobian_ratio > 0) {
     rest_volume_.resize(n);
     par::for_each(policy_, n, [&](std::size_t i) { rest_volume_[i] = volume(mesh_, CellHandle(i)); });
@@ -49,11 +48,28 @@ void CellWatch::reset() {
   look_at_all();
 }
 
+void CellWatch::forget_excuses() {
+  excused_.assign(mesh_.n_cells(), 0);
+  left_.assign(mesh_.n_cells(), kNever);
+  has_excused_ = false;
+}
+
+CellWatch::Memory CellWatch::memory() const {
+  Memory memory{.left = {}, .rest_volume = rest_volume_, .excused = {}};
+  if (!has_excused_) return memory;
+  memory.left = left_;
+  memory.excused = excused_;
+  return memory;
+}
+
 void CellWatch::restore(Memory memory) {
-  left_ = std::move(memory.left);
   rest_volume_ = std::move(memory.rest_volume);
-  excused_ = std::move(memory.excused);
   forget_looks();
+  forget_excuses();
+  if (memory.left.empty()) return;
+  left_ = std::move(memory.left);
+  excused_ = std::move(memory.excused);
+  has_excused_ = true;
 }
 
 std::uint8_t CellWatch::badness(CellHandle c) const {
@@ -167,13 +183,13 @@ void CellWatch::follow(const Edits& edits, bool was_cut_short) {
   carry(rest_volume_, edits.maps.old_cells, 0.0);
   if (!rest_volume_.empty())
     for (const CreatedCell& c : edits.created_cells) rest_volume_[c.cell.idx()] = volume(mesh_, c.cell);
-  excused_.assign(n, 0);
-  left_.assign(n, kNever);
-  stamp_.assign(n, 0);
-  stamp_now_ = 0;
+  if (has_excused_) forget_excuses();
+  excused_.resize(n, 0);
+  left_.resize(n, kNever);
+  stamp_.resize(n, 0);  // an old stamp is no more than another cell's old one
   totals_ = {};
   has_bad_ = true;
-  for (std::size_t i = 0; i < n; ++i) totals_ += totals_of(CellHandle(i));
+  for_bad([&](CellHandle c) { totals_ += totals_of(c); });
   cells_ = edits.moved_cells;
   for (const CreatedCell& c : edits.created_cells) cells_.push_back(c.cell);
   look_at(cells_);
@@ -181,16 +197,30 @@ void CellWatch::follow(const Edits& edits, bool was_cut_short) {
   if (!was_cut_short) excuse();
 }
 
+template <class Visit>
+void CellWatch::for_bad(Visit&& visit) const {
+  for (std::size_t i = 0; i < bad_.size(); ++i)
+    if (bad_[i] != 0) visit(CellHandle(i));
+}
+
 void CellWatch::excuse() {
   if (totals_.active == 0) return;
   totals_ = {};
-  for (std::size_t i = 0; i < mesh_.n_cells(); ++i) {
-    if (bad_[i] != 0) {
-      excused_[i] = static_cast<std::uint8_t>(bad_[i] & ~static_cast<unsigned>(kIsInverted));
-      left_[i] = quality_[i];
-    }
-    totals_ += totals_of(CellHandle(i));
-  }
+  has_excused_ = true;
+  for_bad([&](CellHandle c) {
+    const std::size_t i = c.idx();
+    excused_[i] = static_cast<std::uint8_t>(bad_[i] & ~static_cast<unsigned>(kIsInverted));
+    left_[i] = quality_[i];
+    totals_ += totals_of(c);
+  });
+}
+
+std::optional<Survey> CellWatch::survey() const {
+  constexpr double kSurelyPositive = 1e-30;  // sin²: far from where the test of volumes is in doubt
+  double worst = std::numeric_limits<double>::infinity();
+  for (const double q : quality_) worst = std::min(worst, q);
+  if (!(worst > kSurelyPositive)) return {};
+  return Survey{worst, 0};
 }
 
 RepairCause CellWatch::cause() const {

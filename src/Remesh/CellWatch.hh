@@ -4,18 +4,31 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Remesher.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 
-/// Values by cell or vertex, brought over a repair: those of what is created are `made`.
+/// Values by cell or vertex, brought over a repair: those of what is created are `made`. In place where
+/// nothing has come to stand behind where it stood.
 template <class T, class H>
 void carry(std::vector<T>& values, const std::vector<H>& old_of, T made) {
   if (values.empty()) return;
+  bool in_place = true;
+  for (std::size_t i = 0; i < old_of.size(); ++i)
+    in_place = in_place && (!old_of[i].is_valid() || old_of[i].idx() >= i);
+  if (in_place) {
+    if (values.size() < old_of.size()) values.resize(old_of.size(), made);
+    for (std::size_t i = 0; i < old_of.size(); ++i)
+      values[i] = old_of[i].is_valid() ? values[old_of[i].idx()] : made;
+    values.resize(old_of.size());
+    return;
+  }
   std::vector<T> now(old_of.size(), made);
   for (std::size_t i = 0; i < now.size(); ++i)
     if (old_of[i].is_valid()) now[i] = values[old_of[i].idx()];
@@ -44,13 +57,15 @@ class CellWatch {
   std::size_t n_inverted() const { return totals_.inverted; }
   std::vector<CellHandle> inverted() const;
   double min_dihedral() const;  ///< degrees
+  /// What survey() would find; nothing where a cell is inverted, or may be flat.
+  std::optional<Survey> survey() const;
 
   /// What looking at the same cells again does not bring back.
   struct Memory {
     std::vector<double> left, rest_volume;
     std::vector<std::uint8_t> excused;
   };
-  Memory memory() const { return {left_, rest_volume_, excused_}; }
+  Memory memory() const;
   /// The mesh is again the one that the memory is of; look_at_all() is to follow.
   void restore(Memory memory);
 
@@ -84,7 +99,10 @@ class CellWatch {
   Totals totals_of(CellHandle c) const;
   std::uint8_t badness(CellHandle c) const;
   void forget_looks();
+  void forget_excuses();
   void excuse();
+  template <class Visit>
+  void for_bad(Visit&& visit) const;
 
   const TetMesh& mesh_;
   const RepairTriggers& triggers_;
@@ -98,6 +116,7 @@ class CellWatch {
   std::vector<double> left_;           // by cell: its value then
   std::vector<double> rest_volume_;    // by cell, where asked for
   bool has_bad_ = false;               // some entry of bad_ may not be 0
+  bool has_excused_ = false;           // some entry of excused_ may not be 0
   Totals totals_;
 
   // Of the last look; kept for their memory.

@@ -19,6 +19,7 @@
 #include "Remesh/Polish.hh"
 #include "Remesh/RestoreVolume.hh"
 #include "Remesh/Run.hh"
+#include "Remesh/RunMemory.hh"
 #include "Remesh/Snapshot.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
@@ -72,30 +73,40 @@ struct Parts {
   Findings& findings;
   DeviceSession& device;
   Checkpoint& checkpoint;
+  RunMemory& memory;
 };
 
 /// True when every cell is known to meet the goal. `order`: where each vertex and cell went, if the cells
 /// were reordered.
 bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& surface_report) {
-  const auto& [options, strategy, control, findings, device, checkpoint] = parts;
+  const auto& [options, strategy, control, findings, device, checkpoint, memory] = parts;
   const par::Policy policy = strategy.pass.policy;
   const bool valid = checkpoint.input().is_valid();
   // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
   if (!strategy.goal && is_scattered(mesh, policy))
     order = reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = policy});
-  Workspace work;
+  Workspace& work = memory.work;
+  work.begin();
+  const bool knows_stars = std::exchange(memory.knows_stars, false);
   Run run = {mesh, work, strategy, control, findings, device, nullptr, &checkpoint, strategy.bounds};
   if (!valid) run.keep(valid);
   std::vector<PassReport> unfolding;
   const SurfaceRun surface(mesh, options, !valid, unfolding);
   for (PassReport& pass : unfolding) control.add(std::move(pass));
-  work.attach(mesh, policy);
-  findings.is_folded = !folded_faces(mesh, policy).empty();
+  if (knows_stars)
+    work.attach_again(mesh, policy);
+  else
+    work.attach(mesh, policy);
+  if (!memory.is_folded || surface.get()) memory.is_folded = !folded_faces(mesh, policy).empty();
+  findings.is_folded = *memory.is_folded;
   // Elsewhere no new edge or face can come twice while all cells are positive, and there is no copy to make.
   if (findings.is_folded || !work.pinched.empty()) run.keep(valid);
   run.surface = surface.get();
   bool met = run_twice_if_worse(run);
-  met = settle(run, met) && met;
+  const bool stays = settle(run, met);
+  met = stays && met;
+  memory.knows_stars = stays;
+  if (surface.get()) memory.is_folded.reset();
   surface_report = surface.report(mesh);
   return met;
 }
@@ -131,6 +142,11 @@ void look_for_faults(const TetMesh& mesh, const Survey& found, par::Policy polic
 }  // namespace
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
+  RunMemory memory;
+  return improve(mesh, options, memory);
+}
+
+Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) {
   validate(options);
   require_fixed_parts(mesh, options.surface);
   require_sound_coordinates(mesh, options.policy);
@@ -139,7 +155,7 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   RunControl control(options.time_limit, options.cancel, options.progress);
   const double goal = options.min_dihedral ? dihedral_decision(*options.min_dihedral) : 0.0;
   const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
-  Survey found = survey(mesh, options.policy);
+  Survey found = memory.found ? *std::exchange(memory.found, std::nullopt) : survey(mesh, options.policy);
   const Strategy strategy = resolve(options, found, mesh.n_logical_cells());
   Checkpoint checkpoint(mesh, found, options.policy);
   Findings findings;
@@ -152,14 +168,14 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
     result.seconds_device = control.seconds() - before;
   }
   std::optional<MapRecorder> recorder;
-  if (options.maps) recorder.emplace(mesh);
+  if (options.maps) recorder.emplace(mesh, std::exchange(memory.before, nullptr));
   GarbageMap order;
   bool known_to_meet = nothing_to_do;
   FixedParts fixed(mesh, options.surface);
   try {
     if (!nothing_to_do)
-      known_to_meet =
-          run(mesh, {options, strategy, control, findings, device, checkpoint}, order, result.surface);
+      known_to_meet = run(mesh, {options, strategy, control, findings, device, checkpoint, memory}, order,
+                          result.surface);
   } catch (...) {  // of a callback, most likely
     checkpoint.settle_after_failure(mesh);
     fixed.release(mesh, tidy(mesh, options, !checkpoint.is_input(), order).vertices);
@@ -171,7 +187,8 @@ Result improve(TetMesh& mesh, const ImproveOptions& options) {
   result.changed = control.n_changes() > 0;
   const GarbageMap garbage = tidy(mesh, options, result.changed, order);
   fixed.release(mesh, garbage.vertices);
-  if (recorder) result.maps = recorder->maps(order, garbage);
+  if (memory.knows_stars) memory.work.follow(garbage);
+  if (recorder) result.maps = recorder->maps(order, garbage, options.policy);
   if (!known_to_meet) {
     if (result.changed) found = survey(mesh, options.policy);
     look_for_faults(mesh, found, options.policy, result);

@@ -17,10 +17,12 @@ H gone_to(const std::vector<H>& to, H h) {
 
 }  // namespace
 
-MapRecorder::MapRecorder(TetMesh& mesh)
+MapRecorder::MapRecorder(TetMesh& mesh, const TetMesh* before)
     : mesh_(mesh),
+      before_(before),
       n_vertices_(mesh.n_vertices()),
-      cells_(mesh.n_cells()),
+      n_cells_(mesh.n_cells()),
+      cells_(before ? 0 : mesh.n_cells()),
       source_(mesh.request_vertex_property<Index>(kSource, VertexHandle::kInvalid)) {
   for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i] = mesh.cell(CellHandle(i)).v;
   for (std::size_t i = 0; i < n_vertices_; ++i) source_[VertexHandle(i)] = VertexHandle(i).idx();
@@ -28,10 +30,10 @@ MapRecorder::MapRecorder(TetMesh& mesh)
 
 MapRecorder::~MapRecorder() { mesh_.properties().vertices.remove(kSource); }
 
-MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage) {
+MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy) {
   MeshMaps maps;
   maps.vertices.resize(n_vertices_);
-  maps.cells.resize(cells_.size());
+  maps.cells.resize(n_cells_);
   maps.old_vertices.resize(mesh_.n_vertices());
   maps.old_cells.resize(mesh_.n_cells());
   maps.sources.resize(mesh_.n_vertices());
@@ -43,20 +45,20 @@ MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage) {
   }
   for (std::size_t i = 0; i < maps.sources.size(); ++i)
     if (!mesh_.is_deleted(VertexHandle(i))) maps.sources[i] = VertexHandle(source_[VertexHandle(i)]);
-  for (std::size_t i = 0; i < cells_.size(); ++i) {
+  par::for_each(policy, n_cells_, [&](std::size_t i) {
     const CellHandle c = gone_to(garbage.cells, gone_to(order.cells, CellHandle(i)));
-    if (!c.is_valid() || c.idx() >= mesh_.n_cells() || mesh_.is_deleted(c)) continue;
-    std::array<VertexHandle, 4> vertices = cells_[i];
-    bool all = true;
+    if (!c.is_valid() || c.idx() >= mesh_.n_cells() || mesh_.is_deleted(c)) return;
+    std::array<VertexHandle, 4> vertices = old_cell(i);
     for (VertexHandle& v : vertices) {
       v = v.is_valid() ? maps.vertices[v.idx()] : v;
-      all = all && v.is_valid();
+      if (!v.is_valid()) return;
     }
     // A slot may have been filled with another cell, or with the same again.
-    if (!all || AnyOrder::key(vertices) != AnyOrder::key(mesh_.cell(c).v)) continue;
+    const auto& now = mesh_.cell(c).v;
+    if (vertices != now && AnyOrder::key(vertices) != AnyOrder::key(now)) return;
     maps.cells[i] = c;
     maps.old_cells[c.idx()] = CellHandle(i);
-  }
+  });
   return maps;
 }
 

@@ -13,8 +13,9 @@ namespace hfr {
 /// Makes the maps of a run.
 class MapRecorder {
  public:
-  /// Before the run. Copies the vertices of the cells, 16 bytes a cell, and adds a property to the vertices.
-  explicit MapRecorder(TetMesh& mesh);
+  /// Before the run. Adds a property to the vertices. `before`: a copy of the mesh that outlives this object;
+  /// without one the vertices of the cells are copied, 16 bytes a cell.
+  explicit MapRecorder(TetMesh& mesh, const TetMesh* before = nullptr);
   /// Takes the property away, if maps() has not.
   ~MapRecorder();
   MapRecorder(const MapRecorder&) = delete;
@@ -22,11 +23,16 @@ class MapRecorder {
 
   /// After it. `order`: where vertices and cells went before the run; `garbage`: and after it. Empty lists:
   /// they stayed.
-  MeshMaps maps(const GarbageMap& order, const GarbageMap& garbage);
+  MeshMaps maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy = {});
 
  private:
+  const std::array<VertexHandle, 4>& old_cell(std::size_t i) const {
+    return before_ ? before_->cell(CellHandle(i)).v : cells_[i];
+  }
+
   TetMesh& mesh_;
-  std::size_t n_vertices_;
+  const TetMesh* before_;
+  std::size_t n_vertices_, n_cells_;
   std::vector<std::array<VertexHandle, 4>> cells_;
   VertexProperty<Index> source_;
 };

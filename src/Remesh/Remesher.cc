@@ -8,10 +8,12 @@
 
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Geometry.hh"
+#include "Quality/FoldedFaces.hh"
 #include "Remesh/CellWatch.hh"
 #include "Remesh/Coordinates.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/MeshMotion.hh"
+#include "Remesh/RunMemory.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr {
@@ -79,6 +81,7 @@ class Remesher::State {
     if (options_.improve.max_cells == 0)
       options_.improve.max_cells = (n * kStepEffort.most_of_hundred + 99) / 100;
     reset();
+    prepare();
   }
 
   void reset();
@@ -105,6 +108,8 @@ class Remesher::State {
     SurfaceOptions surface;
   };
 
+  void prepare();
+  void forget_mesh();
   std::span<const Vec3> followed(std::span<const Vec3> displacement);
   void list_moved(std::span<const Vec3> displacement);
   void set_points(std::span<const Vec3> displacement, double fraction);
@@ -138,6 +143,7 @@ class Remesher::State {
   std::vector<std::uint8_t> known_;
   std::vector<Vec3> follow_;
 
+  RunMemory memory_;                 // of repairs
   std::shared_ptr<TetMesh> before_;  // the mesh before the last repair
   std::optional<Edits> pending_;     // of the last repair, whose fields wait
   std::optional<Before> undo_;       // of the step in progress, once it has repaired
@@ -166,7 +172,24 @@ void Remesher::State::reset() {
     number(cell_ids_, mesh_.n_cells(), next_cell_id_);
   }
   is_stale_ = false;
+  forget_mesh();
   watch_.reset();
+}
+
+/// What the first repair would else have to allocate and to find out.
+void Remesher::State::prepare() {
+  constexpr std::size_t kRoom = 16;  // cells for each that a repair may add
+  mesh_.reserve_cells(mesh_.n_cells() + mesh_.n_cells() / kRoom);
+  before_ = std::make_shared<TetMesh>(mesh_);
+  memory_.work.attach(mesh_, policy_);
+  memory_.knows_stars = true;
+  memory_.is_folded = !folded_faces(mesh_, policy_).empty();
+}
+
+/// The mesh is another one than repairs remember.
+void Remesher::State::forget_mesh() {
+  memory_.knows_stars = false;
+  memory_.is_folded.reset();
 }
 
 RepairCause Remesher::State::needs_repair() const {
@@ -211,6 +234,7 @@ void Remesher::State::list_moved(std::span<const Vec3> displacement) {
   travelled_before_.clear();
   for (std::size_t i = 0; i < displacement.size(); ++i) {
     if (displacement[i] == Vec3{}) continue;
+    if (!memory_.knows_stars || memory_.work.frozen[i]) memory_.is_folded.reset();
     moved_.push_back(VertexHandle(i));
     was_.push_back(mesh_.point(VertexHandle(i)));
     if (!travelled_.empty()) travelled_before_.push_back(travelled_[i]);
@@ -289,10 +313,13 @@ RepairResult Remesher::State::repair_mesh() {
     *before_ = mesh_;
   else
     before_ = std::make_shared<TetMesh>(mesh_);
+  memory_.before = before_.get();
+  memory_.found = watch_.survey();
   Result run;
   try {
-    run = improve(mesh_, options_.improve);
+    run = improve(mesh_, options_.improve, memory_);
   } catch (...) {
+    forget_mesh();
     mesh_.restore(*before_);
     throw;
   }
@@ -390,6 +417,7 @@ void Remesher::State::run_step(std::span<const Vec3> displacement, StepResult& r
 
 void Remesher::State::undo() {
   if (undo_ && undo_->mesh) {
+    forget_mesh();
     mesh_.restore(*undo_->mesh);
     mesh_.properties().vertices.remove(kRest);
   }
@@ -403,7 +431,10 @@ void Remesher::State::undo() {
     cell_ids_ = std::move(undo_->cell_ids);
     options_.improve.surface = std::move(undo_->surface);
   }
-  if (has_moved_) put_points_back();
+  if (has_moved_) {
+    memory_.is_folded.reset();
+    put_points_back();
+  }
   steps_ = steps_before_;
   farthest_ = travelled_.empty() ? 0.0 : *std::max_element(travelled_.begin(), travelled_.end());
   undo_.reset();

@@ -38,19 +38,40 @@ struct Workspace {
   std::vector<Index> touched;  ///< cell slots written since clear_touched(), some more than once
   bool all_touched = true;     ///< more than are worth a list
 
+  /// Forgets the run before, but for what is known of vertices.
+  void begin() {
+    floor = kNoFloor;
+    holds_damage = true;
+    clock = 1;
+    clear_touched();
+    all_touched = true;
+  }
+
   /// Sizes everything for the mesh, all cells pending. Qualities are left to set_qualities().
   void attach(const TetMesh& mesh, par::Policy policy) {
+    star_size = star_sizes(mesh);
+    pinched = pinched_vertices(mesh, star_size, policy);
+    attach_again(mesh, policy);
+  }
+
+  /// The same where star_size and pinched are those of the mesh already.
+  void attach_again(const TetMesh& mesh, par::Policy policy) {
     const std::size_t room = mesh.n_cells() + mesh.n_cells() / 16;  // as the mesh has
     quality.reserve(room);
     claim.reserve(room);
     pending.reserve(room);
-    quality.assign(mesh.n_cells(), 0.0);
+    quality.resize(mesh.n_cells(), 0.0);
     claim.assign(mesh.n_cells(), kUnclaimed);
     pending.assign(mesh.n_cells(), 0xff);
     frozen = constrained_vertices(mesh, policy);
-    star_size = star_sizes(mesh);
-    pinched = pinched_vertices(mesh, star_size, policy);
     changed.assign(mesh.n_vertices(), clock);
+  }
+
+  /// Before the next run, of the mesh after garbage was collected: what goes with vertices alone follows.
+  void follow(const GarbageMap& garbage) {
+    close_gaps(garbage.vertices, star_size);
+    close_gaps(garbage.vertices, frozen);
+    close_gaps(garbage.vertices, pinched);
   }
 
   /// Follows the mesh after it has grown.
@@ -76,6 +97,16 @@ struct Workspace {
         first = v;
       }
     return false;
+  }
+
+  /// `to`: from collect_garbage(); empty where nothing goes.
+  template <class T>
+  static void close_gaps(const std::vector<VertexHandle>& to, std::vector<T>& values) {
+    if (values.empty() || to.empty()) return;
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < to.size(); ++i)
+      if (to[i].is_valid()) values[n++] = values[i];
+    values.resize(n);
   }
 
   void touch(std::span<const CellHandle> cells) {

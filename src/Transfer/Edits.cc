@@ -2,6 +2,7 @@
 #include "Transfer/Edits.hh"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "HalfFace/Geometry.hh"
@@ -47,6 +48,22 @@ void place(const TetMesh& old, const Edits& edits, std::vector<PlacedVertex>& ve
   });
 }
 
+/// Mapped cells with a vertex that has moved, ascending.
+std::vector<CellHandle> cells_that_moved(const TetMesh& now, const Edits& edits, par::Policy policy) {
+  std::vector<CellHandle> cells;
+  if (edits.moved_vertices.empty()) return cells;
+  std::vector<std::uint8_t> has_moved(now.n_vertices(), 0);
+  for (const PlacedVertex& v : edits.moved_vertices) has_moved[v.vertex.idx()] = 1;
+  for (Index i : par::compact<Index>(policy, now.n_cells(), [&](std::size_t c) {
+         const auto& v = now.cell_vertices(CellHandle(c));
+         return (has_moved[v[0].idx()] | has_moved[v[1].idx()] | has_moved[v[2].idx()] |
+                 has_moved[v[3].idx()]) != 0 &&
+                edits.maps.old_cells[c].is_valid();
+       }))
+    cells.push_back(CellHandle(i));
+  return cells;
+}
+
 /// The largest share first; of equal ones the smaller handle.
 void set_parents(const TetMesh& old, const TetMesh& now, Edits& edits, par::Policy policy) {
   std::vector<CellHandle> cells;
@@ -89,12 +106,7 @@ Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Pol
                                     .old_vertex = was[i],
                                     .point = now.point(VertexHandle(i)),
                                     .old_cell = {}});
-  if (!edits.moved_vertices.empty())
-    for (Index i : par::compact<Index>(policy, edits.maps.old_cells.size(), [&](std::size_t c) {
-           const auto& v = now.cell_vertices(CellHandle(c));
-           return edits.maps.old_cells[c].is_valid() && std::any_of(v.begin(), v.end(), has_moved);
-         }))
-      edits.moved_cells.push_back(CellHandle(i));
+  edits.moved_cells = cells_that_moved(now, edits, policy);
   place(old, edits, edits.created_vertices, policy);
   place(old, edits, edits.moved_vertices, policy);
   if (with_parents) set_parents(old, now, edits, policy);

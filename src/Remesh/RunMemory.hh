@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_RUN_MEMORY_HH
+#define HFR_REMESH_RUN_MEMORY_HH
+
+#include <optional>
+
+#include "Remesh/Options.hh"
+#include "Remesh/Result.hh"
+#include "Remesh/Survey.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+/// What one run leaves for the next one over the same mesh, whose vertices have moved between them. Whoever
+/// keeps it takes back what does not hold any more. Results have the same bits with it as without.
+struct RunMemory {
+  Workspace work;
+  /// star_size and pinched of the workspace are those of the mesh, whose connectivity has not changed since;
+  /// frozen marks at least its boundary.
+  bool knows_stars = false;
+  /// Whether folded_faces() has any, where no vertex of the boundary has moved since that was asked.
+  std::optional<bool> is_folded;
+  /// What survey() would find; for the next run only.
+  std::optional<Survey> found;
+  /// A copy of the mesh as it is before the next run, for its maps; for that run only.
+  const TetMesh* before = nullptr;
+};
+
+/// improve() with a memory.
+Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory);
+
+}  // namespace hfr
+
+#endif
