@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr double kCovered = 1e-7;
 struct Box {
   Vec3 low, high;
 
+  Box() = default;
   explicit Box(const TetPoints& t) : low(t[0]), high(t[0]) {
     for (const Vec3& p : t)
       for (int k = 0; k < 3; ++k) {
@@ -34,47 +36,75 @@ struct Box {
   }
 };
 
-/// The old cells in question: each with its box and planes, and by where it begins along x.
+/// The old cells in question, numbered in the order that they are given in: each with its box and planes,
+/// with which others it shares a face, and by vertex and by where it begins along x.
 class Candidates {
  public:
   static constexpr Index kNone = std::numeric_limits<Index>::max();
 
-  Candidates(const TetMesh& mesh, std::span<const CellHandle> cells)
-      : n_(cells.size()), number_(mesh.n_cells(), kNone) {
+  /// `cells` ascending.
+  Candidates(const TetMesh& mesh, std::span<const CellHandle> cells, par::Policy policy)
+      : cells_(cells), boxes_(cells.size()), shapes_(cells.size()), first_of_(mesh.n_vertices() + 1, 0) {
+    std::vector<Index> number(mesh.n_cells(), kNone);
+    for (std::size_t i = 0; i < cells.size(); ++i) number[cells[i].idx()] = static_cast<Index>(i);
+    par::for_each(policy, cells.size(), [&](std::size_t i) {
+      const TetPoints points = points_of(mesh, cells[i]);
+      boxes_[i] = Box(points);
+      shapes_[i] = {points, TetPlanes(points), {}, volume6(points) < 0};
+      for (std::size_t k = 0; k < 4; ++k) {
+        const HalfFaceHandle m = mesh.cell(cells[i]).mate[k];
+        shapes_[i].neighbours[k] = m.is_valid() ? number[cell_of(m).idx()] : kNone;
+      }
+    });
+    list_by_vertex(mesh);
     by_x_.reserve(cells.size());
-    shapes_.reserve(cells.size());
-    for (CellHandle c : cells) {
-      number_[c.idx()] = static_cast<Index>(by_x_.size());
-      const TetPoints points = points_of(mesh, c);
-      shapes_.push_back({Box(points), points, TetPlanes(points), volume6(points) < 0});
-      const Box& box = shapes_.back().box;
-      by_x_.emplace_back(box.low.x, c);
-      widest_ = std::max(widest_, box.high.x - box.low.x);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      by_x_.emplace_back(boxes_[i].low.x, static_cast<Index>(i));
+      widest_ = std::max(widest_, boxes_[i].high.x - boxes_[i].low.x);
     }
     std::sort(by_x_.begin(), by_x_.end());
   }
   struct Shape {
-    Box box;
     TetPoints points;
     TetPlanes planes;
-    bool is_inverted;
+    std::array<Index, 4> neighbours;  ///< kNone: none of the candidates
+    bool is_inverted = false;
   };
+  CellHandle cell(Index number) const { return cells_[number]; }
+  const Box& box(Index number) const { return boxes_[number]; }
   const Shape& shape(Index number) const { return shapes_[number]; }
-  std::size_t size() const { return n_; }
-  /// 0 … size()-1; kNone for a cell that is none of them.
-  Index number(CellHandle c) const { return number_[c.idx()]; }
+  std::size_t size() const { return cells_.size(); }
+  std::span<const Index> of(VertexHandle v) const {
+    return {of_.data() + first_of_[v.idx()], of_.data() + first_of_[v.idx() + 1]};
+  }
+  /// The candidate that is this cell; kNone: none is.
+  Index number(CellHandle c) const {
+    const auto at = std::lower_bound(cells_.begin(), cells_.end(), c);
+    return at != cells_.end() && *at == c ? static_cast<Index>(at - cells_.begin()) : kNone;
+  }
   /// Those that may meet the box.
   template <class Visit>
   void near(const Box& box, Visit&& visit) const {
-    auto at = std::lower_bound(by_x_.begin(), by_x_.end(), std::pair(box.low.x - widest_, CellHandle(0)));
+    auto at = std::lower_bound(by_x_.begin(), by_x_.end(), std::pair(box.low.x - widest_, Index(0)));
     for (; at != by_x_.end() && at->first <= box.high.x; ++at) visit(at->second);
   }
 
  private:
-  std::size_t n_;
-  std::vector<Index> number_;
+  void list_by_vertex(const TetMesh& mesh) {
+    for (CellHandle c : cells_)
+      for (VertexHandle v : mesh.cell_vertices(c)) ++first_of_[v.idx() + 1];
+    std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
+    of_.resize(first_of_.back());
+    std::vector<Index> next(first_of_.begin(), first_of_.end() - 1);
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      for (VertexHandle v : mesh.cell_vertices(cells_[i])) of_[next[v.idx()]++] = static_cast<Index>(i);
+  }
+
+  std::span<const CellHandle> cells_;
+  std::vector<Box> boxes_;
   std::vector<Shape> shapes_;
-  std::vector<std::pair<double, CellHandle>> by_x_;
+  std::vector<Index> first_of_, of_;  // by vertex: where its candidates begin, and these
+  std::vector<std::pair<double, Index>> by_x_;
   double widest_ = 0;
 };
 
@@ -91,35 +121,34 @@ class Seen {
   std::uint32_t now_ = 0;
 };
 
-/// What one new cell shares with old ones.
+/// What new cells share with old ones, one after the other.
 class Search {
  public:
-  Search(const TetMesh& old, const Candidates& candidates, Seen& seen, const TetPoints& cell)
-      : old_(old),
-        candidates_(candidates),
-        seen_(seen),
-        cell_(cell),
-        planes_(cell),
-        box_(cell),
-        volume_(std::abs(volume6(cell)) / 6) {
-    seen_.forget();
-  }
+  explicit Search(const Candidates& candidates) : candidates_(candidates), seen_(candidates.size()) {}
 
-  /// Looks at an old cell and, where it is near, at its neighbours, and so on.
-  void look_from(CellHandle c) {
-    if (!is_new(c)) return;
-    queue_.push_back(c);
+  void begin(const TetPoints& cell) {
+    cell_ = cell;
+    planes_ = TetPlanes(cell);
+    box_ = Box(cell);
+    volume_ = std::abs(volume6(cell)) / 6;
+    seen_.forget();
+    parts_.clear();
+  }
+  /// Looks at a candidate and, where it is near, at its neighbours, and so on.
+  void look_from(Index first) {
+    if (first == Candidates::kNone || !seen_.add(first)) return;
+    queue_.push_back(first);
     while (!queue_.empty()) {
-      const CellHandle at = queue_.back();
+      const Index at = queue_.back();
       queue_.pop_back();
       if (!look_at(at)) continue;
-      for (const HalfFaceHandle m : old_.cell(at).mate)
-        if (m.is_valid() && is_new(cell_of(m))) queue_.push_back(cell_of(m));
+      for (const Index next : candidates_.shape(at).neighbours)
+        if (next != Candidates::kNone && seen_.add(next)) queue_.push_back(next);
     }
   }
   void look_everywhere() {
-    candidates_.near(box_, [&](CellHandle c) {
-      if (is_new(c)) look_at(c);
+    candidates_.near(box_, [&](Index i) {
+      if (seen_.add(i)) look_at(i);
     });
   }
   bool is_covered() const {
@@ -130,49 +159,37 @@ class Search {
   std::vector<Overlap> take() {
     std::sort(parts_.begin(), parts_.end(),
               [](const Overlap& a, const Overlap& b) { return a.old_cell < b.old_cell; });
-    return std::move(parts_);
+    return parts_;
   }
 
  private:
-  /// True the first time that a candidate is asked about.
-  bool is_new(CellHandle c) {
-    const Index i = candidates_.number(c);
-    return i != Candidates::kNone && seen_.add(i);
-  }
   /// False where it is not near.
-  bool look_at(CellHandle c) {
-    const Candidates::Shape& old = candidates_.shape(candidates_.number(c));
-    if (!box_.meets(old.box)) return false;
+  bool look_at(Index i) {
+    if (!box_.meets(candidates_.box(i))) return false;
+    const Candidates::Shape& old = candidates_.shape(i);
     if (planes_.is_apart_from(old.points)) return true;
     const double shared = shared_volume(cell_, old.planes);
     if (shared > kNoVolume * std::min(volume_, old.planes.whole() / 6))
-      parts_.push_back({c, old.is_inverted ? -shared : shared});
+      parts_.push_back({candidates_.cell(i), old.is_inverted ? -shared : shared});
     return true;
   }
 
-  const TetMesh& old_;
   const Candidates& candidates_;
-  Seen& seen_;
+  Seen seen_;
   TetPoints cell_;
   TetPlanes planes_;
   Box box_;
-  double volume_;
-  std::vector<CellHandle> queue_;
+  double volume_ = 0;
+  std::vector<Index> queue_;
   std::vector<Overlap> parts_;
 };
-
-template <class Cells>
-void add_cells_of(const TetMesh& mesh, VertexHandle v, Cells& cells) {
-  if (!v.is_valid() || !mesh.incident_cell(v).is_valid()) return;
-  for (CellHandle c : mesh.vertex_cells(v)) cells.push_back(c);
-}
 
 }  // namespace
 
 Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edits,
                        std::span<const CellHandle> new_cells, std::span<const CellHandle> old_cells,
                        par::Policy policy) {
-  const Candidates candidates(old, old_cells);
+  const Candidates candidates(old, old_cells, policy);
   std::unordered_map<Index, CellHandle> place;
   for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
     for (const PlacedVertex& v : *list)
@@ -181,17 +198,16 @@ Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edit
   constexpr double kNanoseconds = 10'000;  // a cell, about
   par::for_ranges(policy.for_items_of(kNanoseconds), new_cells.size(),
                   [&](std::size_t begin, std::size_t end) {
-                    Seen seen(candidates.size());
-                    std::vector<CellHandle> from;
+                    Search search(candidates);
                     for (std::size_t i = begin; i < end; ++i) {
-                      Search search(old, candidates, seen, points_of(now, new_cells[i]));
-                      from.clear();
+                      search.begin(points_of(now, new_cells[i]));
                       for (VertexHandle v : now.cell_vertices(new_cells[i])) {
                         const auto at = place.find(v.idx());
-                        if (at != place.end()) from.push_back(at->second);
-                        add_cells_of(old, edits.maps.sources[v.idx()], from);
+                        if (at != place.end()) search.look_from(candidates.number(at->second));
+                        const VertexHandle source = edits.maps.sources[v.idx()];
+                        if (!source.is_valid()) continue;
+                        for (const Index near : candidates.of(source)) search.look_from(near);
                       }
-                      for (CellHandle c : from) search.look_from(c);
                       if (!search.is_covered()) search.look_everywhere();
                       found[i] = search.take();
                     }

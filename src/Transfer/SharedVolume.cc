@@ -92,9 +92,12 @@ double volume_inside(const Piece& piece, std::size_t k) {
 }
 
 bool is_outside_of_a_plane(const Piece& piece) {
-  for (std::size_t k = 0; k < 4; ++k)
-    if (std::all_of(piece.begin(), piece.end(), [&](const Corner& c) { return c[k] <= 0; })) return true;
-  return false;
+  Corner most = piece[0];  // without a branch, since most answers come as a surprise
+  for (std::size_t i = 1; i < 4; ++i)
+    for (std::size_t k = 0; k < 4; ++k) most[k] = most[k] < piece[i][k] ? piece[i][k] : most[k];
+  return static_cast<int>(most[0] <= 0) + static_cast<int>(most[1] <= 0) + static_cast<int>(most[2] <= 0) +
+             static_cast<int>(most[3] <= 0) >
+         0;
 }
 
 Piece in_coordinates(const TetPlanes& planes, const TetPoints& t) {
