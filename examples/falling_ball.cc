@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A ball falls through a box that is far longer than the ball is wide. Only the motion of the ball's surface
-// is given; the vertices inside follow as those of an elastic body, and what that squeezes is repaired. Shows
-// a time limit for each repair and a cancel. Ends with 1 where a step has left an inverted cell. Usage:
-// example_falling_ball [N STEPS]     6 N³ cells in the box round the ball
+// is given; the vertices inside follow as those of an elastic body, and what that squeezes is repaired. Then
+// steps too far to be taken at once, whose repairs are ended by a time limit and by a cancel: each is undone,
+// and the mesh is as it was to the last bit. Ends with 1 where a step has left an inverted cell, or was not
+// undone. Usage: example_falling_ball [N STEPS]     6 N³ cells in the box round the ball
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <hfremesh/Remesh/Improve.hh>
@@ -35,9 +37,6 @@ int main(int argc, char** argv) try {
 
   hfr::RemesherOptions options;
   options.improve.min_dihedral = 15;
-  options.improve.time_limit = 10;  // seconds, of each repair
-  bool cancel = false;
-  options.improve.cancel = [&] { return cancel; };
   options.motion = hfr::Motion::kElastic;
   options.on_inversion = hfr::OnInversion::kSubsteps;
   hfr::Remesher remesher(mesh, options);
@@ -62,11 +61,25 @@ int main(int argc, char** argv) try {
   }
   std::printf("%d steps, %zu repairs: smallest angle %.2f degrees, %zu cells\n", n_steps, n_repairs, worst,
               mesh.n_cells());
-  cancel = true;  // what a signal handler might set
-  const hfr::StepResult last = remesher.step(fall(-2.5));
-  std::printf("cancelled: %s, %zu inverted cells\n",
-              last.undone ? "the step was undone" : "the step was done", last.n_inverted);
-  return n_inverted + last.n_inverted == 0 ? 0 : 1;
+  // A move that inverts cells, and a repair that is not let finish.
+  options.on_inversion = hfr::OnInversion::kRepair;
+  const auto is_undone = [&](const hfr::RemesherOptions& hasty, const char* how) {
+    const std::vector<hfr::Vec3> before(mesh.points().begin(), mesh.points().end());
+    hfr::Remesher again(mesh, hasty);
+    const hfr::StepResult step = again.step(fall(-2.5));
+    const bool as_before = std::ranges::equal(before, mesh.points());
+    std::printf("%s: the step was %s, %zu inverted cells, points %s\n", how, step.undone ? "undone" : "done",
+                step.n_inverted, as_before ? "as before" : "others than before");
+    n_inverted += step.n_inverted;
+    return step.undone && as_before;
+  };
+  hfr::RemesherOptions in_a_hurry = options;
+  in_a_hurry.improve.time_limit = 1e-6;  // seconds, of each repair
+  bool cancel = true;                    // what a signal handler might set
+  hfr::RemesherOptions cancelled = options;
+  cancelled.improve.cancel = [&] { return cancel; };
+  const bool both = is_undone(in_a_hurry, "time limit") && is_undone(cancelled, "cancelled");
+  return both && n_inverted == 0 ? 0 : 1;
 } catch (const hfr::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 2;

@@ -18,3 +18,5 @@ run() {
 run turning_body 26 200 ${2:+"$2"}
 run pulsating_cavity 20 40
 run falling_ball 16 60
+if [ -x "$build/examples/example_heat_equation" ]; then run heat_equation 32 60; fi  # wants Eigen
+run flap_in_channel 16 60
