@@ -133,6 +133,20 @@ TEST(CollectGarbage, NothingToDoIsTheIdentity) {
   }
 }
 
+TEST(CollectGarbage, KeepsWhatWasReservedAndNotMuchMore) {
+  TetMesh mesh = test::kuhn_box(6);
+  mesh.reserve_cells(mesh.n_cells() + mesh.n_cells() / 16);
+  mesh.delete_cell(CellHandle(7));
+  const std::size_t before = mesh.memory_bytes();
+  mesh.collect_garbage();
+  const std::size_t spare = mesh.n_cells() / 20 * sizeof(Cell);
+  EXPECT_GE(mesh.memory_bytes() + spare / 2, before) << "the next repair would have to reserve again";
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i)
+    if (i % 2 == 0) mesh.delete_cell(CellHandle(i));
+  mesh.collect_garbage();
+  EXPECT_LT(mesh.memory_bytes(), before * 3 / 4) << "half of the mesh is gone";
+}
+
 TEST(CollectGarbage, EverythingGone) {
   TetMesh mesh = test::single_cell();
   for (Index v = 0; v < 4; ++v) mesh.delete_vertex(VertexHandle(v));

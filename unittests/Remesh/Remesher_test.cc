@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -194,6 +195,43 @@ TEST(Remesher, FieldsAreCarriedOverEveryStep) {
     }
     EXPECT_GT(n_repairs, 2U);
   }
+}
+
+/// Small moves to and fro, of vertices of the boundary as well where that is asked for.
+std::vector<Vec3> shake(const TetMesh& mesh, double by, int step, bool boundary_too) {
+  std::vector<Vec3> d(mesh.n_vertices());
+  for (VertexHandle v : mesh.vertices()) {
+    if (!boundary_too && mesh.is_boundary(v)) continue;
+    const double phase = 12.9898 * static_cast<double>(v.idx()) + step;
+    d[v.idx()] = {by * std::sin(phase), by * std::sin(3 * phase), by * std::sin(7 * phase)};
+  }
+  return d;
+}
+
+TEST(Remesher, RepairsThatRememberTheOnesBeforeDoWhatAFirstOneWould) {
+  std::size_t n_repairs = 0;
+  for (const bool boundary_too : {false, true}) {
+    TetMesh mesh = box(7);
+    RemesherOptions options = options_for(20, 12);
+    options.improve.min_cells = mesh.n_cells() / 2;
+    options.improve.max_cells = 2 * mesh.n_cells();
+    Remesher remesher(mesh, options);
+    for (int i = 0; i < 12; ++i) {
+      const std::vector<Vec3> d = shake(mesh, 0.04, i, boundary_too);
+      TetMesh other = mesh;
+      for (VertexHandle v : other.vertices()) other.set_point(v, other.point(v) + d[v.idx()]);
+      if (i == 6) {  // by hand
+        for (VertexHandle v : mesh.vertices()) mesh.set_point(v, mesh.point(v) + d[v.idx()]);
+        remesher.reset();
+      }
+      if (!remesher.step(i == 6 ? std::vector<Vec3>(mesh.n_vertices()) : d).changed) continue;
+      ++n_repairs;
+      improve(other, options.improve);
+      ASSERT_EQ(cells_of(mesh), cells_of(other)) << "step " << i;
+      ASSERT_TRUE(std::ranges::equal(mesh.points(), other.points())) << "step " << i;
+    }
+  }
+  EXPECT_GT(n_repairs, 10U) << "the motion no longer makes cells bad";
 }
 
 TEST(Remesher, MotionThatInvertsIsRefusedWithTheCellsNamed) {
