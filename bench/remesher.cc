@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a step of Remesher costs beside a pass over the quality of all cells, and a repair beside improve()
-// with the same goal. Medians of steps in turn, in one run. Usage: bench_remesher [THREADS [N ...]]     boxes
-// of 6 N³ cells
+// with the same goal. Medians of steps in turn, in one run; with one thread of CPU seconds, so that it
+// matters little what else the machine does. Usage: bench_remesher [THREADS [N ...]]     boxes of 6 N³ cells
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 #include <hfremesh/HalfFace/Generate.hh>
 #include <hfremesh/Quality/Decisions.hh>
@@ -14,10 +15,20 @@
 
 namespace {
 
+bool by_cpu = false;
+
+double now() {
+  if (!by_cpu)
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  std::timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 double seconds(const std::function<void()>& f) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = now();
   f();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return now() - start;
 }
 
 double median(std::vector<double> values) {
@@ -103,6 +114,7 @@ void measure(hfr::Index n, int threads) {
 
 int main(int argc, char** argv) {
   const int threads = argc > 1 ? std::atoi(argv[1]) : 2;
+  by_cpu = threads == 1;
   if (argc > 2)
     for (int i = 2; i < argc; ++i) measure(static_cast<hfr::Index>(std::atoi(argv[i])), threads);
   else
