@@ -116,7 +116,7 @@ void CellWatch::look_at_all() {
     Totals mine;
     for_decisions(mesh_, MinDihedral{}, par::part_begin(n, n_parts, part),
                   par::part_begin(n, n_parts, part + 1), [&](std::size_t i, double value) {
-                    if (!had_bad && is_plainly_good(value)) {
+                    if (had_bad ? stays_good(CellHandle(i), value) : is_plainly_good(value)) {
                       quality_[i] = value;
                       return;
                     }
@@ -131,23 +131,33 @@ void CellWatch::look_at_all() {
 }
 
 void CellWatch::look_at(std::span<const CellHandle> cells) {
-  for (CellHandle c : cells) {
-    const auto& v = mesh_.cell_vertices(c);
-    const double value =
-        MinDihedral{}(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
-    if (!has_bad_ && is_plainly_good(value)) {
-      quality_[c.idx()] = value;
-      continue;
+  CornerBlock block;
+  CornerBlock::Lane values{};
+  for (std::size_t first = 0; first < cells.size(); first += CornerBlock::kSize) {
+    const auto some = cells.subspan(first, std::min(CornerBlock::kSize, cells.size() - first));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto& v = mesh_.cell_vertices(some[i]);
+      block.set(i, mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
     }
-    const Totals was = totals_of(c);
-    update(c, value);
-    has_bad_ = has_bad_ || bad_[c.idx()] != 0;
-    const Totals is = totals_of(c);
-    totals_.active += is.active - was.active;
-    totals_.inverted += is.inverted - was.inverted;
-    totals_.bits |= is.bits;
+    block_decisions(MinDihedral{}, block, values);
+    for (std::size_t i = 0; i < some.size(); ++i) take(some[i], values[i]);
   }
   if (totals_.active == 0) totals_.bits = 0;
+}
+
+/// Of a cell that was counted as what it was.
+void CellWatch::take(CellHandle c, double value) {
+  if (stays_good(c, value)) {
+    quality_[c.idx()] = value;
+    return;
+  }
+  const Totals was = totals_of(c);
+  update(c, value);
+  has_bad_ = has_bad_ || bad_[c.idx()] != 0;
+  const Totals is = totals_of(c);
+  totals_.active += is.active - was.active;
+  totals_.inverted += is.inverted - was.inverted;
+  totals_.bits |= is.bits;
 }
 
 std::size_t CellWatch::look_at_cells_of(std::span<const VertexHandle> vertices) {

@@ -94,8 +94,13 @@ class CellWatch {
   };
 
   void look_at(std::span<const CellHandle> cells);
+  void take(CellHandle c, double value);
   void update(CellHandle c, double value);
   bool is_plainly_good(double value) const { return value >= trigger_ && value > 0 && !asks_more_; }
+  /// Neither was it bad, nor is it.
+  bool stays_good(CellHandle c, double value) const {
+    return (bad_[c.idx()] | excused_[c.idx()]) == 0 && is_plainly_good(value);
+  }
   Totals totals_of(CellHandle c) const;
   std::uint8_t badness(CellHandle c) const;
   void forget_looks();
