@@ -87,6 +87,10 @@ Json to_json(const Statistics& s) {
   json["mean_dihedral"] = s.mean_dihedral;
   json["max_dihedral"] = s.max_dihedral;
   json["dihedral_histogram"] = s.dihedral_histogram;
+  json["min_dihedral_histogram"] = s.min_dihedral_histogram;
+  json["cells_below"] = Json::object();
+  for (const std::size_t degrees : {5, 10, 15, 20, 30})
+    json["cells_below"][std::to_string(degrees)] = n_cells_below(s, degrees);
   json["volume_length"] = to_json(s.volume_length);
   json["volume_length_histogram"] = s.volume_length_histogram;
   json["edge_length"] = to_json(s.edge_length);

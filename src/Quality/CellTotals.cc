@@ -48,13 +48,49 @@ class AngleBins {
   std::array<std::size_t, kSteps> guess_{};
 };
 
+// Bin of a cell's smallest dihedral by its decision value, which is sin²: the whole degrees that the cell
+// does not miss as a goal. The guess is the bin of the step's lower end.
+class SmallestAngleBins {
+ public:
+  static constexpr std::size_t kBins = 71;  // the regular cell has 70.53 degrees
+
+  SmallestAngleBins() {
+    for (std::size_t i = 1; i < kBins; ++i) threshold_[i] = dihedral_decision(static_cast<double>(i));
+    threshold_[kBins] = 2.0;
+    for (std::size_t i = 0; i < kSteps; ++i) guess_[i] = walk(0, static_cast<double>(i) / kSteps);
+  }
+
+  /// Whatever is not positive, and NaN, goes to bin 0.
+  std::size_t operator()(double decision) const {
+    if (!(decision > 0.0)) return 0;
+    const auto step = static_cast<std::size_t>(kSteps * std::min(decision, 1.0));
+    return walk(guess_[std::min(step, kSteps - 1)], decision);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 1024;
+
+  std::size_t walk(std::size_t bin, double decision) const {
+    while (decision >= threshold_[bin + 1]) ++bin;
+    return bin;
+  }
+
+  std::array<double, kBins + 1> threshold_{};
+  std::array<std::size_t, kSteps> guess_{};
+};
+
 // Gathers cells into blocks and adds up what comes out.
 class CellPass {
  public:
   /// `held`: 1 for the vertices of labelled and of fixed faces; empty where there are none.
-  CellPass(const TetMesh& mesh, const AngleBins& bins, std::span<const std::uint8_t> held, CellValues& values,
-           CellTotals& totals)
-      : mesh_(mesh), bins_(bins), held_(held), values_(values), totals_(totals) {}
+  CellPass(const TetMesh& mesh, const AngleBins& bins, const SmallestAngleBins& smallest_bins,
+           std::span<const std::uint8_t> held, CellValues& values, CellTotals& totals)
+      : mesh_(mesh),
+        bins_(bins),
+        smallest_bins_(smallest_bins),
+        held_(held),
+        values_(values),
+        totals_(totals) {}
 
   void visit(CellHandle c) {
     const Cell& cell = mesh_.cell(c);
@@ -97,6 +133,7 @@ class CellPass {
       totals_.negative_det.add(det);
     } else {
       ++totals_.volume_length_histogram[std::min<std::size_t>(19, static_cast<std::size_t>(20.0 * q))];
+      ++totals_.min_dihedral_histogram[smallest_bins_(min_dihedral)];
     }
     if (det == 0.0) totals_.flat.push_back(c);
     if (min_dihedral > 0.0)
@@ -166,6 +203,7 @@ class CellPass {
 
   const TetMesh& mesh_;
   const AngleBins& bins_;
+  const SmallestAngleBins& smallest_bins_;
   const std::span<const std::uint8_t> held_;
   CellValues& values_;
   CellTotals& totals_;
@@ -216,6 +254,8 @@ void CellTotals::merge(const CellTotals& next) {
   flat.insert(flat.end(), next.flat.begin(), next.flat.end());
   for (std::size_t i = 0; i < dihedral_histogram.size(); ++i)
     dihedral_histogram[i] += next.dihedral_histogram[i];
+  for (std::size_t i = 0; i < min_dihedral_histogram.size(); ++i)
+    min_dihedral_histogram[i] += next.min_dihedral_histogram[i];
   for (std::size_t i = 0; i < volume_length_histogram.size(); ++i)
     volume_length_histogram[i] += next.volume_length_histogram[i];
   negative_det.add(next.negative_det);
@@ -241,11 +281,12 @@ CellTotals gather_cells(const TetMesh& mesh, par::Policy policy, double max_det,
   values.min_dihedral.resize(n);
   values.volume_length.resize(n);
   const AngleBins bins;
+  const SmallestAngleBins smallest_bins;
   const std::vector<std::uint8_t> held = vertices_of_held_faces(mesh);
   const int n_parts = par::thread_count(policy, n);
   std::vector<CellTotals> totals(static_cast<std::size_t>(n_parts), CellTotals(max_det, max_length));
   par::parts(n_parts, [&](int part) {
-    CellPass pass(mesh, bins, held, values, totals[static_cast<std::size_t>(part)]);
+    CellPass pass(mesh, bins, smallest_bins, held, values, totals[static_cast<std::size_t>(part)]);
     const std::size_t end = par::part_begin(n, n_parts, part + 1);
     for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i)
       if (!mesh.is_deleted(CellHandle(i))) pass.visit(CellHandle(i));

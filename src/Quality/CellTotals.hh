@@ -36,6 +36,7 @@ struct CellTotals {
   std::vector<CellHandle> inverted;
   std::vector<CellHandle> flat;
   std::array<std::uint64_t, 36> dihedral_histogram{};
+  std::array<std::uint64_t, 71> min_dihedral_histogram{};
   std::array<std::uint64_t, 20> volume_length_histogram{};
   double min_decision = 2.0;  ///< of the smallest dihedral
   double max_decision = 2.0;  ///< of the largest dihedral, inverted cells left out

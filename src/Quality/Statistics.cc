@@ -121,6 +121,7 @@ void add_cells(const detail::CellTotals& totals, double max_det, Statistics& s) 
   s.flat = totals.flat;
   s.worst_cell = totals.worst_cell;
   s.dihedral_histogram = totals.dihedral_histogram;
+  s.min_dihedral_histogram = totals.min_dihedral_histogram;
   s.volume_length_histogram = totals.volume_length_histogram;
   FixedSum det(max_det);
   for (const auto& [region, mine] : totals.regions) det.add(mine.det);
@@ -141,6 +142,12 @@ void add_cells(const detail::CellTotals& totals, double max_det, Statistics& s) 
 }
 
 }  // namespace
+
+std::size_t n_cells_below(const Statistics& statistics, std::size_t degrees) {
+  const auto& bins = statistics.min_dihedral_histogram;
+  const auto first = bins.begin() + static_cast<std::ptrdiff_t>(std::min(degrees, bins.size()));
+  return statistics.cells - static_cast<std::size_t>(std::accumulate(first, bins.end(), std::uint64_t{0}));
+}
 
 Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsOptions& options) {
   Statistics s;

@@ -71,7 +71,10 @@ struct Statistics {
   /// Over all six dihedrals of all cells. The largest and the histogram leave inverted cells out.
   double mean_dihedral = 0.0;
   double max_dihedral = 0.0;
-  std::array<std::uint64_t, 36> dihedral_histogram{};       ///< bins of 5 degrees; the last one holds 180
+  std::array<std::uint64_t, 36> dihedral_histogram{};  ///< bins of 5 degrees; the last one holds 180
+  /// Of each cell's smallest dihedral, in bins of 1 degree; inverted cells left out. So cells - (sum of the
+  /// bins from N on) cells are below N degrees, to the cell.
+  std::array<std::uint64_t, 71> min_dihedral_histogram{};
   std::array<std::uint64_t, 20> volume_length_histogram{};  ///< q from 0 to 1; inverted cells left out
 
   double min_edge = 0.0;
@@ -94,6 +97,9 @@ struct Statistics {
   /// The same with interfaces between regions and labelled faces frozen too.
   EdgeWedge interface_ceiling;
 };
+
+/// Cells whose smallest dihedral is below so many whole degrees, inverted ones included.
+std::size_t n_cells_below(const Statistics& statistics, std::size_t degrees);
 
 struct StatisticsOptions {
   bool components = true;  ///< count connected components (serial, about 20 ns a cell)

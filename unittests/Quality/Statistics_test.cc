@@ -60,6 +60,7 @@ void expect_equal(const Statistics& a, const Statistics& b) {
   expect_equal(a.volume_length, b.volume_length);
   EXPECT_EQ(std::tie(a.mean_dihedral, a.max_dihedral, a.dihedral_histogram, a.volume_length_histogram),
             std::tie(b.mean_dihedral, b.max_dihedral, b.dihedral_histogram, b.volume_length_histogram));
+  EXPECT_EQ(a.min_dihedral_histogram, b.min_dihedral_histogram);
   EXPECT_EQ(std::tie(a.min_edge, a.mean_edge, a.max_edge, a.box_low, a.box_high),
             std::tie(b.min_edge, b.mean_edge, b.max_edge, b.box_low, b.box_high));
   EXPECT_EQ(std::tie(a.volume, a.absolute_volume, a.enclosed_volume, a.overlap),
@@ -73,6 +74,33 @@ void expect_equal(const Statistics& a, const Statistics& b) {
   for (std::size_t i = 0; i < a.patches.size(); ++i) EXPECT_EQ(a.patches[i].area, b.patches[i].area);
   expect_equal(a.surface_ceiling, b.surface_ceiling);
   expect_equal(a.interface_ceiling, b.interface_ceiling);
+}
+
+TEST(Statistics, CellsBelowADegreeAreThoseThatMissItAsAGoal) {
+  const TetMesh mesh = mesh_of(generate::cavity());
+  const Statistics s = statistics(mesh);
+  ASSERT_FALSE(s.inverted.empty());
+  EXPECT_EQ(n_cells_below(s, 0), s.inverted.size());
+  EXPECT_EQ(n_cells_below(s, 71), s.cells);
+  EXPECT_EQ(n_cells_below(s, 1000), s.cells);
+  EXPECT_EQ(total(s.min_dihedral_histogram), s.cells - s.inverted.size());
+  for (std::size_t degrees = 1; degrees < 71; ++degrees) {
+    const double goal = dihedral_decision(static_cast<double>(degrees));
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+      const auto& v = mesh.cell_vertices(CellHandle(i));
+      n += MinDihedral{}(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) < goal;
+    }
+    EXPECT_EQ(n_cells_below(s, degrees), n) << degrees;
+  }
+}
+
+TEST(Statistics, AFlatCellIsBelowOneDegreeAndNotInverted) {
+  const Statistics s = statistics(mesh_of_one({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}}));
+  ASSERT_EQ(s.flat.size(), 1U);
+  EXPECT_EQ(s.min_dihedral_histogram[0], 1U);
+  EXPECT_EQ(n_cells_below(s, 0), 0U);
+  EXPECT_EQ(n_cells_below(s, 1), 1U);
 }
 
 TEST(Statistics, KuhnCubeIsWhatOneCanCountByHand) {
