@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <tuple>
 
+#include "ExitCode.hh"
+#include "Paths.hh"
 #include "Report.hh"
+#include "hfremesh/Quality/CellQuality.hh"
 
 namespace hfr::app {
 namespace {
@@ -33,6 +36,35 @@ std::vector<std::string> PointsOfFields::notes(const io::MeshData& after) const 
       fmt::format("fields of vertices ({}) are attached, not carried over: {} of {} vertices moved with "
                   "their values, or are new with those of the nearest",
                   names, grouped(static_cast<std::size_t>(n)), grouped(after.points.size()))};
+}
+
+void require_quality_array(const std::string& name, const std::string& output,
+                           const io::WriteOptions& options) {
+  if (name.empty()) return;
+  const auto refuse = [](const std::string& why) {
+    throw Failure(ExitCode::kUsage, "--quality-array: " + why);
+  };
+  if (std::any_of(name.begin(), name.end(),
+                  [](unsigned char c) { return c <= ' ' || c == 0x7f || c == '"'; }))
+    refuse("a name without blanks, quotes and line breaks is wanted");
+  if (name == "region") refuse("'region' is what the numbers of regions are called; take another name");
+  if (output.empty()) refuse("there is no output file for the angles to be in");
+  if (!io::holds_fields(output_path(output), options))
+    refuse(output + ": the format has no place for values of cells; .vtu, .vtk, .msh and .ovm have");
+}
+
+void add_quality_array(const std::string& name, par::Policy policy, io::MeshData& data) {
+  io::Field field;
+  field.name = name;
+  field.values.resize(data.cells.size());
+  par::for_each(policy, data.cells.size(), [&](std::size_t i) {
+    const auto& v = data.cells[i];
+    const auto& p = data.points;
+    field.values[i] = reported_quality(Metric::kMinDihedral, p[v[0]], p[v[1]], p[v[2]], p[v[3]]);
+  });
+  const auto has_name = [&](const io::Field& other) { return other.name == name; };
+  std::erase_if(data.cell_fields, has_name);
+  data.cell_fields.push_back(std::move(field));
 }
 
 }  // namespace hfr::app

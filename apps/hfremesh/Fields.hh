@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "hfremesh/IO/MeshData.hh"
+#include "hfremesh/IO/MeshFile.hh"
+#include "hfremesh/Parallel/Policy.hh"
 
 namespace hfr::app {
 
@@ -21,6 +23,15 @@ class PointsOfFields {
  private:
   std::vector<Vec3> points_;  ///< ascending; none where there are no fields
 };
+
+/// Fails with exit code 1 where a field of cells of that name cannot be written to `output`. `name` empty:
+/// none is asked for.
+void require_quality_array(const std::string& name, const std::string& output,
+                           const io::WriteOptions& options);
+
+/// Adds a field of cells to `data`: the smallest dihedral angle of each in degrees, negative in a cell whose
+/// volume is. Takes the place of a field of cells of that name. `data` is as io::disassemble() gives it.
+void add_quality_array(const std::string& name, par::Policy policy, io::MeshData& data);
 
 }  // namespace hfr::app
 

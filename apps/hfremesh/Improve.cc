@@ -108,6 +108,7 @@ ExitCode run_on_mesh(io::MeshData data, const ImproveLine& line, const ImproveOp
     notes.insert(notes.end(), more.begin(), more.end());
   };
   add(points_before.notes(data));
+  if (!line.quality_array.empty()) add_quality_array(line.quality_array, common.policy(), data);
   if (!line.dry_run) {
     add(notes_on_replacing(line.output));
     add(save(line.output, data, write_options));
@@ -139,11 +140,14 @@ ExitCode run(const ImproveLine& line, const CommonOptions& common, Json& report)
     report["output"]["file"] = line.output;
     write_options = require_writable_mesh(line.output, line.write, common);
   }
+  require_quality_array(line.quality_array, writes ? line.output : "", write_options);
   if (!line.ids.empty()) require_writable(line.ids);
   const Stopwatch reading;
   io::MeshData data = read_data(line.input, common);
   const double seconds_read = reading.seconds();
   const bool is_surface = data.cells.empty() && !data.triangles.empty();
+  if (is_surface && !line.quality_array.empty())
+    throw Failure(ExitCode::kUsage, "--quality-array is for tetrahedra, and " + line.input + " has none");
   if (is_surface && line.plan)
     throw Failure(ExitCode::kUsage, "--plan is for tetrahedra, and " + line.input + " has none");
   if (is_surface)

@@ -139,6 +139,10 @@ void add_improve_options(Command command, ImproveLine& line, CommonOptions& comm
   command.option("--ids", line.ids, "Write the cells below the goal and why they are; - is stdout")
       .type_name("FILE")
       .transform(stream_name());
+  command
+      .option("--quality-array", line.quality_array,
+              "Write the smallest dihedral of each cell, in degrees, as a field of this name")
+      .type_name("NAME");
   add_method_options(command, line);
   add_surface_options(command, line);
   add_device_options(command, line);

@@ -19,6 +19,7 @@ struct Format {
   std::string_view variants;               ///< that WriteOptions::variant may name, with blanks between
   std::array<std::string_view, 3> beside;  ///< extensions of the other files of the mesh
   bool is_one_file = true;                 ///< nothing is lost without those beside it but fields
+  bool has_fields = true;                  ///< on vertices and cells
 };
 
 constexpr std::array<std::string_view, 3> kSolutions = {".sol", ".solb"};
@@ -34,10 +35,10 @@ constexpr Format kFormats[] = {
     {".msh", read_gmsh, write_gmsh, "2.2 4.0 4.1", {}},
     {".vtk", read_vtk, write_vtk, "4.2 5.1", {}},
     {".vtu", read_vtu, write_vtu, "ascii base64 appended zlib", {}},
-    {".stl", read_surface, write_surface, "", {}},
-    {".obj", read_surface, write_surface, "", {}},
-    {".off", read_surface, write_surface, "", {}},
-    {".ply", read_surface, write_surface, "", {}},
+    {".stl", read_surface, write_surface, "", {}, true, false},
+    {".obj", read_surface, write_surface, "", {}, true, false},
+    {".off", read_surface, write_surface, "", {}, true, false},
+    {".ply", read_surface, write_surface, "", {}, true, false},
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -129,6 +130,12 @@ void require_writable_format(const std::filesystem::path& path, const WriteOptio
   throw InvalidInput(one_line(
       path.string() + ": unknown variant '" + options.variant + "' of " + extension +
       (format.variants.empty() ? ", which has none" : "; known are " + std::string(format.variants))));
+}
+
+bool holds_fields(const std::filesystem::path& path, const WriteOptions& options) {
+  const Format& format = format_of(path, options.format, writable_extensions());
+  const bool loses_solutions = path == kStandardOutput && format.beside == kSolutions;
+  return format.has_fields && !loses_solutions;
 }
 
 std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& path) {

@@ -43,6 +43,10 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Mes
 void require_readable_format(const std::filesystem::path& path, const std::string& format = {});
 void require_writable_format(const std::filesystem::path& path, const WriteOptions& options);
 
+/// Whether fields on vertices and cells find a place in what write_mesh() makes there. Throws InvalidInput
+/// for a format that is not known.
+bool holds_fields(const std::filesystem::path& path, const WriteOptions& options);
+
 /// The files that a mesh of this path is or may be made of, the path itself first: TetGen's four, Medit's
 /// with its solutions, or one.
 std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& path);

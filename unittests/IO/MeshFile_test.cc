@@ -121,6 +121,10 @@ TEST_P(EveryFormat, ScalarFieldsKeepTheirValues) {
   EXPECT_TRUE(has_field(back.cell_fields, mesh.cell_fields[0]));
 }
 
+TEST_P(EveryFormat, HoldsFieldsAndSaysSo) {
+  EXPECT_TRUE(holds_fields(path_, GetParam().options));  // the test above has seen them come back
+}
+
 TEST_P(EveryFormat, UnusedPointsAndInvertedCellsAreKept) {
   MeshData mesh = samples::two_cells();
   mesh.points.insert(mesh.points.begin() + 2, Vec3{9, 9, 9});
@@ -153,6 +157,13 @@ TEST(MeshFile, UnknownAndMissingFilesAreRefused) {
               testing::StartsWith("a.step: unknown file type '.step'; known are .mesh "));
   EXPECT_THROW(read_mesh(folder / "none.mesh"), IoError);
   EXPECT_THROW(write_mesh(folder / "none/a.mesh", samples::two_cells()), IoError);
+}
+
+TEST(MeshFile, SurfacesAndSolutionsThatAStreamCannotTakeHoldNoFields) {
+  for (const char* name : {"a.stl", "a.obj", "a.off", "a.ply"}) EXPECT_FALSE(holds_fields(name, {})) << name;
+  EXPECT_FALSE(holds_fields(kStandardOutput, {.format = "mesh"}));
+  EXPECT_TRUE(holds_fields(kStandardOutput, {.format = "vtu"}));
+  EXPECT_THROW(holds_fields("a.stuff", {}), InvalidInput);
 }
 
 TEST(MeshFile, ExtensionsAreKnownInCapitalsToo) {
