@@ -9,12 +9,13 @@
 #   --same-bits  the default, and the other compiler and thread library of scripts/same-bits.sh
 #   --libcxx the default, and clang with its own standard library, for scripts/libcxx.sh
 #   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr;
-#            gfortran, for the tests of the Fortran module, which are skipped without
+#            gfortran, for the tests of the Fortran module, and chromium, for that of the page of --report, which are
+#            skipped without
 # oclgrind comes with the tests where it can be had; where not, the search for faults of kernels is skipped.
 set -euo pipefail
 
 packages=(g++ cmake make pkg-config zlib1g-dev libfmt-dev libtinyxml2-dev nlohmann-json3-dev libcli11-dev
-  libeigen3-dev libopenmesh-dev opencl-headers opencl-clhpp-headers ocl-icd-libopencl1 pocl-opencl-icd)
+  libeigen3-dev libopenmesh-dev libpng-dev opencl-headers opencl-clhpp-headers ocl-icd-libopencl1 pocl-opencl-icd)
 tests=(libgtest-dev libgmock-dev)
 optional=(oclgrind)
 extra=()
@@ -24,8 +25,8 @@ for option in "$@"; do
     --bench) extra+=(libbenchmark-dev) ;;
     --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
     --libcxx) extra+=(clang libc++-dev libc++abi-dev) ;;
-    --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr gfortran) ;;
-    *) sed -n '3,15s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr gfortran chromium) ;;
+    *) sed -n '3,16s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

@@ -29,6 +29,7 @@ Subcommand add_stats(Command program, CommonOptions& common);
 Subcommand add_convert(Command program, CommonOptions& common);
 Subcommand add_generate(Command program, CommonOptions& common);
 Subcommand add_move(Command program, CommonOptions& common);
+Subcommand add_report(Command program, CommonOptions& common);
 Subcommand add_devices(Command program, CommonOptions& common);
 
 }  // namespace hfr::app

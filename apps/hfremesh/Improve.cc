@@ -16,6 +16,7 @@
 #include "ImproveSurface.hh"
 #include "Json.hh"
 #include "Labels.hh"
+#include "Presentation.hh"
 #include "Report.hh"
 #include "Signals.hh"
 #include "hfremesh/IO/Assemble.hh"
@@ -24,13 +25,18 @@ namespace hfr::app {
 namespace {
 
 Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const ImproveLine& line,
-                             const CommonOptions& common, const SignalGuard& signals) {
+                             const CommonOptions& common, const SignalGuard& signals,
+                             Presentation& presentation) {
   using Style = ProgressView::Style;
   const bool bar = !common.quiet && stderr_is_terminal();
   const Style style = line.progress ? Style::kLines : bar ? Style::kBar : Style::kNone;
   ProgressView view(style);
   // Each call costs improve() a look at every cell, so it is asked for only where it is seen.
-  if (style != Style::kNone) options.progress = [&view](const Progress& progress) { view.show(progress); };
+  if (style != Style::kNone || presentation.watches())
+    options.progress = [&](const Progress& progress) {
+      view.show(progress);
+      presentation.note(progress);
+    };
   options.cancel = [&signals] { return signals.cancelled(); };
   return improve(mesh, options);
 }
@@ -90,12 +96,15 @@ ExitCode run_on_mesh(io::MeshData data, const ImproveLine& line, const ImproveOp
   report["input"].update(to_json(loaded.report));
   if (line.plan) return print_plan(loaded, options, common, report);
 
+  Presentation presentation(line.presentation, line.input, line.output, common.policy());
+  presentation.add_before(loaded.mesh);
   const SignalGuard signals;  // from here on there is something to save
   const Stopwatch improving;
-  const Result result = improve_with_progress(loaded.mesh, options, line, common, signals);
+  const Result result = improve_with_progress(loaded.mesh, options, line, common, signals, presentation);
   seconds.improve = result.seconds;
   if (line.label_features) label_features(loaded.mesh, options.surface, options.policy);
   seconds.statistics = improving.seconds() - result.seconds;
+  presentation.add_after(loaded.mesh, &result);
 
 #ifndef NDEBUG  // improve() has tested what it changed; a second look takes three times as long as a short
                 // run
@@ -121,8 +130,9 @@ ExitCode run_on_mesh(io::MeshData data, const ImproveLine& line, const ImproveOp
   report["notes"] = notes;
   if (!common.quiet) print_notes(notes);
   if (common.prints_table()) print_result(result, seconds, line.dry_run, common);
-  const ExitCode code = exit_code_of(result);
+  ExitCode code = exit_code_of(result);
   if (code != ExitCode::kDone) print_error(line.input + ": " + shortfall(result, options));
+  code = presentation.save(result.before, result.after, report, code);
   return line.ids.empty() ? code : save_report(line.ids, ids_text(loaded.mesh, result), code);
 }
 
@@ -141,13 +151,17 @@ ExitCode run(const ImproveLine& line, const CommonOptions& common, Json& report)
     write_options = require_writable_mesh(line.output, line.write, common);
   }
   require_quality_array(line.quality_array, writes ? line.output : "", write_options);
+  if (line.plan && line.presentation.any())
+    throw Failure(ExitCode::kUsage, "--plan runs nothing, so there is nothing for --png and --report");
   if (!line.ids.empty()) require_writable(line.ids);
+  require_presentable(line.presentation);
   const Stopwatch reading;
   io::MeshData data = read_data(line.input, common);
   const double seconds_read = reading.seconds();
   const bool is_surface = data.cells.empty() && !data.triangles.empty();
-  if (is_surface && !line.quality_array.empty())
-    throw Failure(ExitCode::kUsage, "--quality-array is for tetrahedra, and " + line.input + " has none");
+  if (is_surface && (!line.quality_array.empty() || line.presentation.any()))
+    throw Failure(ExitCode::kUsage,
+                  "--quality-array, --png and --report are for tetrahedra, and " + line.input + " has none");
   if (is_surface && line.plan)
     throw Failure(ExitCode::kUsage, "--plan is for tetrahedra, and " + line.input + " has none");
   if (is_surface)
@@ -166,7 +180,9 @@ Subcommand add_improve(Command program, CommonOptions& common) {
           [line] {
             return std::vector<FileUse>{{Kind::kInput, "IN", line->input},
                                         {Kind::kMesh, "-o", line->dry_run ? "" : line->output},
-                                        {Kind::kReport, "--ids", line->ids}};
+                                        {Kind::kReport, "--ids", line->ids},
+                                        {Kind::kReport, "--png", line->presentation.png},
+                                        {Kind::kReport, "--report", line->presentation.page}};
           },
           [line, &common](Json& report) { return run(*line, common, report); }};
 }

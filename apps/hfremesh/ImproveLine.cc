@@ -139,6 +139,7 @@ void add_improve_options(Command command, ImproveLine& line, CommonOptions& comm
   command.option("--ids", line.ids, "Write the cells below the goal and why they are; - is stdout")
       .type_name("FILE")
       .transform(stream_name());
+  add_presentation_options(command, line.presentation, "--report");
   command
       .option("--quality-array", line.quality_array,
               "Write the smallest dihedral of each cell, in degrees, as a field of this name")
@@ -175,7 +176,8 @@ ImproveOptions improve_options(const ImproveLine& line, const CommonOptions& com
   if (line.feature_angle) options.surface.feature_angle = *line.feature_angle;
   add_locks(options.surface, line.fix, line.periodic);
   options.policy = common.policy();
-  options.statistics = common.prints_table() || !common.json.empty() || !line.ids.empty();
+  options.statistics =
+      common.prints_table() || !common.json.empty() || !line.ids.empty() || line.presentation.any();
   return options;
 }
 

@@ -9,6 +9,7 @@
 
 #include "Options.hh"
 #include "Parser.hh"
+#include "Presentation.hh"
 #include "hfremesh/IO/MeshFile.hh"
 #include "hfremesh/Remesh/Improve.hh"
 
@@ -30,11 +31,12 @@ struct ImproveLine {
   std::optional<double> feature_angle;
   std::string device;  ///< as device_choice_from_name() has it
   bool no_insert = false;
-  std::string min_dihedral;   ///< degrees or "max"
-  double min_angle = 0;       ///< degrees, for surfaces; 0 = none
-  std::string ids;            ///< file for the cells that are stuck, empty for none
-  std::string quality_array;  ///< name of the field of cells, empty for none
-  double time_limit = 0;      ///< 0 = none
+  std::string min_dihedral;        ///< degrees or "max"
+  double min_angle = 0;            ///< degrees, for surfaces; 0 = none
+  std::string ids;                 ///< file for the cells that are stuck, empty for none
+  std::string quality_array;       ///< name of the field of cells, empty for none
+  PresentationFiles presentation;  ///< pictures and pages to make
+  double time_limit = 0;           ///< 0 = none
   io::WriteOptions write;
   ImproveOptions improve;
 };

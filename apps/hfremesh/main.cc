@@ -44,8 +44,8 @@ void wait_passively(char** argv) {
   if (!error) execv(self.c_str(), argv);  // returns only on failure: go on as we are
 }
 
-constexpr const char* kSubcommands[] = {"improve", "move",     "check",  "stats",
-                                        "convert", "generate", "devices"};
+constexpr const char* kSubcommands[] = {"improve", "move",    "check",    "stats",
+                                        "report",  "convert", "generate", "devices"};
 
 /// The arguments. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o OUT".
 std::vector<std::string> arguments(int argc, char** argv) {
@@ -130,10 +130,10 @@ ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams) {
   Command program = parser.program();
   program.require_subcommand();
   CommonOptions common;
-  const std::vector<Subcommand> subcommands = {add_improve(program, common), add_move(program, common),
-                                               add_check(program, common),   add_stats(program, common),
-                                               add_convert(program, common), add_generate(program, common),
-                                               add_devices(program, common)};
+  const std::vector<Subcommand> subcommands = {add_improve(program, common),  add_move(program, common),
+                                               add_check(program, common),    add_stats(program, common),
+                                               add_report(program, common),   add_convert(program, common),
+                                               add_generate(program, common), add_devices(program, common)};
   try {
     if (argc < 2) throw Failure(ExitCode::kUsage, "a mesh or a subcommand is required");
     if (!parser.parse(arguments(argc, argv))) return ExitCode::kDone;
