@@ -13,6 +13,9 @@
 namespace hfr {
 namespace {
 
+/// Degrees that planes which are flat to rounding may turn by.
+constexpr double kPlanar = 1e-6;
+
 /// What the boundary encloses; interfaces take no part.
 double enclosed_volume(const TetMesh& mesh) {
   std::vector<Triangle> boundary;
@@ -144,6 +147,9 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
   for (std::size_t i = 0; i < stuck.size(); ++i) {
     StuckReason& limit = stuck[i].reason;
     if (limit == StuckReason::kFoldedSurface) continue;
+    // Planes and the edges between them stay in flat mode, and with them the order of the faces at an edge.
+    const bool flat = options.surface.mode == SurfaceMode::kFlat;
+    if (flat && is_proof(limit) && stuck[i].ceiling < -kPlanar) continue;
     if (!held[i])
       limit = StuckReason::kNotFound;
     else if (limit != StuckReason::kInputFeature)

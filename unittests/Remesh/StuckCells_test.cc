@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/StuckCells.hh"
+#include "Remesh/SurfaceRun.hh"
 
 #include <numbers>
 #include <optional>
@@ -144,6 +145,21 @@ TEST(StuckCells, InterfaceFoldedOverAnotherIsAnInputFeature) {
     if (left.degrees <= 0) {
       EXPECT_TRUE(is_proof(left.reason));
     }
+}
+
+TEST(StuckCells, InterfaceFoldedOverAnotherIsAlsoOneWherePlanesAreKept) {
+  const TetMesh mesh = wheel({50, 49.937, 144, 216, 288});
+  const auto held_in = [&](SurfaceMode mode) {
+    ImproveOptions options = serial();
+    options.surface.mode = mode;
+    auto stuck = stuck_cells(mesh, 15, {});
+    blame_features(mesh, stuck, 15, options);
+    return stuck.at(0);
+  };
+  const StuckCell flat = held_in(SurfaceMode::kFlat);
+  EXPECT_EQ(flat.cell, C(0));
+  EXPECT_EQ(flat.reason, StuckReason::kInputFeature);
+  EXPECT_NEAR(flat.ceiling, -0.063, 1e-9);
 }
 
 /// The smallest dihedral of the cells at the edge between two places; nothing where there is none.
