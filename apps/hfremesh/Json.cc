@@ -165,11 +165,12 @@ Json limits_json(const Result& result) {
   if (result.held.known)
     held.update(
         {{"flat", result.held.by_flat}, {"free", result.held.by_free}, {"shape", result.held.by_shape}});
-  return {{"below", result.stuck_below},
-          {"n_cells", result.stuck.size()},
-          {"held_by_surface", std::move(held)},
-          {"counts", std::move(counts)},
-          {"cells", std::move(cells)}};
+  Json bound;
+  if (const CellBoundMet& met = result.cell_bound; met.bound > 0)
+    bound = {{"bound", met.bound}, {"cells", met.cells}, {"wanted", met.wanted}};
+  return {{"below", result.stuck_below},    {"cell_bound", std::move(bound)},
+          {"n_cells", result.stuck.size()}, {"held_by_surface", std::move(held)},
+          {"counts", std::move(counts)},    {"cells", std::move(cells)}};
 }
 
 Json faces_json(const TetMesh& mesh, const std::vector<HalfFaceHandle>& faces) {

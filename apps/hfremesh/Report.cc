@@ -100,8 +100,11 @@ void print_limits(const Result& result) {
     if (counts[i] > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kStuckReasonNames[i]);
   print("below {:g} degrees: {} cells; why: {}\n", result.stuck_below, grouped(result.stuck.size()), text);
-  if (const std::size_t n = counts[static_cast<std::size_t>(StuckReason::kMaxCells)]; n > 0)
-    print("a larger --max-cells would let new vertices raise {} of them\n", grouped(n));
+  if (const CellBoundMet& met = result.cell_bound; met.bound > 0)
+    print(
+        "the bound of {} cells was in the way: a vertex would raise {} of them; --max-cells {} has room for "
+        "that\n",
+        grouped(met.bound), grouped(met.cells), met.wanted);
   const HeldCells& held = result.held;
   if (held.cells == 0 || !held.known) return;
   print(

@@ -58,7 +58,7 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy&
   for (StuckCell& cell : stuck)
     if (cell.reason == StuckReason::kNotFound) cell.reason = ended;
   if (max_cells_met > 0 && has(options.ops, Ops::kInsert))
-    blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
+    result.cell_bound = blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
   if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, options);
 }
 

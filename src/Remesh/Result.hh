@@ -111,6 +111,14 @@ struct StuckCell {
 /// How many cells each limit keeps, in the order of Limit.
 std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells);
 
+/// The bound on the number of cells, where it was what stopped a run: of the cells below Result::stuck_below,
+/// a new vertex would raise some. Empty where it was not.
+struct CellBoundMet {
+  std::size_t bound = 0;   ///< cells that there might be; 0: no bound was met
+  std::size_t cells = 0;   ///< of those below, with StuckReason::kMaxCells
+  std::size_t wanted = 0;  ///< ImproveOptions::max_cells that has room for a vertex at each of them
+};
+
 struct Result {
   bool changed = false;       ///< by what was not taken back
   bool goal_reached = false;  ///< nothing inverted or flat, and min_dihedral met where given
@@ -128,7 +136,8 @@ struct Result {
   /// angle was raised as far as it goes, the first angle that was tried for and missed; and what keeps each.
   std::vector<StuckCell> stuck;
   double stuck_below = 0;
-  HeldCells held;  ///< with a frozen surface and options.statistics
+  CellBoundMet cell_bound;  ///< with options.statistics
+  HeldCells held;           ///< with a frozen surface and options.statistics
   /// With options.statistics: vertices of more than Star::kCapacity cells, which are moved but not removed.
   std::size_t n_large_stars = 0;
   double seconds = 0;                    ///< of the work itself, statistics apart

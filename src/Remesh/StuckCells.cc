@@ -119,8 +119,8 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
   return cells;
 }
 
-void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                     std::size_t max_cells, par::Policy policy) {
+CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                             std::size_t max_cells, par::Policy policy) {
   using Op = VertexInsertion<MinDihedral>;
   std::vector<double> quality(mesh.n_cells());
   par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
@@ -130,6 +130,7 @@ void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double 
   Op op{MinDihedral{}, quality};
   op.poor_below = dihedral_decision(degrees);
   const std::size_t n_cells = mesh.n_logical_cells();
+  std::vector<std::size_t> n_more(stuck.size(), 0);
   par::for_each_dynamic(policy.for_items_of(Op::kSeedNanoseconds), stuck.size(), 1, [&](std::size_t i) {
     if (stuck[i].reason != StuckReason::kNotFound) return;
     const auto plan = op.evaluate(mesh, typename Op::Seed(stuck[i].cell));
@@ -137,8 +138,19 @@ void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double 
     Cavity cavity;
     op.cavity(mesh, *plan, cavity);
     const std::size_t n_after = n_cells + cavity.created.size() - cavity.removed.size();
-    if (n_after > max_cells || n_cells + kLeastRoom > max_cells) stuck[i].reason = StuckReason::kMaxCells;
+    if (n_after <= max_cells && n_cells + kLeastRoom <= max_cells) return;
+    stuck[i].reason = StuckReason::kMaxCells;
+    n_more[i] = std::max(n_after, n_cells + kLeastRoom) - n_cells;
   });
+  CellBoundMet met;
+  for (std::size_t more : n_more) {
+    met.cells += more > 0 ? 1 : 0;
+    met.wanted += more;
+  }
+  if (met.cells == 0) return {};
+  met.bound = max_cells;
+  met.wanted += n_cells;
+  return met;
 }
 
 std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells) {

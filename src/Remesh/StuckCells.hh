@@ -17,9 +17,9 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
                                    std::span<const HalfFaceHandle> unfillable, par::Policy policy = {});
 
 /// Says kMaxCells of the cells without a reason of which VertexInsertion would raise the worst angle, with
-/// more cells than `max_cells`.
-void blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                     std::size_t max_cells, par::Policy policy = {});
+/// more cells than `max_cells`, and how many cells there would have to be for all of them.
+CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                             std::size_t max_cells, par::Policy policy = {});
 
 /// The cells that the frozen surface is proven to keep, or that nothing was found for and all of whose
 /// vertices it has.
