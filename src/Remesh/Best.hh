@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_BEST_HH
 #define HFR_REMESH_BEST_HH
 
+#include <array>
 #include <optional>
 
 #include "Remesh/Checkpoint.hh"
@@ -11,11 +12,12 @@
 namespace hfr {
 
 /// The best mesh that a stage has had on its way, by Standing: fewer inverted, fewer flat cells, less
-/// overlap, a larger worst angle. Makes a Snapshot, and another one in its place with each note() of a better
-/// mesh.
+/// overlap, a larger worst angle. One whose 1st or 5th percentile has lost more than a share of `may_fall`
+/// since the beginning, with no fewer inverted and flat cells, is none. Makes a Snapshot, and another one in
+/// its place with each note() of a better mesh.
 class Best {
  public:
-  explicit Best(const Run& run);
+  Best(const Run& run, double may_fall);
   Best(const Best&) = delete;
   Best& operator=(const Best&) = delete;
 
@@ -26,9 +28,14 @@ class Best {
   void settle();
 
  private:
+  /// Smallest dihedrals below which 1 and 5 % of the cells lie: decision values.
+  using Percentiles = std::array<double, 2>;
   Standing now() const;
+  Percentiles percentiles() const;
+  bool is_admissible(const Standing& found) const;
 
   Run run_;
+  Percentiles least_;
   Standing standing_;
   std::optional<Snapshot> mesh_;
 };

@@ -15,13 +15,13 @@ double smallest(const Run& run) { return smallest_dihedral(run.mesh, run.policy(
 
 /// The cells that miss the goal; what misses it then as far as it goes, and the goal once more if that
 /// helped.
-bool attempt(const Run& run, const GoalEffort& goal) {
+bool attempt(const Run& run, double degrees, std::span<const TargetAngle> targets) {
   const Strategy& strategy = run.strategy;
-  if (polish(run, strategy.polish, goal.degrees)) return true;
+  if (polish(run, strategy.polish, degrees)) return true;
   const double missed_at = smallest(run);
-  raise_to_targets(run, strategy.targets.targets);
-  if (!run.control.stopped()) improve_last_cells(run, strategy.last_cells, strategy.targets.targets);
-  return !run.control.stopped() && smallest(run) > missed_at && polish(run, strategy.polish, goal.degrees);
+  raise_to_targets(run, targets);
+  if (!run.control.stopped()) improve_last_cells(run, strategy.last_cells, targets);
+  return !run.control.stopped() && smallest(run) > missed_at && polish(run, strategy.polish, degrees);
 }
 
 }  // namespace
@@ -30,12 +30,25 @@ bool attempt_beyond(const Run& run, const GoalEffort& goal) {
   if (!run.findings.met_cell_bound || run.control.stopped()) return false;
   run.findings.forget_cell_bound();
   Trial trial(run, goal.degrees);
-  return attempt(run.within(run.strategy.bounds_asked), goal) || trial.settle();
+  return attempt(run.within(run.strategy.bounds_asked), goal.degrees, run.strategy.targets.targets) ||
+         trial.settle();
+}
+
+void reach_in_turn(const Run& run, const GoalEffort& goal) {
+  const std::span<const TargetAngle> all = run.strategy.targets.targets;
+  for (std::size_t i = 0; i < all.size() && !run.control.stopped(); ++i) {
+    const double now = smallest(run), degrees = all[i].degrees;
+    if (now >= degrees) continue;
+    const auto targets = all.first(i + 1);
+    const bool many_miss = share_below(run.mesh, degrees, run.policy()) > goal.few_miss;
+    if (many_miss) improve_all(run, now, targets);
+    if (!attempt(run, degrees, targets)) return;
+  }
 }
 
 bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched) {
   const Strategy& strategy = run.strategy;
-  if (attempt(run, goal)) return true;
+  if (attempt(run, goal.degrees, strategy.targets.targets)) return true;
   CellBounds bounds = run.bounds;
   if (attempt_beyond(run, goal)) {
     if (n_below(run.mesh, goal.degrees, run.policy()) == 0) return true;

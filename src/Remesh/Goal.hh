@@ -17,6 +17,10 @@ bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched
 /// asked for alone. True when what was done stays.
 bool attempt_beyond(const Run& run, const GoalEffort& goal);
 
+/// Works for one target after the other up to the goal: with all cells, and vertices where they are missing,
+/// where many miss it. Ends with the first target that is missed.
+void reach_in_turn(const Run& run, const GoalEffort& goal);
+
 }  // namespace hfr
 
 #endif

@@ -74,7 +74,7 @@ struct ImproveOptions {
   bool bulk_nodes = false;
   /// No vertex is removed where cells would come to be fewer than min_cells, none inserted where more than
   /// max_cells; swaps may add or take a few. 0: the run chooses, of 100 cells of the input
-  ///   - with a frozen surface 81 and 119;
+  ///   - with a frozen surface 81 and 119, without a goal 150 where it ends below 15 degrees;
   ///   - in flat mode with raise_min_dihedral 81 and 119, with min_dihedral no lower bound and 119, else
   ///   none;
   ///   - in free mode, and with compat, none.

@@ -48,14 +48,14 @@ bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   return false;
 }
 
-/// What a default run claims, where it has come near.
+/// What a default run claims, with more cells where their number was in the way.
 void reach_claimed(const Run& run) {
-  if (!run.strategy.claimed || run.control.stopped()) return;
-  const GoalEffort& goal = *run.strategy.claimed->goal;
-  if (smallest_dihedral(run.mesh, run.policy()) >= goal.degrees) return;
-  if (share_below(run.mesh, goal.degrees, run.policy()) > goal.few_miss) return;
-  Best best(run);
-  attempt_beyond(run.with(*run.strategy.claimed), goal);
+  if (!run.strategy.claimed || !run.findings.met_cell_bound || run.control.stopped()) return;
+  const Strategy& claimed = *run.strategy.claimed;
+  if (smallest_dihedral(run.mesh, run.policy()) >= claimed.goal->degrees) return;
+  run.findings.forget_cell_bound();
+  Best best(run, claimed.goal->may_fall);
+  reach_in_turn(run.with(claimed), *claimed.goal);
   best.settle();
 }
 
@@ -68,7 +68,7 @@ bool run_default(const Run& run) {
 
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
   run_default(run);
-  Best best(run);
+  Best best(run, effort.may_fall);
   raise_at_any_cost(run, effort, best);
   best.settle();
   return false;

@@ -317,6 +317,8 @@ struct GoalEffort {
   /// Where no larger share is left in the end, a frozen surface holds them, whatever is done to others.
   double few_miss = 0.01;
   bool goes_on = true;  ///< with all cells where the goal was missed; not where iterations are limited
+  /// Share of its 1st and 5th percentile that a default run may lose for what it claims.
+  double may_fall = 0.03;
 };
 
 /// The worst angle as far as it goes, whatever it costs in time: after a default run. Shown by --runs max.
@@ -332,6 +334,7 @@ struct AnyCostEffort {
   double gain = 1.002;          ///< factor of the worst angle that makes a target no miss
   double fewer = 0.8;           ///< share of the cells below it that may be left, for the same
   double again = 1.02;          ///< factor by which a search of the worst cells starts the climb anew
+  double may_fall = 0.02;       ///< share of the 1st and 5th percentile that may be lost
   bool neighbourhoods = false;  ///< improved at each target, and not only at the last
   std::vector<PatchEffort> patches;
   std::optional<RefineEffort> refine, refine_again;
