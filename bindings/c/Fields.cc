@@ -1,49 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields are properties of the types that files have them in (IO/ReadWrite.hh): a scalar, a vector of three,
-// 2, 4, 6 or 9 components, or any other number of them.
+// Callers' arrays as fields, in properties of the types that io::with_field_type() has for them.
 #include <array>
 #include <vector>
 
 #include "Arrays.hh"
+#include "hfremesh/IO/FieldLayout.hh"
 
 using namespace hfr;
 using namespace hfr::c;
 
 namespace {
 
-template <class T>
-auto* components(T& value) {
-  if constexpr (std::is_arithmetic_v<std::remove_const_t<T>>)
-    return &value;
-  else if constexpr (std::is_same_v<std::remove_const_t<T>, Vec3>)
-    return &value.x;
-  else
-    return value.data();
-}
-
-/// Calls f with a value of the type that a field of `columns` numbers of Number is kept as.
-template <class Number, class F>
-void with_value_type(int columns, F&& f) {
-  const auto n = static_cast<std::size_t>(columns);
-  if (n == 1) return f(Number{});
-  if constexpr (std::is_floating_point_v<Number>) {
-    if (n == 3) return f(Vec3{});
-  } else {
-    if (n == 3) return f(std::array<Number, 3>{});
-  }
-  if (n == 2) return f(std::array<Number, 2>{});
-  if (n == 4) return f(std::array<Number, 4>{});
-  if (n == 6) return f(std::array<Number, 6>{});
-  if (n == 9) return f(std::array<Number, 9>{});
-  f(std::vector<Number>(n));
-}
-
 template <class F>
-void with_value_type(const hfr_array& a, F&& f) {
-  if (a.type == HFR_INT32 || a.type == HFR_INT64)
-    with_value_type<std::int64_t>(a.columns, f);
-  else
-    with_value_type<double>(a.columns, f);
+void with_field_type(const hfr_array& a, F&& f) {
+  io::with_field_type(a.columns, a.type == HFR_INT32 || a.type == HFR_INT64, f);
 }
 
 bool is_of_vertices(const char* of) {
@@ -65,7 +35,7 @@ void write_values(Property property, const hfr_array& from, std::size_t columns)
   for_each(from, [&](std::int64_t i, std::int64_t j, auto value) {
     auto& kept = property[H(i)];
     if constexpr (requires { kept.resize(columns); }) kept.resize(columns);
-    auto* numbers = components(kept);
+    auto* numbers = io::components_of(kept);
     numbers[j] = static_cast<std::remove_reference_t<decltype(*numbers)>>(value);
   });
 }
@@ -77,7 +47,7 @@ void read_values(const Property& property, const std::string& name, const hfr_ar
     if constexpr (requires { kept.resize(0); })
       HFR_REQUIRE(std::cmp_less(j, kept.size()),
                   name + " has " + std::to_string(kept.size()) + " components");
-    value = static_cast<std::remove_reference_t<decltype(value)>>(components(kept)[j]);
+    value = static_cast<std::remove_reference_t<decltype(value)>>(io::components_of(kept)[j]);
   });
 }
 
@@ -88,8 +58,8 @@ hfr_status hfr_mesh_set_field(hfr_mesh* mesh, const char* of, const char* name, 
     const bool of_vertices = is_of_vertices(of);
     const std::string called(text_of(name, "name"));
     require_field(*mesh, of_vertices, called, values);
-    with_value_type(*values, [&](auto zero) {
-      using T = decltype(zero);
+    with_field_type(*values, [&]<class T>() {
+      const T zero = io::field_preset<T>(values->columns);
       const auto columns = static_cast<std::size_t>(values->columns);
       if (of_vertices)
         write_values<VertexHandle>(mesh->tets.request_vertex_property<T>(called, zero), *values, columns);
@@ -104,8 +74,7 @@ hfr_status hfr_mesh_get_field(hfr_mesh* mesh, const char* of, const char* name, 
     const bool of_vertices = is_of_vertices(of);
     const std::string called(text_of(name, "name"));
     require_field(*mesh, of_vertices, called, values);
-    with_value_type(*values, [&](auto zero) {
-      using T = decltype(zero);
+    with_field_type(*values, [&]<class T>() {
       const auto read = [&](auto handle, const auto& property) {
         HFR_REQUIRE(property, "no field of " + std::string(of) + " is called '" + called + "'");
         read_values<decltype(handle)>(*property, called, *values);

@@ -14,31 +14,6 @@ namespace {
 
 using std::int64_t;
 
-/// Calls f.operator()<T>() for the type that holds a field of this shape.
-template <class F>
-void with_type(int components, bool integer, F&& f) {
-  switch (components) {
-    case 1:
-      return integer ? f.template operator()<int64_t>() : f.template operator()<double>();
-    case 2:
-      return integer ? f.template operator()<std::array<int64_t, 2>>()
-                     : f.template operator()<std::array<double, 2>>();
-    case 3:
-      return integer ? f.template operator()<std::array<int64_t, 3>>() : f.template operator()<Vec3>();
-    case 4:
-      return integer ? f.template operator()<std::array<int64_t, 4>>()
-                     : f.template operator()<std::array<double, 4>>();
-    case 6:
-      return integer ? f.template operator()<std::array<int64_t, 6>>()
-                     : f.template operator()<std::array<double, 6>>();
-    case 9:
-      return integer ? f.template operator()<std::array<int64_t, 9>>()
-                     : f.template operator()<std::array<double, 9>>();
-    default:
-      return f.template operator()<std::vector<double>>();
-  }
-}
-
 /// Integers that a double cannot hold exactly, or that are none, stay doubles.
 bool is_integer(const Field& field) {
   return field.integer && std::all_of(field.values.begin(), field.values.end(),
@@ -60,11 +35,8 @@ void attach(const std::vector<Field>& fields, std::vector<std::string> names, st
       continue;
     }
     names.push_back(name);
-    with_type(field.components, is_integer(field), [&]<class T>() {
-      T preset{};
-      if constexpr (std::same_as<T, std::vector<double>>)
-        preset.resize(static_cast<std::size_t>(field.components));
-      auto property = request.template operator()<T>(name, preset);
+    with_field_type(field.components, is_integer(field), [&]<class T>() {
+      auto property = request.template operator()<T>(name, field_preset<T>(field.components));
       const double* value = field.values.data();
       for (T& item : property.values())
         for (int k = 0; k < field.components; ++k) Layout<T>::set(item, k, *value++);

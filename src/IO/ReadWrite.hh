@@ -22,7 +22,7 @@ struct ReadReport {
 
 /// Reads a mesh of any known format with all that the file says of it: regions (TetMesh::region()), labels of
 /// triangles, edges and vertices and the names of labels (TetMesh::labels()), fixed vertices, and fields as
-/// properties of vertices and cells, under their names (see FieldProperties.hh for their types). Handles
+/// properties of vertices and cells, under their names (see FieldLayout.hh for their types). Handles
 /// equal the indices of the file. Throws IoError when the file cannot be opened, InvalidInput, with the path,
 /// when what it says is broken or it has no tetrahedra, ResourceLimit for more cells than an index counts.
 TetMesh read(const std::filesystem::path& path, par::Policy policy = {}, ReadReport* report = nullptr);

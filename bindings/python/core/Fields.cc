@@ -7,41 +7,10 @@
 #include <utility>
 
 #include "hfremesh/IO/Assemble.hh"
+#include "hfremesh/IO/FieldLayout.hh"
 
 namespace hfr::python {
 namespace {
-
-template <class T>
-auto* components(T& value) {
-  if constexpr (std::is_arithmetic_v<std::remove_const_t<T>>)
-    return &value;
-  else if constexpr (std::is_same_v<std::remove_const_t<T>, Vec3>)
-    return &value.x;
-  else
-    return value.data();
-}
-
-/// Calls f with a value of the type that the field is kept as.
-template <class Number, class F>
-void with_value_type(std::size_t n, F&& f) {
-  using Three = std::conditional_t<std::is_floating_point_v<Number>, Vec3, std::array<Number, 3>>;
-  if (n == 1) return f(Number{});
-  if (n == 2) return f(std::array<Number, 2>{});
-  if (n == 3) return f(Three{});
-  if (n == 4) return f(std::array<Number, 4>{});
-  if (n == 6) return f(std::array<Number, 6>{});
-  if (n == 9) return f(std::array<Number, 9>{});
-  f(std::vector<Number>(n));
-}
-
-template <class F>
-void with_value_type(const FieldKind& kind, F&& f) {
-  const auto n = static_cast<std::size_t>(kind.components);
-  if (kind.integer)
-    with_value_type<std::int64_t>(n, f);
-  else
-    with_value_type<double>(n, f);
-}
 
 void add_kinds(const std::vector<io::Field>& fields, bool of_vertices, std::vector<FieldKind>& kinds) {
   for (const io::Field& field : fields)
@@ -61,13 +30,12 @@ std::vector<FieldKind> field_kinds(const TetMesh& mesh) {
 std::vector<double> field_values(const TetMesh& mesh, const FieldKind& kind) {
   const auto k = static_cast<std::size_t>(kind.components);
   std::vector<double> values(k * (kind.of_vertices ? mesh.n_vertices() : mesh.n_cells()));
-  with_value_type(kind, [&](auto zero) {
-    using T = decltype(zero);
+  io::with_field_type(kind.components, kind.integer, [&]<class T>() {
     const auto read = [&]<class H>(H, const auto& property) {
       HFR_REQUIRE(property, "there is no field '" + kind.name + "'");
       for (std::size_t i = 0; k * i < values.size(); ++i)
         for (std::size_t j = 0; j < k; ++j)
-          values[k * i + j] = static_cast<double>(components((*property)[H(i)])[j]);
+          values[k * i + j] = static_cast<double>(io::components_of((*property)[H(i)])[j]);
     };
     if (kind.of_vertices)
       read(VertexHandle(), mesh.get_vertex_property<T>(kind.name));
@@ -79,17 +47,17 @@ std::vector<double> field_values(const TetMesh& mesh, const FieldKind& kind) {
 
 void set_field_values(TetMesh& mesh, const FieldKind& kind, const std::vector<double>& values) {
   const auto k = static_cast<std::size_t>(kind.components);
-  with_value_type(kind, [&](auto zero) {
-    using T = decltype(zero);
+  io::with_field_type(kind.components, kind.integer, [&]<class T>() {
     const auto write = [&]<class H>(H, auto property) {
       for (std::size_t i = 0; k * i < values.size(); ++i) {
         auto& kept = property[H(i)];
         if constexpr (requires { kept.resize(k); }) kept.resize(k);
-        auto* numbers = components(kept);
+        auto* numbers = io::components_of(kept);
         for (std::size_t j = 0; j < k; ++j)
           numbers[j] = static_cast<std::remove_reference_t<decltype(*numbers)>>(values[k * i + j]);
       }
     };
+    const T zero = io::field_preset<T>(kind.components);
     if (kind.of_vertices)
       write(VertexHandle(), mesh.request_vertex_property<T>(kind.name, zero));
     else
