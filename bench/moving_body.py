@@ -12,9 +12,8 @@ program is given the same motion of whatever vertices it has:
   gmsh       meshes the volume anew in every step, between the surfaces as they are; Delaunay, Optimize
 A field is carried along: in each step it changes by what the exact function changes by at the vertex, so that what it
 is off by in the end was made by carrying it over, and by that alone. For Mmg and Gmsh, which do not carry fields, this
-script interpolates linearly in the mesh as it was; the time of that is left out. Seconds are those of one thread by
-the clock, of the repair or the meshing with what copies arrays in and out; medians of the steps in which something
-was done, since the machine may have other work.
+script interpolates linearly in the mesh as it was; the time of that is left out. Times are CPU time of one thread, of
+the step, or of the meshing with what copies arrays in and out.
 """
 import argparse
 import os
@@ -79,15 +78,16 @@ class Hfremesh:
 
     def __init__(self, points, cells, field, options):
         mesh = hf.Mesh(points, cells, point_fields={"T": field})
-        self.rm = hf.Remesher(mesh, goal=options.goal, trigger=options.trigger, transfer={"T": "linear"}, threads=1)
+        self.rm = hf.Remesher(mesh, goal=options.goal, trigger=options.trigger, transfer={"T": "linear"}, parents=False,
+                              threads=1)
 
     def step(self, angle):
         points = self.rm.points
         d = motion(points, angle)
         self.rm.set_field("T", self.rm.field("T") + exact(points + d) - exact(points))
-        begin = time.perf_counter()
+        begin = time.process_time()
         step = self.rm.step(d)
-        return time.perf_counter() - begin, step.changed
+        return time.process_time() - begin, step.changed
 
     def state(self):
         return self.rm.points, self.rm.cells, self.rm.field("T")
@@ -101,9 +101,9 @@ class Peer:
         d = motion(self.points, angle)
         self.field = self.field + exact(self.points + d) - exact(self.points)
         self.points = self.points + d
-        begin = time.perf_counter()
+        begin = time.process_time()
         made = self.remesh()
-        took = time.perf_counter() - begin
+        took = time.process_time() - begin
         if made is None:
             return took, False
         points, cells = made

@@ -3,8 +3,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <typeinfo>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
 #include "HalfFace/Geometry.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
@@ -26,7 +31,8 @@ CellWatch::CellWatch(const TetMesh& mesh, const RepairTriggers& triggers, par::P
       triggers_(triggers),
       policy_(policy),
       trigger_(triggers.min_dihedral > 0 ? dihedral_decision(triggers.min_dihedral) : kNever),
-      asks_more_(!triggers.metrics.empty() || triggers.jacobian_ratio > 0 || triggers.indicator) {}
+      asks_more_(!triggers.metrics.empty() || triggers.jacobian_ratio > 0 || triggers.indicator ||
+                 !triggers.indicator_field.empty()) {}
 
 void CellWatch::forget_looks() {
   const std::size_t n = mesh_.n_cells();
@@ -86,6 +92,7 @@ std::uint8_t CellWatch::badness(CellHandle c) const {
   if (triggers_.jacobian_ratio > 0 && volume(mesh_, c) < triggers_.jacobian_ratio * rest_volume_[c.idx()])
     bits |= kIsSqueezed;
   if (triggers_.indicator && triggers_.indicator(mesh_, c)) bits |= kIsIndicated;
+  if (is_indicated_ && is_indicated_(c.idx())) bits |= kIsIndicated;
   return static_cast<std::uint8_t>(bits);
 }
 
@@ -107,7 +114,27 @@ CellWatch::Totals CellWatch::totals_of(CellHandle c) const {
           static_cast<std::uint8_t>(active), bits != 0};
 }
 
+void CellWatch::find_indicator_field() {
+  is_indicated_ = nullptr;
+  const std::string& name = triggers_.indicator_field;
+  if (name.empty()) return;
+  const auto try_one = [&]<class T>(const detail::DenseStored& stored, std::type_identity<T>) {
+    if (stored.type() != typeid(T)) return;
+    const auto* values = &static_cast<const detail::Dense<T>&>(stored).values;
+    is_indicated_ = [values](std::size_t i) { return (*values)[i] != T{}; };
+  };
+  for (const std::shared_ptr<detail::DenseStored>& p : mesh_.properties().cells) {
+    if (p->name() != name || p->is_anonymous()) continue;
+    try_one(*p, std::type_identity<double>{});
+    try_one(*p, std::type_identity<float>{});
+    try_one(*p, std::type_identity<std::int64_t>{});
+    try_one(*p, std::type_identity<int>{});
+  }
+  HFR_REQUIRE(is_indicated_, "trigger by field: cells have no field '" + name + "' of single numbers");
+}
+
 void CellWatch::look_at_all() {
+  find_indicator_field();
   const std::size_t n = mesh_.n_cells();
   const int n_parts = par::thread_count(policy_, n);
   partial_.assign(static_cast<std::size_t>(n_parts), {});
@@ -131,6 +158,7 @@ void CellWatch::look_at_all() {
 }
 
 void CellWatch::look_at(std::span<const CellHandle> cells) {
+  find_indicator_field();
   CornerBlock block;
   CornerBlock::Lane values{};
   for (std::size_t first = 0; first < cells.size(); first += CornerBlock::kSize) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -93,6 +94,7 @@ class CellWatch {
     }
   };
 
+  void find_indicator_field();
   void look_at(std::span<const CellHandle> cells);
   void take(CellHandle c, double value);
   void update(CellHandle c, double value);
@@ -114,6 +116,8 @@ class CellWatch {
   par::Policy policy_;
   double trigger_;  // decision value of triggers.min_dihedral
   bool asks_more_;  // triggers look at more of a cell than its dihedrals
+  /// Whether triggers.indicator_field is not 0, by number of the cell; for one look, since storage may move.
+  std::function<bool(std::size_t)> is_indicated_;
 
   std::vector<double> quality_;        // by cell: decision value of MinDihedral
   std::vector<std::uint8_t> bad_;      // by cell: bits of Bad

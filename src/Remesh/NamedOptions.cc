@@ -271,6 +271,12 @@ constexpr std::array kRemesherRows = std::to_array<Row<R>>({
      [](R& o, Text t) { o.triggers.motion = number_from(t, 0.0); }},
     {{"trigger_every", "a whole number from 0", "A repair after so many steps; 0: not counted.", false},
      [](R& o, Text t) { o.triggers.every = number_from(t, 0); }},
+    {{"trigger_field", "the name of a field of cells",
+      "A cell in which this field is not 0 calls for a repair.", false},
+     [](R& o, Text t) {
+       if (t.empty()) throw Unwanted();
+       o.triggers.indicator_field = t;
+     }},
     {{"on_inversion", "repair, substeps or refuse", "What a move does that would invert cells.", false},
      set_on_inversion},
     {{"max_substeps", "a whole number from 1", "Moves of a step with on_inversion substeps; 16 by default.",
@@ -284,6 +290,10 @@ constexpr std::array kRemesherRows = std::to_array<Row<R>>({
     {{"transfer", "NAME:linear, NAME:inherit, NAME:conserve or NAME:conserve:DENSITY",
       "A field that is carried over repairs, and how.", true},
      add_transfer},
+    {{"parents", kFlag,
+      "Find the parents of created cells; true by default. Without, repairs of many cells are faster by far.",
+      false},
+     [](R& o, Text t) { o.parents = flag(t); }},
     {{"ids", kFlag, "Keep numbers of vertices and cells that never change.", false},
      [](R& o, Text t) { o.ids = flag(t); }},
 });

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct RepairTriggers {
   /// A cell is as bad as the caller says. Asked about cells with a vertex that has moved, from several
   /// threads at once.
   std::function<bool(const TetMesh&, CellHandle)> indicator;
+  /// The same by a field of cells, of numbers: a cell is bad where it is not 0. What a repair leaves bad
+  /// calls for no other one before the field has been 0 there.
+  std::string indicator_field;
 };
 
 /// What a move does that would invert cells.

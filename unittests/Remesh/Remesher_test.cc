@@ -330,6 +330,30 @@ TEST(Remesher, EachTriggerCallsForARepair) {
       RepairCause::kIndicator);
 }
 
+TEST(Remesher, FieldOfCellsCallsForARepairWhereItIsNotZero) {
+  TetMesh mesh = box(5, 0);
+  auto marked = mesh.request_cell_property<std::int64_t>("marked");
+  RemesherOptions options = options_for(15, 0);
+  options.triggers.indicator_field = "marked";
+  Remesher remesher(mesh, options);
+  VertexHandle inner;
+  for (VertexHandle v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inner = v;
+  std::vector<Vec3> d(mesh.n_vertices());
+  d[inner.idx()] = {0.01, 0, 0};
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kNone);
+  const CellHandle cell = mesh.incident_cell(inner);
+  marked[cell] = 1;
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kIndicator);
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kNone) << "the repair had to leave it";
+  marked[cell] = 0;
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kNone);
+  marked[cell] = 1;
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kIndicator);
+  options.triggers.indicator_field = "no such field";
+  EXPECT_THROW(Remesher(mesh, options), InvalidInput);
+}
+
 TEST(Remesher, InnerVerticesFollowTheBoundary) {
   for (const Motion motion : {Motion::kLaplace, Motion::kElastic}) {
     TetMesh mesh = box(6, 0);  // cells of one size: none is stiffer than another

@@ -58,7 +58,8 @@ class OwnedRemesher {
   }
 
  public:
-  OwnedRemesher(const Mesh& mesh, const OptionTexts& texts, nb::object progress, nb::object cancel)
+  OwnedRemesher(const Mesh& mesh, const OptionTexts& texts, nb::object progress, nb::object cancel,
+                const nb::dict& transfers)
       : progress_(std::move(progress)),
         cancel_(std::move(cancel)),
         callbacks_(progress_, cancel_),
@@ -73,6 +74,7 @@ class OwnedRemesher {
     callbacks_.attach(options.improve);
     require_finite(mesh_.points().data(), mesh_.n_vertices(), "points");
     fields_ = field_kinds(mesh_);
+    add_transfers(transfers, options);
     nb::gil_scoped_release others_run;
     remesher_ = std::make_unique<Remesher>(mesh_, std::move(options));
   }
@@ -108,12 +110,14 @@ class OwnedRemesher {
   int traverse(visitproc visit, void* arg) const {
     Py_VISIT(progress_.ptr());
     Py_VISIT(cancel_.ptr());
+    for (const nb::object& transfer : transfers_) Py_VISIT(transfer.ptr());
     return 0;
   }
   void clear() {
     callbacks_.forget();
     progress_.reset();
     cancel_.reset();
+    for (nb::object& transfer : transfers_) transfer.reset();
   }
 
   const TetMesh& mesh() {
@@ -149,7 +153,41 @@ class OwnedRemesher {
   }
 
  private:
+  /// Fields that a function of the caller's carries over.
+  void add_transfers(const nb::dict& transfers, RemesherOptions& options) {
+    for (auto [key, function] : transfers) {
+      const std::string name = nb::cast<std::string>(key);
+      const std::size_t i = transfers_.size();
+      kind(name);  // KeyError where there is no such field
+      transfers_.push_back(nb::borrow(function));
+      options.fields.push_back(
+          {.name = name,
+           .how = Transfer::kCallback,
+           .callback = [this, i, name](const TetMesh& old, TetMesh& now, const Edits& edits) {
+             const nb::gil_scoped_acquire python;
+             carry_over(transfers_[i], field_of_name(name), old, now, edits);
+           }});
+    }
+  }
+  const FieldKind& field_of_name(const std::string& name) const {
+    return *std::ranges::find_if(fields_, [&](const FieldKind& k) { return k.name == name; });
+  }
+  /// Meshes and edits are copies: whoever keeps them may.
+  static void carry_over(const nb::object& function, const FieldKind& kind, const TetMesh& old, TetMesh& now,
+                         const Edits& edits) {
+    const nb::object values =
+        function(nb::cast(Mesh{old, {}, {}}, nb::rv_policy::move),
+                 nb::cast(Mesh{now, {}, {}}, nb::rv_policy::move), nb::cast(edits, nb::rv_policy::copy));
+    const std::size_t n = kind.of_vertices ? now.n_vertices() : now.n_cells();
+    const io::Field field = field_of(values, kind.name, n, kind.of_vertices ? "vertex" : "cell");
+    if (field.components != kind.components)
+      throw nb::value_error(
+          ("field '" + kind.name + "' has " + std::to_string(kind.components) + " components").c_str());
+    set_field_values(now, kind, field.values);
+  }
+
   nb::object progress_, cancel_;
+  std::vector<nb::object> transfers_;
   Callbacks callbacks_;
   TetMesh mesh_;
   std::vector<FieldKind> fields_;
@@ -296,8 +334,8 @@ void bind_remesher(nb::module_& module) {
       module, "Remesher", nb::type_slots(slots),
       "A mesh inside of a simulation: its vertices move step by step, and what has become "
       "bad is repaired. Works on a copy of the mesh that it is made of.");
-  type.def(nb::init<const Mesh&, const OptionTexts&, nb::object, nb::object>(), "mesh"_a, "options"_a,
-           "progress"_a.none(), "cancel"_a.none())
+  type.def(nb::init<const Mesh&, const OptionTexts&, nb::object, nb::object, const nb::dict&>(), "mesh"_a,
+           "options"_a, "progress"_a.none(), "cancel"_a.none(), "transfers"_a)
       .def("step", &OwnedRemesher::step, "displacement"_a,
            "Moves the vertices by `displacement`, (n, 3), looks at their cells, and where a trigger calls "
            "for it "

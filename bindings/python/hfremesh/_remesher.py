@@ -24,7 +24,8 @@ class Remesher(_core.Remesher):
     calls for a repair; 0: not looked at. inverted: whether inverted and flat cells call for one. metrics: {metric:
     value}: a cell that is worse calls for one. jacobian: the same for a cell with less than this share of its first
     volume. distance: the same when a vertex has come so many mean edges since the last repair. every: a repair after so
-    many steps.
+    many steps. indicator: the name of a field of cells: a cell with a vertex that moves calls for one where the field is
+    not 0; write it with set_field() before a step.
 
     on_inversion, what a move does that would invert cells: 'repair' takes it, 'substeps' takes as much of it as inverts
     nothing, repairs and goes on, at most max_substeps times, 'refuse' takes nothing and names the cells.
@@ -33,10 +34,13 @@ class Remesher(_core.Remesher):
     alone, which others follow.
 
     transfer: {name: how} for fields of the mesh: 'linear' (of vertices), 'inherit' or 'conserve' (of cells), or
-    ('conserve', density). Others are attached to their vertices and cells.
+    ('conserve', density), or a function f(old, new, edits) of two Meshes and what the repair did, which returns the new
+    values, one row a vertex or cell of `new`; there the field has what operators made of it. Others are attached to
+    their vertices and cells.
 
-    ids: keep numbers of vertices and cells that never change. progress, cancel and further options: as improve(), for
-    each repair.
+    parents: False leaves out the parents of created cells in edits where no field is inherited: with many cells they cost
+    more than the repair. ids: keep numbers of vertices and cells that never change. progress, cancel and further
+    options: as improve(), for each repair.
 
     Raises ValueError for options and arrays that do not fit, with the first index at fault. One step at a time: while
     one is in progress, whatever else is asked of it raises RuntimeError.
@@ -53,10 +57,12 @@ class Remesher(_core.Remesher):
         jacobian: Optional[float] = None,
         distance: Optional[float] = None,
         every: Optional[int] = None,
+        indicator: Optional[str] = None,
         on_inversion: Optional[str] = None,
         max_substeps: Optional[int] = None,
         motion: Optional[str] = None,
-        transfer: Optional[Mapping[str, Union[str, Tuple[str, str]]]] = None,
+        transfer: Optional[Mapping[str, Union[str, Tuple[str, str], Callable[..., Any]]]] = None,
+        parents: Optional[bool] = None,
         ids: Optional[bool] = None,
         progress: Optional[Callable[[_core.Progress], Any]] = None,
         cancel: Optional[Callable[[], bool]] = None,
@@ -68,15 +74,18 @@ class Remesher(_core.Remesher):
                 raise TypeError(f"no option is called {name!r}; there are {', '.join(known)}")
         if not isinstance(mesh, _core.Mesh):
             raise TypeError("a Mesh is wanted")
+        functions = {name: how for name, how in (transfer or {}).items() if callable(how)}
+        ways = {name: how for name, how in (transfer or {}).items() if not callable(how)}
         texts = _option_texts({**options, "min_dihedral": "none" if goal is None else goal})
         texts += _option_texts(
             {"trigger": trigger, "trigger_inverted": inverted,
              "trigger_metric": [f"{name}:{float(value)!r}" for name, value in (metrics or {}).items()],
              "trigger_jacobian": jacobian, "trigger_motion": distance, "trigger_every": every,
+             "trigger_field": indicator,
              "on_inversion": on_inversion, "max_substeps": max_substeps, "motion": motion,
-             "transfer": _transfer_texts(transfer), "ids": ids},
+             "transfer": _transfer_texts(ways), "parents": parents, "ids": ids},
             of_remesher=True)
-        super().__init__(mesh, texts, progress, cancel)
+        super().__init__(mesh, texts, progress, cancel, functions)
 
     def __repr__(self) -> str:
         return (f"<hfremesh.Remesher: {self.n_vertices} vertices, {self.n_cells} cells, smallest dihedral "

@@ -121,6 +121,53 @@ def test_triggers_are_any_of_them(loaded):
     assert hf.Remesher(loaded, goal=25, trigger=0).step(still).cause == "none"
 
 
+def test_a_field_of_cells_calls_for_a_repair_where_it_is_not_zero(loaded):
+    rm = hf.Remesher(loaded, goal=25, trigger=0, indicator="material")
+    everywhere = np.full((rm.n_vertices, 3), 1e-6)
+    rm.set_field("material", np.zeros(rm.n_cells, dtype=int))
+    assert rm.step(everywhere).cause == "none"
+    rm.set_field("material", np.ones(rm.n_cells, dtype=int))
+    assert rm.step(everywhere).cause == "indicator"
+    with pytest.raises(ValueError, match="no such field"):
+        hf.Remesher(loaded, indicator="no such field")
+
+
+def test_a_function_carries_a_field_over(loaded):
+    seen = []
+
+    def nearest(old, new, edits):
+        values = np.full(len(new.points), -1.0)
+        kept = edits.maps.old_vertices >= 0
+        values[kept] = np.array(old.points)[edits.maps.old_vertices[kept], 0]
+        seen.append((edits, old, new))
+        return values
+
+    rm = hf.Remesher(loaded, transfer={"T": nearest, "one": "linear"})
+    while not seen:
+        before = rm.points + swirl(rm.points, 0.25)
+        rm.step(swirl(rm.points, 0.25))
+    edits, old, new = seen[0]
+    np.testing.assert_array_equal(old.points, before)
+    np.testing.assert_array_equal(new.cells, rm.cells)
+    kept = edits.maps.old_vertices >= 0
+    np.testing.assert_array_equal(rm.field("T")[kept], before[edits.maps.old_vertices[kept], 0])
+    assert (rm.field("T")[~kept] == -1).all()
+
+    def fails(old, new, edits):
+        raise LookupError("no values")
+
+    rm = hf.Remesher(loaded, transfer={"T": fails})
+    rm.set_field("T", np.arange(rm.n_vertices, dtype=float))
+    with pytest.raises(LookupError):
+        for _ in range(20):
+            before = rm.points
+            rm.step(swirl(rm.points, 0.25))
+    np.testing.assert_array_equal(rm.points, before)
+    np.testing.assert_array_equal(rm.field("T"), np.arange(rm.n_vertices))
+    with pytest.raises(KeyError):
+        hf.Remesher(loaded, transfer={"nothing": fails})
+
+
 def test_refused_motion_names_its_cells(loaded):
     rm = hf.Remesher(loaded, on_inversion="refuse")
     d = np.zeros((rm.n_vertices, 3))
