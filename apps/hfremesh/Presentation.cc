@@ -8,6 +8,7 @@
 
 #include "Console.hh"
 #include "Files.hh"
+#include "Numbers.hh"
 #include "Options.hh"
 #include "Paths.hh"
 #include "report/Angles.hh"
@@ -46,6 +47,9 @@ void add_presentation_options(Command command, PresentationFiles& files, const s
               "Write a picture: before and after side by side, cut open, with histograms of the angles")
       .type_name("FILE")
       .transform(stream_name());
+  command.option("--png-width", files.png_width, "Width of the picture in pixels; 1600 by default")
+      .type_name("N")
+      .check(whole_number(400, 10000));
 }
 
 void require_presentable(const PresentationFiles& files) {
@@ -66,7 +70,7 @@ Presentation::Presentation(PresentationFiles files, const std::string& before, c
 Presentation::~Presentation() = default;
 
 void Presentation::add_before(const TetMesh& mesh) {
-  if (!files_.png.empty()) parts_->picture.emplace(mesh, before_, policy_);
+  if (!files_.png.empty()) parts_->picture.emplace(mesh, before_, files_.png_width, policy_);
   if (!files_.page.empty()) {
     const std::vector<float> degrees = view::smallest_dihedrals(mesh, policy_);
     parts_->before = {before_, view::pack(mesh, degrees, {}), view::worst_cells(mesh, degrees, kMostCells)};

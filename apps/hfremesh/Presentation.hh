@@ -19,6 +19,7 @@ namespace hfr::app {
 
 struct PresentationFiles {
   std::string png, page;  ///< empty for none; "-" is stdout
+  int png_width = 1600;   ///< pixels
 
   bool any() const { return !png.empty() || !page.empty(); }
 };

@@ -47,7 +47,8 @@ TEST(Options, NumbersThatAreNoneAreRefusedEverywhere) {
             std::string("1e5000"), std::string("1x"), long_number})
         expect_refused(tool, command + " " + option + " " + value, option.substr(0, option.find(' ')));
   const std::vector<std::pair<std::string, std::vector<std::string>>> integers = {
-      {"in.mesh -o out.mesh", {"--seed", "--iterations", "--min-cells", "--max-cells", "--work-group", "-j"}},
+      {"in.mesh -o out.mesh",
+       {"--seed", "--iterations", "--min-cells", "--max-cells", "--work-group", "--png-width", "-j"}},
       {"generate cavity -o out.mesh", {"--seed", "--n 1 1"}},
       {"generate box -o out.mesh", {"--seed", "--regions", "--n 1 1"}},
       {"generate ball -o out.mesh", {"--seed", "--n"}},

@@ -72,7 +72,11 @@ def check_lists(page, checks):
     cell = page.run("meshes[1].cells[0]")
     checks.use("a cell of the list", lambda: page.run("document.querySelector('[data-place=\"0\"]').click()"))
     picked = page.run("byId('picked').textContent")
-    checks.expect(f"its number is said: {picked}", f"Cell {cell['cell']} " in picked)
+    smallest = page.run(f"degrees({cell['degrees']})")
+    checks.expect(f"its number and angle are said: {picked}",
+                  f"Cell {cell['cell']} has a smallest dihedral of {smallest}." in picked)
+    if "limit" in cell:
+        checks.expect(f"the reason is said: {picked}", f"({cell['limit']})" in picked)
     for part in ("words", "all-angles", "smallest-angles", "course", "tables", "time-tables", "stuck-lists",
                  "part-tables"):
         checks.expect(f"{part} has something", len(page.run(f"byId('{part}').textContent.trim()")) > 10)

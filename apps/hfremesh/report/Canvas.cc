@@ -18,10 +18,11 @@ double distance_to_segment(double x, double y, double x0, double y0, double x1, 
   return std::hypot(x - x0 - t * dx, y - y0 - t * dy);
 }
 
-Canvas::Canvas(int width, int height, Colour background)
-    : width_(width),
-      height_(height),
-      pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), background) {}
+Canvas::Canvas(double width, double height, Colour background, double scale)
+    : width_(static_cast<int>(std::lround(scale * width))),
+      height_(static_cast<int>(std::lround(scale * height))),
+      scale_(scale),
+      pixels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), background) {}
 
 void Canvas::blend(int x, int y, Colour colour, float opacity) {
   if (x < 0 || y < 0 || x >= width_ || y >= height_ || opacity <= 0) return;
@@ -30,6 +31,7 @@ void Canvas::blend(int x, int y, Colour colour, float opacity) {
 }
 
 void Canvas::rectangle(double left, double top, double right, double bottom, Colour colour, float opacity) {
+  for (double* edge : {&left, &top, &right, &bottom}) *edge *= scale_;
   const auto covered = [](double low, double high, int pixel) {
     return std::max(0.0, std::min(high, pixel + 1.0) - std::max(low, static_cast<double>(pixel)));
   };
@@ -42,6 +44,7 @@ void Canvas::rectangle(double left, double top, double right, double bottom, Col
 
 void Canvas::line(double x0, double y0, double x1, double y1, double thickness, Colour colour,
                   float opacity) {
+  for (double* place : {&x0, &y0, &x1, &y1, &thickness}) *place *= scale_;
   const double reach = 0.5 * thickness + 1;
   const int x_end = static_cast<int>(std::ceil(std::max(x0, x1) + reach));
   const int y_end = static_cast<int>(std::ceil(std::max(y0, y1) + reach));

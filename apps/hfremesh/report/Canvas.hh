@@ -19,14 +19,16 @@ constexpr Colour hex(std::uint32_t rgb) {
           static_cast<float>(rgb & 255) / 255};
 }
 
-/// Pixels from (0, 0) at the upper left; coordinates are in pixels, and (0.5, 0.5) is the middle of the
-/// first.
+/// Pixels from (0, 0) at the upper left. What is drawn has coordinates in units of so many pixels each
+/// (`scale`), and (0.5, 0.5) is the middle of the first unit.
 class Canvas {
  public:
-  Canvas(int width, int height, Colour background);
+  /// Sizes are in units.
+  Canvas(double width, double height, Colour background, double scale = 1);
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  int width() const { return width_; }    ///< in pixels
+  int height() const { return height_; }  ///< in pixels
+  double scale() const { return scale_; }
   Colour at(int x, int y) const { return pixels_[index(x, y)]; }
   /// Lays a colour over a pixel; one outside is left out.
   void blend(int x, int y, Colour colour, float opacity);
@@ -45,6 +47,7 @@ class Canvas {
   }
 
   int width_, height_;
+  double scale_;
   std::vector<Colour> pixels_;
 };
 

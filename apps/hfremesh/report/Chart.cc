@@ -95,8 +95,9 @@ void draw_legend(Canvas& canvas, double x, double y) {
   put(smallest);
   at += kGap;
   put(zero);
+  // Each over the rest of the bar, so that no paper shows where pixels are covered in part.
   for (int i = 0; i < static_cast<int>(kBarWidth); ++i)
-    canvas.rectangle(at + i, y - kHigh / 2, at + i + 1, y + kHigh / 2,
+    canvas.rectangle(at + i, y - kHigh / 2, at + kBarWidth, y + kHigh / 2,
                      poor_colour(kPoorBelow * i / kBarWidth));
   at += kBarWidth + kGap;
   put(poor);

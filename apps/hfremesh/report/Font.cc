@@ -184,7 +184,9 @@ std::vector<Segment> segments_of(const Letter& letter) {
 }
 
 void draw_letter(Canvas& canvas, double x, double y, const Letter& letter, const TextStyle& style) {
-  const double unit = style.size / kGrid;
+  const double unit = canvas.scale() * style.size / kGrid;  // pixels
+  x *= canvas.scale();
+  y *= canvas.scale();
   const double half = 0.5 * std::max(style.bold ? 1.35 * unit : 0.92 * unit, 1.0);  // pixels
   const std::vector<Segment> segments = segments_of(letter);
   if (segments.empty()) return;

@@ -17,8 +17,8 @@
 namespace hfr::view {
 namespace {
 
-// Pixels.
-constexpr int kWidth = 1600, kHeight = 1000, kMargin = 24;
+// Units of the sheet; pixels at its usual width.
+constexpr int kWidth = Picture::kUsualWidth, kHeight = 1000, kMargin = 24;
 constexpr int kPanelWidth = (kWidth - 3 * kMargin) / 2, kPanelHeight = 580, kPanelTop = 76;
 constexpr int kLegendAt = kPanelTop + kPanelHeight + 26;
 constexpr int kChartTop = kLegendAt + 28;
@@ -33,16 +33,20 @@ int left_of(int place) { return kMargin + place * (kPanelWidth + kMargin); }
 /// Draws cells and faces of one mesh in one view.
 class MeshPainter {
  public:
-  MeshPainter(const TetMesh& mesh, const Scene& scene, const std::vector<float>& degrees)
-      : mesh_(mesh), scene_(scene), degrees_(degrees), projection_(scene, kPanelWidth, kPanelHeight) {
+  MeshPainter(const TetMesh& mesh, const Scene& scene, const std::vector<float>& degrees, double scale)
+      : mesh_(mesh),
+        scene_(scene),
+        degrees_(degrees),
+        scale_(scale),
+        projection_(scene, pixels(kPanelWidth), pixels(kPanelHeight)) {
     cut_off_.resize(mesh.n_vertices());
     for (std::size_t i = 0; i < cut_off_.size(); ++i)
       cut_off_[i] = scene.is_cut_off(mesh.point(VertexHandle(i)));
   }
 
   void paint(Canvas& canvas, int left, int top) const {
-    Raster solid(kPanelWidth, kPanelHeight), ghost(kPanelWidth, kPanelHeight),
-        invalid(kPanelWidth, kPanelHeight);
+    const int width = pixels(kPanelWidth), height = pixels(kPanelHeight);
+    Raster solid(width, height), ghost(width, height), invalid(width, height);
     for (std::size_t i = 0; i < mesh_.n_cells(); ++i) {
       const CellHandle c(i);
       const int n_off = n_cut_off(c);
@@ -53,10 +57,12 @@ class MeshPainter {
     }
     solid.overlay(ghost, kGhostOpacity, true);
     solid.overlay(invalid, kInvalidOpacity, false);
-    solid.resolve(canvas, left, top);
+    solid.resolve(canvas, pixels(left), pixels(top));
   }
 
  private:
+  int pixels(int units) const { return static_cast<int>(std::lround(scale_ * units)); }
+
   int n_cut_off(CellHandle c) const {
     int n = 0;
     for (const VertexHandle v : mesh_.cell_vertices(c)) n += cut_off_[v.idx()];
@@ -85,36 +91,42 @@ class MeshPainter {
     const auto v = mesh_.halfface_vertices(h);
     std::array<std::array<double, 3>, 3> corners{};
     for (std::size_t i = 0; i < 3; ++i) corners[i] = projection_(mesh_.point(v[i]));
-    raster.triangle(corners, lit(colour, v), {edges, edge_opacity, 1.1});
+    const Vec3 p = mesh_.point(v[0]);
+    const Vec3 n = cross(mesh_.point(v[1]) - p, mesh_.point(v[2]) - p);
+    double light = light_on(n);
+    if (!mesh_.is_boundary(h)) {
+      // Faces that a cut lays open point anywhere: where they are a few pixels high, that is noise.
+      const double own = std::clamp((lowest_height(corners) - 1) / 7, 0.3, 1.0);
+      light = own * light + (1 - own) * light_on(scene_.cut_normal);
+    }
+    const auto shade = static_cast<float>(0.68 + 0.34 * light);
+    const auto lit = [&](float part) { return std::min(1.0F, part * shade); };
+    raster.triangle(corners, {lit(colour.r), lit(colour.g), lit(colour.b)},
+                    {edges, edge_opacity, 1.1 * std::max(0.8, scale_)});
   }
 
-  /// Lit from the upper left, behind the eye, the same from both sides.
-  Colour lit(Colour colour, const std::array<VertexHandle, 3>& v) const {
-    const Vec3 p = mesh_.point(v[0]);
-    Vec3 n = cross(mesh_.point(v[1]) - p, mesh_.point(v[2]) - p);
+  /// On a face with this normal, 0 to 1: from the upper left, behind the eye, the same from both sides.
+  double light_on(Vec3 n) const {
     const double length = norm(n);
-    if (!(length > 0)) return colour;
-    n = (1 / length) * n;
-    if (dot(n, scene_.axes[2]) < 0) n = -n;
+    if (!(length > 0)) return 0.5;
+    n = (dot(n, scene_.axes[2]) < 0 ? -1 / length : 1 / length) * n;
     constexpr double kRight = -0.36, kUp = 0.52, kNear = 0.775;
-    const double light =
-        kRight * dot(n, scene_.axes[0]) + kUp * dot(n, scene_.axes[1]) + kNear * dot(n, scene_.axes[2]);
-    const auto shade = static_cast<float>(0.68 + 0.34 * std::max(0.0, light));
-    return {std::min(1.0F, colour.r * shade), std::min(1.0F, colour.g * shade),
-            std::min(1.0F, colour.b * shade)};
+    return std::max(
+        0.0, kRight * dot(n, scene_.axes[0]) + kUp * dot(n, scene_.axes[1]) + kNear * dot(n, scene_.axes[2]));
   }
 
   const TetMesh& mesh_;
   const Scene& scene_;
   const std::vector<float>& degrees_;
+  double scale_;
   Projection projection_;
   std::vector<std::uint8_t> cut_off_;
 };
 
 }  // namespace
 
-Picture::Picture(const TetMesh& before, const std::string& name, par::Policy policy)
-    : scene_(scene_of(before)), sheet_(kWidth, kHeight, kPaper) {
+Picture::Picture(const TetMesh& before, const std::string& name, int width, par::Policy policy)
+    : scene_(scene_of(before)), sheet_(kWidth, kHeight, kPaper, static_cast<double>(width) / kWidth) {
   add_mesh(before, name, 0, policy);
 }
 
@@ -124,7 +136,7 @@ void Picture::add_after(const TetMesh& mesh, const std::string& name, par::Polic
 
 void Picture::add_mesh(const TetMesh& mesh, const std::string& name, int place, par::Policy policy) {
   const std::vector<float> degrees = smallest_dihedrals(mesh, policy);
-  MeshPainter(mesh, scene_, degrees).paint(sheet_, left_of(place), kPanelTop);
+  MeshPainter(mesh, scene_, degrees, sheet_.scale()).paint(sheet_, left_of(place), kPanelTop);
   const TextStyle word{.size = kHeading, .colour = kInk, .bold = true};
   const TextStyle count{.size = 20, .colour = kPaleInk, .align = Align::kRight};
   const std::string what = place == 0 ? "before" : "after";

@@ -17,8 +17,11 @@ namespace hfr::view {
 /// are drawn when they are handed over and may change or go after that.
 class Picture {
  public:
-  /// The view and the cut are those that fit this mesh. Precondition for both meshes: nothing is deleted.
-  Picture(const TetMesh& before, const std::string& name, par::Policy policy);
+  static constexpr int kUsualWidth = 1600;  ///< pixels; the height is 5/8 of the width
+
+  /// The view and the cut are those that fit this mesh. `width`: of the sheet in pixels. Precondition for
+  /// both meshes: nothing is deleted.
+  Picture(const TetMesh& before, const std::string& name, int width, par::Policy policy);
   void add_after(const TetMesh& mesh, const std::string& name, par::Policy policy);
 
   /// The whole sheet; statistics are those of the two meshes.

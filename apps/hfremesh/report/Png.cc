@@ -16,7 +16,7 @@ namespace hfr::view {
 namespace {
 
 constexpr std::size_t kMostColours = 256;
-constexpr int kSameColour = 3 * 3 * 3;        // square of a distance that nobody sees
+constexpr int kSameColour = 6 * 6;            // square of a distance that nobody sees
 constexpr std::size_t kCells = 32 * 32 * 32;  // of the colours, by the upper five bits of each part
 
 using Bytes = std::array<std::uint8_t, 3>;

@@ -11,7 +11,25 @@ namespace {
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 constexpr double kNoEdges = 2, kAllEdges = 9;  // heights of a triangle in pixels, between which edges fade in
 
+/// Over the edge opposite each corner, in pixels; 0 for a triangle without area.
+std::array<double, 3> heights(const std::array<std::array<double, 3>, 3>& p) {
+  const double area =
+      std::abs((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
+    const double length = std::hypot(b[0] - a[0], b[1] - a[1]);
+    out[i] = length > 0 ? area / length : 0;
+  }
+  return out;
+}
+
 }  // namespace
+
+double lowest_height(const std::array<std::array<double, 3>, 3>& corners) {
+  const std::array<double, 3> height = heights(corners);
+  return *std::min_element(height.begin(), height.end());
+}
 
 Raster::Raster(int width, int height) : width_(kSamples * width), height_(kSamples * height) {
   const std::size_t n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
@@ -30,11 +48,7 @@ void Raster::triangle(const std::array<std::array<double, 3>, 3>& corners, Colou
   const double area =
       (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);  // twice
   if (!(std::abs(area) > 1e-9)) return;
-  std::array<double, 3> height{};  // over the edge opposite each corner, in pixels
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
-    height[i] = std::abs(area) / (kSamples * std::hypot(b[0] - a[0], b[1] - a[1]));
-  }
+  const std::array<double, 3> height = heights(corners);
   const double lowest = *std::min_element(height.begin(), height.end());
   const float edge_opacity =
       edges.opacity * static_cast<float>(std::clamp((lowest - kNoEdges) / (kAllEdges - kNoEdges), 0.0, 1.0));

@@ -16,6 +16,9 @@ struct EdgeStyle {
   double thickness = 1;  ///< pixels; each of two neighbours draws half of it
 };
 
+/// The lowest of the three heights of a triangle, in pixels; the third coordinate does not count.
+double lowest_height(const std::array<std::array<double, 3>, 3>& corners);
+
 /// Triangles with a depth buffer, kSamples x kSamples samples a pixel.
 class Raster {
  public:

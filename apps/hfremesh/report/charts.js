@@ -24,7 +24,7 @@ const sum = (list) => list.reduce((a, b) => a + b, 0);
  * marks: [{at, kind: "before" | "after", text}].
  */
 function histogram({ title, before, after, binWidth, highest, tickStep, marks, unit }) {
-  const W = isNarrow() ? 400 : 600, H = 300, left = 52, right = 14, top = 44, bottom = 44;
+  const W = isNarrow() ? 400 : 600, H = 300, left = 52, right = 22, top = 44, bottom = 44;
   const x = (value) => left + ((W - left - right) * value) / highest;
   const shares = [before, after].map((bins) => bins.map((n) => (100 * n) / Math.max(1, sum(bins))));
   const peak = Math.max(...shares[0], ...shares[1], 1e-9);

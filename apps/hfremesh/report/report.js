@@ -225,9 +225,11 @@ const app = {
       byId("cut").value = String(this.state.at);
       this.setCut();
     }
-    const index = this.views[side].mesh.ids.indexOf(cell.cell);
+    const { ids } = this.views[side].mesh;
+    const known = ids.indexOf(cell.cell);
+    const index = known >= 0 ? known : this.views[side].cellAt(middle);
+    ids[index] = cell.cell;
     this.select(side, index);
-    if (index < 0) byId("picked").textContent = `Cell ${cell.cell} is in the middle of the view.`;
     byId("view").scrollIntoView({ behavior: "smooth", block: "start" });
   },
 
@@ -254,7 +256,7 @@ const app = {
     this.legend();
   },
   legend() {
-    byId("legend").innerHTML = `0°<span class="ramp"></span>${this.state.limit}° <span class="swatch"></span>inverted or flat, always shown`;
+    byId("legend").innerHTML = `0°<span class="ramp"></span>${this.state.limit}°<span class="together"><span class="swatch"></span> inverted or flat, always shown</span>`;
   },
   steer(canvas, side) {
     let last = null, moved = 0;

@@ -244,9 +244,9 @@ class MeshView {
     });
   }
   setPicked(cell) {
-    const { cells, codes, points } = this.mesh;
+    const { cells, points } = this.mesh;
     this.picked.set(points, 4, (put) => {
-      if (cell >= 0) for (const [p, q, r] of FACES) put(cells[4 * cell + p], cells[4 * cell + q], cells[4 * cell + r], codes[cell], cell);
+      if (cell >= 0) for (const [p, q, r] of FACES) put(cells[4 * cell + p], cells[4 * cell + q], cells[4 * cell + r], GOOD, cell);
     });
   }
   resize() {
@@ -309,7 +309,7 @@ class MeshView {
     if (this.picked.count > 0) {
       gl.clear(gl.DEPTH_BUFFER_BIT);
       gl.enable(gl.BLEND);
-      put(this.picked, colours.inside, 0.75, 1, [0, 0, 0]);
+      put(this.picked, [0, 0.78, 0.66], 0.8, 1, [0, 0.1, 0.1]);
     }
     gl.disable(gl.BLEND);
   }
@@ -357,6 +357,24 @@ class MeshView {
     const hit = shown.filter((s) => s.first <= id && id < s.first + s.list.count)[0];
     const origin = hit.list.origin[id - hit.first];
     return hit.isSkin ? cellOfSkin(this.mesh, origin) : origin;
+  }
+  /** The cell whose middle is nearest to a point of the mesh's own coordinates. */
+  cellAt(middle) {
+    const { cells, points } = this.mesh;
+    let best = -1, least = Infinity;
+    for (let i = 0; i < this.mesh.nCells; ++i) {
+      let distance = 0;
+      for (let axis = 0; axis < 3; ++axis) {
+        let sum = 0;
+        for (let k = 0; k < 4; ++k) sum += points[3 * cells[4 * i + k] + axis];
+        distance += (this.low[axis] + (this.step[axis] * sum) / 4 - middle[axis]) ** 2;
+      }
+      if (distance < least) {
+        least = distance;
+        best = i;
+      }
+    }
+    return best;
   }
   /** In the mesh's own coordinates, rounded to 16 bits. */
   cornersOf(cell) {
