@@ -217,6 +217,8 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   const auto is_patch = [](const std::string& what) { return what.starts_with("patch:"); };
   idle(frozen && std::ranges::any_of(line.fix, is_patch), "--fix patch", "--surface flat or free");
   idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
+  const int usual_width = PresentationFiles{}.png_width;
+  idle(line.presentation.png.empty() && line.presentation.png_width != usual_width, "--png-width", "--png");
   const bool on_cpu = line.device.empty() || line.device == "cpu";
   idle(on_cpu && line.improve.hybrid, "--hybrid", "--device");
   idle(on_cpu && line.improve.device_tuning.work_group > 0, "--work-group", "--device");

@@ -86,13 +86,13 @@ function showStuck() {
     groups.get(key).push({ ...cell, place: i });
   });
   const row = (cell) => [String(cell.cell), degrees(cell.degrees), cell.ceiling === undefined ? "" : degrees(cell.ceiling),
-    cell.frozen_vertices === undefined ? "" : `${cell.frozen_vertices} of 4`, degrees(Math.max(...cell.angles)),
+    cell.frozen_vertices === undefined ? "" : `${cell.frozen_vertices} of 4`, cell.degrees > 0 ? degrees(Math.max(...cell.angles)) : "–",
     { html: `<button type="button" data-place="${cell.place}" aria-label="Show cell ${cell.cell} in the view">show</button>` }];
   const head = ["cell", "smallest", "at most", "held vertices", "largest", ""];
   byId("stuck-heading").textContent = groups.has("") ? "Poorest cells of the mesh after" : "Cells that are left, by reason";
   byId("stuck-lists").innerHTML = groups.size === 0 ? "<p>None.</p>" : [...groups].map(([reason, cells]) => {
     const all = reason && report.limits ? report.limits.counts[reason] : cells.length;
-    const words = REASONS[reason] ? `<p>${escapeText(REASONS[reason][0][0].toUpperCase() + REASONS[reason][0].slice(1))}. ${escapeText(REASONS[reason][1])}</p>` : "";
+    const words = REASONS[reason] ? `<p>${escapeText(REASONS[reason][0][0].toUpperCase() + whyAndWhat(reason, report.options).slice(1))}</p>` : "";
     const more = all > cells.length ? `<p class="hint">The worst ${cells.length} of ${count(all)}; --ids lists all.</p>` : "";
     return `<details ${cells.length <= 20 ? "open" : ""}><summary>${escapeText(reason || "the poorest")}: ${some(all, "cell", "cells")}</summary>` +
       `${words}${more}<div class="scroll">${table("", head, cells.map(row))}</div></details>`;

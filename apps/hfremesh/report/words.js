@@ -28,9 +28,24 @@ const REASONS = {
   "cancelled": ["the run was cancelled", "Run it to its end."],
   "iterations": ["the number of iterations was bounded", "A larger --iterations, or none, lets the run go on."],
   "device lost": ["the device failed", "Run it again, on the processor: --device cpu."],
-  "not found": ["nothing better was found, which proves nothing",
-    "More effort (--min-dihedral max) or a surface that may change (--surface flat, free) may find something."],
+  "not found": ["nothing better was found, which proves nothing", ""],
 };
+
+/** What would help against a reason, in a run with these options. */
+function adviceOn(reason, options) {
+  if (reason !== "not found") return REASONS[reason] ? REASONS[reason][1] : "";
+  const more = [];
+  if (options.min_dihedral !== "max") more.push("more effort (--min-dihedral max)");
+  if (options.surface === "frozen") more.push("a surface that may change (--surface flat, free)");
+  const words = more.join(" or ");
+  return words ? `${words[0].toUpperCase()}${words.slice(1)} may find something.` : "";
+}
+
+/** The reason and the advice as sentences. */
+function whyAndWhat(reason, options) {
+  const why = REASONS[reason] ? REASONS[reason][0] : reason;
+  return `${why}. ${adviceOn(reason, options)}`.trim();
+}
 
 const STOPS = {
   "goal": "It ended because its goal was reached.",
@@ -90,7 +105,7 @@ function whatWasDone(report) {
       .sort((a, b) => b[1] - a[1]).slice(0, 6).map(([op, n]) => `${count(n)} ${OPERATORS[op] || `times ${op}`}`);
     if (passes.length > 0)
       lines.push(`${some(passes.length, "pass", "passes")} in ${some(stages.size, "stage", "stages")} took ` +
-        `${seconds(report.seconds.improve)}: ${named.join(", ")}.`);
+        `${seconds(report.seconds.improve)}${named.length > 0 ? `: ${named.join(", ")}` : " and found nothing to improve"}.`);
     if (passes.some((pass) => pass.op === "undo"))
       lines.push("Some passes were taken back, because they had made the mesh worse in the end.");
     lines.push(result.changed ? STOPS[result.stop] : "Nothing had to be changed: the mesh is what it was.");
@@ -114,7 +129,10 @@ function whatIsLeft(report) {
     lines.push(`${some(limits.n_cells, "cell is", "cells are")} below ${limits.below}°, ` +
       (report.options.min_dihedral > 0 ? "which was the goal." : "the first angle that the worst cells were raised to in vain."));
     for (const [reason, n] of Object.entries(limits.counts))
-      if (n > 0) lines.push(`${n === limits.n_cells ? "Why" : `${count(n)} of them`}: ${(REASONS[reason] || [reason])[0]}. ${(REASONS[reason] || ["", ""])[1]}`);
+      if (n > 0) {
+        const which = n === limits.n_cells ? "Why" : `${count(n)} of them`;
+        lines.push(`${which}: ${whyAndWhat(reason, report.options)}`);
+      }
     const held = limits.held_by_surface;
     if (held && held.cells > 0 && held.flat !== undefined && held.flat + held.free > 0)
       lines.push(`The frozen surface has a part in ${count(held.cells)} of them: --surface flat would let it change at ` +
@@ -127,8 +145,12 @@ function verdict(report) {
   const { before, after } = report;
   const from = before.min_dihedral.min, to = after.min_dihedral.min;
   const invalidBefore = before.inverted + before.flat, invalid = after.inverted + after.flat;
-  const worst = `the smallest dihedral angle went from ${degrees(from)} to ${degrees(to)}`;
+  const worst = from === to ? `the smallest dihedral angle is what it was, ${degrees(to)}`
+    : `the smallest dihedral angle went from ${degrees(from)} to ${degrees(to)}`;
   if (invalid > 0) return [false, `${some(invalid, "cell is", "cells are")} still inverted or flat (${count(invalidBefore)} before); ${worst}.`];
+  const goal = report.options && report.options.min_dihedral;
+  if (goal > 0 && !report.result.goal_reached)
+    return [false, `${some(report.limits.n_cells, "cell misses", "cells miss")} the goal of ${goal}°; ${worst}.`];
   if (invalidBefore > 0) return [true, `All ${count(invalidBefore)} inverted or flat cells are mended; ${worst}.`];
   if (to > from) return [true, `The mesh is better: ${worst}.`];
   if (to === from) return [true, `The worst angle is what it was, ${degrees(to)}.`];
