@@ -110,9 +110,20 @@ void report_run(Json& report, const TetMesh& mesh, const Result& result, const I
   for (const PassReport& pass : result.passes) report["passes"].push_back(to_json(pass));
 }
 
+/// What no mesh with this surface can have, where that is proven and says something.
+void print_ceiling(const Result& result) {
+  const EdgeWedge& ceiling = result.after.angle_ceiling;
+  if (result.surface.mode != SurfaceMode::kFrozen || !ceiling.cell.is_valid()) return;
+  constexpr double kRegular = 70.528;  // degrees; no tetrahedron has more
+  if (ceiling.degrees >= kRegular) return;
+  print("smallest angle: at most {:.2f} degrees with this surface (proven), {:.2f} reached\n",
+        ceiling.degrees, result.after.min_dihedral.min);
+}
+
 void print_result(const Result& result, const Seconds& seconds, bool dry_run, const CommonOptions& common) {
   if (common.verbose) print_passes(result.passes);
   print_statistics({{"before", &result.before}, {"after", &result.after}});
+  print_ceiling(result);
   print_limits(result);
   print("{}; seconds: read {:.2f}, build {:.2f}, improve {:.2f}, statistics {:.2f}, write {:.2f}\n",
         result.changed ? "changed" : "unchanged", seconds.read, seconds.build, seconds.improve,

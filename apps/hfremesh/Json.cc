@@ -103,6 +103,7 @@ Json to_json(const Statistics& s) {
   json["patches"] = list_json(s.patches);
   json["surface_ceiling"] = to_json(s.surface_ceiling);
   json["interface_ceiling"] = to_json(s.interface_ceiling);
+  json["angle_ceiling"] = to_json(s.angle_ceiling);
   return json;
 }
 

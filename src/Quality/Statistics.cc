@@ -185,6 +185,7 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
     s.patches = std::move(surface.patches);
     s.surface_ceiling = surface.surface_ceiling;
     s.interface_ceiling = surface.interface_ceiling;
+    s.angle_ceiling = surface.angle_ceiling;
   }
   return s;
 }

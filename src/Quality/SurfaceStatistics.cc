@@ -39,18 +39,24 @@ std::vector<PatchStatistics> gather_patches(const TetMesh& mesh, std::span<const
 }
 
 struct Ceilings {
-  EdgeWedge surface, interface;
+  EdgeWedge surface, interface, angle;
 
-  static void lower(EdgeWedge& least, const Wedge& wedge, VertexHandle a, VertexHandle b) {
-    if (least.cell.is_valid() && wedge.degrees >= least.degrees) return;
-    least = {wedge.degrees, a, b, cell_of(wedge.first)};
+  static bool is_lower(double degrees, const EdgeWedge& least) {
+    return !least.cell.is_valid() || degrees < least.degrees;
+  }
+  static void lower(EdgeWedge& least, double degrees, const Wedge& wedge, VertexHandle a, VertexHandle b) {
+    if (is_lower(degrees, least)) least = {degrees, a, b, cell_of(wedge.first)};
+  }
+  void lower_angle(const TetMesh& mesh, const Wedge& wedge, VertexHandle a, VertexHandle b) {
+    if (is_lower(0.5 * wedge.degrees, angle)) lower(angle, wedge_ceiling(mesh, a, b, wedge), wedge, a, b);
   }
   void merge(const Ceilings& next) {
-    if (next.surface.cell.is_valid() && (!surface.cell.is_valid() || next.surface.degrees < surface.degrees))
-      surface = next.surface;
-    if (next.interface.cell.is_valid() &&
-        (!interface.cell.is_valid() || next.interface.degrees < interface.degrees))
-      interface = next.interface;
+    const auto take = [](EdgeWedge& least, const EdgeWedge& other) {
+      if (other.cell.is_valid() && is_lower(other.degrees, least)) least = other;
+    };
+    take(surface, next.surface);
+    take(interface, next.interface);
+    take(angle, next.angle);
   }
 };
 
@@ -80,8 +86,11 @@ void lower_at(const TetMesh& mesh, HalfFaceHandle h, std::size_t side, EdgeWedge
   const Cell& cell = mesh.cell(start.cell);
   const VertexHandle a = cell.v[corners[side]];
   const VertexHandle b = cell.v[corners[(side + 1) % 3]];
-  if (scratch.whole) Ceilings::lower(ceilings.surface, *scratch.whole, a, b);
-  for (const Wedge& wedge : scratch.wedges) Ceilings::lower(ceilings.interface, wedge, a, b);
+  if (scratch.whole) Ceilings::lower(ceilings.surface, scratch.whole->degrees, *scratch.whole, a, b);
+  for (const Wedge& wedge : scratch.wedges) {
+    Ceilings::lower(ceilings.interface, wedge.degrees, wedge, a, b);
+    ceilings.lower_angle(mesh, wedge, a, b);
+  }
 }
 
 Ceilings gather_ceilings(const TetMesh& mesh, par::Policy policy,
@@ -106,7 +115,7 @@ Ceilings gather_ceilings(const TetMesh& mesh, par::Policy policy,
 SurfaceTotals gather_surface(const TetMesh& mesh, par::Policy policy,
                              std::span<const HalfFaceHandle> constrained, double max_area) {
   const Ceilings ceilings = gather_ceilings(mesh, policy, constrained);
-  return {gather_patches(mesh, constrained, max_area), ceilings.surface, ceilings.interface};
+  return {gather_patches(mesh, constrained, max_area), ceilings.surface, ceilings.interface, ceilings.angle};
 }
 
 }  // namespace hfr::detail

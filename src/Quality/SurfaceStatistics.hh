@@ -14,6 +14,7 @@ struct SurfaceTotals {
   std::vector<PatchStatistics> patches;
   EdgeWedge surface_ceiling;
   EdgeWedge interface_ceiling;
+  EdgeWedge angle_ceiling;
 };
 
 /// `constrained`: half-faces whose faces may not change, ascending. max_area bounds the area of a face.

@@ -41,6 +41,13 @@ double within_turn(double degrees) {
   return turned > kRounding && turned <= 360.0 ? turned : 360.0;
 }
 
+/// The vertex of a face that is not on the edge.
+VertexHandle third_vertex(const TetMesh& mesh, HalfFaceHandle h, VertexHandle a, VertexHandle b) {
+  for (VertexHandle v : mesh.halfface_vertices(h))
+    if (v != a && v != b) return v;
+  return {};
+}
+
 void close(Wedge& wedge, HalfFaceHandle last) {
   wedge.last = last;
   if (!wedge.positive) wedge.degrees = within_turn(wedge.degrees);
@@ -113,6 +120,16 @@ std::optional<EdgeWedges> wedges_at(const TetMesh& mesh, CellHandle c, int edge)
   EdgeWedges found;
   find_wedges(mesh, start, found);
   return found;
+}
+
+double wedge_ceiling(const TetMesh& mesh, VertexHandle a, VertexHandle b, const Wedge& wedge) {
+  if (wedge.degrees <= 0) return wedge.degrees;
+  const Vec3 p = mesh.point(third_vertex(mesh, wedge.last, a, b));
+  const Vec3 q = mesh.point(third_vertex(mesh, wedge.first, a, b));
+  const auto angle = [&](Vec3 x, Vec3 y) {
+    return report_value(Metric::kMinDihedral, MinDihedral{}(mesh.point(a), mesh.point(b), x, y));
+  };
+  return std::max(std::max(angle(p, q), angle(q, p)), 0.5 * wedge.degrees);
 }
 
 }  // namespace hfr

@@ -42,6 +42,11 @@ void find_wedges(const TetMesh& mesh, RingPlace start, EdgeWedges& out);
 /// of c; nothing where no face at the edge is constrained.
 std::optional<EdgeWedges> wedges_at(const TetMesh& mesh, CellHandle c, int edge);
 
+/// Degrees: the largest that the smallest dihedral of the cells in a wedge at edge (a, b) can be, in every
+/// mesh that keeps its faces and whose cells go round the edge no more than once. Two cells have one of no
+/// more than half of the wedge, and a single cell is the one on both faces.
+double wedge_ceiling(const TetMesh& mesh, VertexHandle a, VertexHandle b, const Wedge& wedge);
+
 }  // namespace hfr
 
 #endif

@@ -26,24 +26,6 @@ double smallest_angle(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return report_value(Metric::kMinDihedral, MinDihedral{}(a, b, c, d));
 }
 
-/// The vertex of a face that is not on the edge.
-VertexHandle third_vertex(const TetMesh& mesh, HalfFaceHandle h, VertexHandle a, VertexHandle b) {
-  for (VertexHandle v : mesh.halfface_vertices(h))
-    if (v != a && v != b) return v;
-  return {};
-}
-
-/// The largest that the smallest dihedral of the cells in the wedge can be: two cells have one of no more
-/// than half of it, and a single cell is the one on both of its faces.
-double ceiling_of(const TetMesh& mesh, VertexHandle a, VertexHandle b, const Wedge& wedge) {
-  if (wedge.degrees <= 0) return wedge.degrees;
-  const VertexHandle p = third_vertex(mesh, wedge.last, a, b);
-  const VertexHandle q = third_vertex(mesh, wedge.first, a, b);
-  const double alone = std::max(smallest_angle(mesh.point(a), mesh.point(b), mesh.point(p), mesh.point(q)),
-                                smallest_angle(mesh.point(a), mesh.point(b), mesh.point(q), mesh.point(p)));
-  return std::max(alone, 0.5 * wedge.degrees);
-}
-
 /// True when the wedge has cell c.
 bool has_cell(const TetMesh& mesh, const Wedge& wedge, VertexHandle a, VertexHandle b, CellHandle c) {
   RingPlace at{cell_of(wedge.first), 0, static_cast<std::uint8_t>(corner_of(wedge.first))};
@@ -69,7 +51,7 @@ void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
       // Where every mesh has an invalid cell at the edge, nothing says in which of the wedges.
       const bool may_be_the_one = found->impossible && wedge.degrees <= 0 && stuck.degrees <= 0;
       if (!may_be_the_one && !has_cell(mesh, wedge, a, b, stuck.cell)) continue;
-      const double ceiling = ceiling_of(mesh, a, b, wedge);
+      const double ceiling = wedge_ceiling(mesh, a, b, wedge);
       if (!(ceiling < degrees - kRounding)) continue;
       const bool surface = mesh.is_boundary(wedge.first) && mesh.is_boundary(wedge.last);
       const StuckReason limit = surface ? StuckReason::kSurfaceCeiling : StuckReason::kInputFeature;

@@ -74,6 +74,7 @@ void expect_equal(const Statistics& a, const Statistics& b) {
   for (std::size_t i = 0; i < a.patches.size(); ++i) EXPECT_EQ(a.patches[i].area, b.patches[i].area);
   expect_equal(a.surface_ceiling, b.surface_ceiling);
   expect_equal(a.interface_ceiling, b.interface_ceiling);
+  expect_equal(a.angle_ceiling, b.angle_ceiling);
 }
 
 TEST(Statistics, CellsBelowADegreeAreThoseThatMissItAsAGoal) {
@@ -235,6 +236,7 @@ TEST(Statistics, UnusedVerticesAndSeparatePartsAreCounted) {
   EXPECT_EQ(s.edges, 12U);
   EXPECT_EQ(s.faces, 8U);
   EXPECT_NEAR(s.surface_ceiling.degrees, std::acos(1.0 / 3.0) * 180 / std::numbers::pi, 1e-12);
+  EXPECT_NEAR(s.angle_ceiling.degrees, s.surface_ceiling.degrees, 1e-12) << "a single cell in each wedge";
   StatisticsOptions bare;
   bare.components = bare.surface = false;
   const Statistics less = statistics(build(points, cells), {}, bare);

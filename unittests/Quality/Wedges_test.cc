@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "HalfFace/Generate.hh"
+#include "Quality/Metrics.hh"
 #include "Quality/Statistics.hh"
 
 namespace hfr::test {
@@ -75,6 +76,33 @@ TEST(Wedges, InterfacesFoldedOverOneAnotherLeaveANegativeAngle) {
   const Statistics s = statistics(mesh);
   EXPECT_NEAR(s.interface_ceiling.degrees, -0.063, 1e-9);
   EXPECT_GT(s.surface_ceiling.degrees, 1);
+  EXPECT_NEAR(s.angle_ceiling.degrees, -0.063, 1e-9);
+}
+
+TEST(Wedges, TheSmallestAngleIsAtMostThatOfTheOneCellOrHalfOfTheWedge) {
+  // Labelled faces on both sides of one cell of a wheel: a narrow one, and a wide one.
+  for (const double degrees : {40.0, 130.0}) {
+    TetMesh mesh = wheel({0, degrees, 200, 280});
+    const CellHandle c(0);
+    const int axis = axis_of(mesh, c);
+    const auto& opposite = kEdgeOpposite[static_cast<std::size_t>(axis)];
+    for (const std::uint8_t corner : {opposite[0], opposite[1]})
+      mesh.labels().faces.set(mesh.halfface_vertices(halfface_of(c, corner)), 1);
+    const auto found = wedges_at(mesh, c, axis);
+    ASSERT_TRUE(found.has_value());
+    const auto& ends = kEdgeCorners[static_cast<std::size_t>(axis)];
+    const auto& v = mesh.cell(c).v;
+    double alone = 0;
+    for (const Wedge& wedge : found->wedges) {
+      if (std::abs(wedge.degrees - degrees) > 1e-6) continue;
+      const double ceiling = wedge_ceiling(mesh, v[ends[0]], v[ends[1]], wedge);
+      alone = report_value(Metric::kMinDihedral, MinDihedral{}(mesh.point(v[0]), mesh.point(v[1]),
+                                                               mesh.point(v[2]), mesh.point(v[3])));
+      EXPECT_NEAR(ceiling, std::max(alone, 0.5 * degrees), 1e-9);
+      EXPECT_LE(statistics(mesh).angle_ceiling.degrees, ceiling + 1e-9);
+    }
+    EXPECT_GT(alone, 0) << "the wedge was not found";
+  }
 }
 
 TEST(Wedges, InvertedCellsBetweenFacesThatAreNotFoldedProveNothing) {

@@ -124,7 +124,11 @@ void bind_figures(nb::class_<Statistics>& type) {
           "larger dihedral while the surface is frozen. None without one.")
       .def_prop_ro(
           "interface_ceiling", [](const Statistics& s) { return wedge_of(s.interface_ceiling); },
-          "The same with interfaces and labelled faces frozen, too.");
+          "The same with interfaces and labelled faces frozen, too.")
+      .def_prop_ro(
+          "angle_ceiling", [](const Statistics& s) { return wedge_of(s.angle_ceiling); },
+          "(degrees, (a, b), cell): what the smallest dihedral of all can be at most, proven, while these "
+          "faces stay. None where nothing is proven.");
 }
 
 Statistics statistics_of(const Mesh& mesh, int threads) {
