@@ -12,6 +12,13 @@ install(EXPORT hfremeshTargets NAMESPACE hfremesh:: DESTINATION ${hfr_package_di
 if(TARGET hfremesh_tool)
   install(TARGETS hfremesh_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+if(TARGET hfremesh_manual)
+  set(hfr_manual ${PROJECT_BINARY_DIR}/apps/hfremesh/manual)
+  install(FILES ${hfr_manual}/hfremesh.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${hfr_manual}/hfremesh DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${hfr_manual}/_hfremesh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${hfr_manual}/hfremesh.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # A shared library brings its own dependencies along; whoever links a static one has to find them.

@@ -138,7 +138,13 @@ Subcommand add_check(Command program, CommonOptions& common) {
   const auto line = std::make_shared<CommandLine>();
   Command command =
       program.subcommand("check", "Fail on inverted, flat, renumbered, overlapping or broken cells");
+  command.example("hfremesh check in.mesh --ids bad.txt",
+                  "exit code 0 only for a mesh that a solver can take");
+  command.example("hfremesh check in.mesh --min-dihedral 10",
+                  "exit code 3 where an angle is below 10 degrees, too");
+  command.group("Mesh");
   command.option("IN", line->input, "Mesh to read").required().type_name("FILE").transform(stream_name());
+  command.group("What is looked for");
   command.option("--ids", line->ids, "Write kind and index of every bad cell; - is stdout")
       .type_name("FILE")
       .transform(stream_name());

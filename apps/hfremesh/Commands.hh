@@ -31,6 +31,7 @@ Subcommand add_generate(Command program, CommonOptions& common);
 Subcommand add_move(Command program, CommonOptions& common);
 Subcommand add_report(Command program, CommonOptions& common);
 Subcommand add_devices(Command program, CommonOptions& common);
+Subcommand add_manual(Command program, CommonOptions& common);
 
 }  // namespace hfr::app
 

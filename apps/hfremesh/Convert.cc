@@ -51,9 +51,13 @@ ExitCode run(const ConvertOptions& options, const CommonOptions& common, Json& r
 Subcommand add_convert(Command program, CommonOptions& common) {
   const auto options = std::make_shared<ConvertOptions>();
   Command command = program.subcommand("convert", "Write a mesh in another format");
+  command.example("hfremesh convert in.mesh out.vtu --variant zlib", "for ParaView, compressed");
+  command.example("hfremesh convert in.mesh - --output-format vtk > out.vtk", "to the standard output");
+  command.group("Mesh");
   command.option("A", options->input, "Mesh to read").required().type_name("FILE").transform(stream_name());
   command.option("B,-o,--output", options->output, "Mesh to write; its extension gives the format")
       .required()
+      .type_name("FILE")
       .transform(stream_name());
   add_format_options(command, common, true, true);
   add_split_option(command, common);

@@ -60,6 +60,7 @@ ExitCode run(const CommonOptions& common, Json& report) {
 
 Subcommand add_devices(Command program, CommonOptions& common) {
   Command command = program.subcommand("devices", "List the OpenCL devices that improve --device can use");
+  command.example("hfremesh devices -v", "with driver and limits");
   add_common_options(command, common);
   return {command, [] { return std::vector<FileUse>(); },
           [&common](Json& report) { return run(common, report); }};

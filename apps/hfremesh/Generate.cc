@@ -144,22 +144,53 @@ ExitCode run(const std::string& shape, const GenerateOptions& options, const Com
 
 void add_cavity_options(Command shape, GenerateOptions& options) {
   generate::CavityOptions& cavity = options.cavity;
+  shape.group("Shape");
   shape.option("--jitter", cavity.jitter, "Random move of inner coordinates, in cube widths")
-      .check(real_number());
-  shape.option("--sigma", cavity.sigma, "Width of the Gaussians").check(positive_number());
+      .check(real_number())
+      .shows_default()
+      .type_name("X");
+  shape.option("--sigma", cavity.sigma, "Width of the Gaussians")
+      .check(positive_number())
+      .shows_default()
+      .type_name("X");
   shape.option("--amplitude", cavity.amplitude, "Strength of the deformation; 0 for none")
+      .shows_default()
+      .type_name("X")
       .check(real_number());
-  shape.option("--seed", cavity.seed, "Seed of the jitter").check(whole_number());
-  shape.option("--field", options.field, "Deformation").type_name("NAME").one_of({"gaussians", "bulk-shear"});
+  shape.option("--seed", cavity.seed, "Seed of the jitter")
+      .check(whole_number())
+      .shows_default()
+      .type_name("N");
+  shape.option("--field", options.field, "Deformation")
+      .type_name("NAME")
+      .one_of({"gaussians", "bulk-shear"})
+      .shows_default("gaussians");
 }
 
 void add_box_options(Command shape, GenerateOptions& options) {
-  shape.option("--low", options.low, "Lower corner").type_name("X Y Z").expected(3).check(real_number());
-  shape.option("--high", options.high, "Upper corner").type_name("X Y Z").expected(3).check(real_number());
-  shape.option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths")
+  shape.group("Shape");
+  shape.option("--low", options.low, "Lower corner, in LENGTHs")
+      .type_name("X Y Z")
+      .shows_default("0 0 0")
+      .expected(3)
       .check(real_number());
-  shape.option("--seed", options.seed, "Seed of the jitter").check(whole_number());
-  shape.option("--regions", options.regions, "1, or 2 for two halves along x").check(whole_number(1, 2));
+  shape.option("--high", options.high, "Upper corner, in LENGTHs")
+      .type_name("X Y Z")
+      .shows_default("1 1 1")
+      .expected(3)
+      .check(real_number());
+  shape.option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths")
+      .check(real_number())
+      .shows_default()
+      .type_name("X");
+  shape.option("--seed", options.seed, "Seed of the jitter")
+      .check(whole_number())
+      .shows_default()
+      .type_name("N");
+  shape.option("--regions", options.regions, "1, or 2 for two halves along x")
+      .check(whole_number(1, 2))
+      .shows_default()
+      .type_name("N");
 }
 
 }  // namespace
@@ -168,43 +199,81 @@ Subcommand add_generate(Command program, CommonOptions& common) {
   const auto options = std::make_shared<GenerateOptions>();
   Command command = program.subcommand("generate", "Make a mesh: cavity, box, ball, cylinder or fandisk");
   command.require_subcommand();
+  command.example("hfremesh generate cavity -o bad.mesh", "a mesh with inverted cells");
+  command.example("hfremesh generate box --n 20 10 10 --low 0 0 0 --high 2 1 1 --regions 2 -o box.msh",
+                  "two regions with an interface between them");
   const ValueCheck count = whole_number(0, std::numeric_limits<Index>::max());
   Command cavity = command.subcommand("cavity", "Unit cube, deformed inside until cells invert");
   add_cavity_options(cavity, *options);
   Command box = command.subcommand("box", "Box of cubes cut into six cells each");
   add_box_options(box, *options);
   Command ball = command.subcommand("ball", "Ball round the origin, 20 n^3 cells");
-  ball.option("--radius", options->radius, "Radius").check(positive_number());
+  ball.group("Shape");
+  ball.option("--radius", options->radius, "Radius")
+      .check(positive_number())
+      .type_name("LENGTH")
+      .shows_default();
   Command cylinder = command.subcommand("cylinder", "Upright cylinder, 18 nr^2 nz cells");
-  cylinder.option("--radius", options->radius, "Radius").check(positive_number());
-  cylinder.option("--height", options->height, "Height").check(positive_number());
-  cylinder.option("--twist", options->twist, "Degrees by which the top is turned").check(real_number());
+  cylinder.group("Shape");
+  cylinder.option("--radius", options->radius, "Radius")
+      .check(positive_number())
+      .type_name("LENGTH")
+      .shows_default();
+  cylinder.option("--height", options->height, "Height")
+      .check(positive_number())
+      .type_name("LENGTH")
+      .shows_default();
+  cylinder.option("--twist", options->twist, "Degrees by which the top is turned")
+      .check(real_number())
+      .shows_default()
+      .type_name("DEG");
   cylinder
       .option("--wring", options->wring,
               "Degrees by which the side is turned back and forth; from 58 on it folds over")
+      .shows_default()
+      .type_name("DEG")
       .check(real_number());
   Command fandisk =
       command.subcommand("fandisk", "Quarter of a ring with a step: planes, cylinders, sharp edges");
+  fandisk.group("Shape");
   fandisk.option("--n", options->counts, "Grid cubes along the radius, each half of the arc, each level")
+      .shows_default("6 6 4")
       .type_name("NR NA NZ")
       .expected(3)
       .check(count);
   fandisk.option("--jitter", options->jitter, "Random move within faces and inside, in cube widths")
-      .check(real_number());
-  fandisk.option("--seed", options->seed, "Seed of the jitter").check(whole_number());
+      .check(real_number())
+      .shows_default()
+      .type_name("X");
+  fandisk.option("--seed", options->seed, "Seed of the jitter")
+      .check(whole_number())
+      .shows_default()
+      .type_name("N");
   for (Command shape : {ball, cylinder}) {
     shape.option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges")
-        .check(real_number());
-    shape.option("--seed", options->seed, "Seed of the jitter").check(whole_number());
+        .check(real_number())
+        .shows_default()
+        .type_name("X");
+    shape.option("--seed", options->seed, "Seed of the jitter")
+        .check(whole_number())
+        .shows_default()
+        .type_name("N");
   }
   for (Command shape : {cavity, box})
     shape.option("--n", options->counts, "Grid cubes along x, y and z")
+        .shows_default(shape.name() == "box" ? "10 10 10" : "14 15 16")
         .type_name("NX NY NZ")
         .expected(3)
         .check(count);
-  ball.option("--n", options->counts, "Shells").type_name("N").expected(1).check(count);
-  cylinder.option("--n", options->counts, "Rings and layers").type_name("NR NZ").expected(2).check(count);
+  ball.option("--n", options->counts, "Shells").type_name("N").shows_default("8").expected(1).check(count);
+  cylinder.option("--n", options->counts, "Rings and layers")
+      .type_name("NR NZ")
+      .shows_default("4 12")
+      .expected(2)
+      .check(count);
   for (Command shape : {cavity, box, ball, cylinder, fandisk}) {
+    shape.example("hfremesh generate " + shape.name() + " -o out.mesh", "by the default numbers");
+    shape.group("Output");
     shape.option("-o,--output", options->output, "Mesh to write")
         .required()
         .type_name("FILE")

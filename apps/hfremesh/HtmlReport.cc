@@ -56,8 +56,12 @@ ExitCode run(const ReportLine& line, const CommonOptions& common, Json& report) 
 Subcommand add_report(Command program, CommonOptions& common) {
   const auto line = std::make_shared<ReportLine>();
   Command command = program.subcommand("report", "Make a page or a picture of a mesh before and after");
+  command.example("hfremesh report bad.mesh good.mesh -o both.html", "a page with views of both");
+  command.example("hfremesh report bad.mesh good.mesh --png both.png", "a picture");
+  command.group("Mesh");
   command.option("BEFORE", line->before, "Mesh before").required().type_name("FILE").transform(stream_name());
   command.option("AFTER", line->after, "Mesh after").required().type_name("FILE").transform(stream_name());
+  command.group("Output");
   add_presentation_options(command, line->files, "-o,--output");
   add_format_options(command, common, true, false);
   add_common_options(command, common);

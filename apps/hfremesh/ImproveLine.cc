@@ -23,8 +23,21 @@ std::string degrees_or_max(std::string& text) {
                      in_quotes(text));
 }
 
-/// What is wanted, and what may be done for it.
+void add_examples(Command command) {
+  command.example("hfremesh bad.mesh -o good.mesh", "inverted cells mended, then quality raised");
+  command.example("hfremesh bad.mesh -o bad.mesh --min-dihedral 20",
+                  "in place; only cells below 20 degrees are worked on");
+  command.example("hfremesh bad.mesh -o good.vtu --min-dihedral max --time-limit 60",
+                  "as large an angle as can be had within a minute");
+  command.example("hfremesh bad.mesh -o good.mesh --surface free --hausdorff 0.01",
+                  "the boundary may move by 0.01 of the mesh's unit");
+  command.example("hfremesh bad.mesh -o good.mesh --report run.html",
+                  "a page about what was done and what is left");
+}
+
+/// What is wanted.
 void add_goal_options(Command command, ImproveLine& line) {
+  command.group("Goal");
   command
       .option("--min-dihedral", line.min_dihedral,
               "Goal for the smallest dihedral angle; only cells that miss it are worked on. 'max': as large "
@@ -36,26 +49,27 @@ void add_goal_options(Command command, ImproveLine& line) {
               "For a surface without tetrahedra: goal for the smallest angle of its triangles")
       .type_name("DEG")
       .check(real_number(0, 60));
-  command.option("--iterations", line.improve.iterations, "At most N bulk iterations; 0 is no limit")
-      .type_name("N")
-      .check(whole_number(0, std::numeric_limits<int>::max()));
   command.option("--time-limit", line.time_limit, "Stop improving after S seconds; exit code 5 then")
       .type_name("S")
-      .check(positive_number());
-  command.option("--ops", line.ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
-      .type_name("LIST");
+      .check(positive_number())
+      .shows_default("none");
+}
+
+/// How many cells there may be.
+void add_bound_options(Command command, ImproveLine& line) {
+  command.group("Bounds");
   command.flag("--no-insert", line.no_insert, "No new vertices");
-  command.flag("--bulk-nodes", line.improve.bulk_nodes,
-               "Remove vertices in the bulk stage, too: fewer cells, and a lower worst angle on most meshes");
   command
       .option("--min-cells", line.improve.min_cells,
               "No vertex is removed below N cells; 0: 81 % of the input's, without a bound for 'max'")
       .type_name("N")
+      .shows_default()
       .check(whole_number());
   command
       .option("--max-cells", line.improve.max_cells,
               "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
       .type_name("N")
+      .shows_default()
       .check(whole_number());
   command.flag("--coarsen", line.improve.coarsen,
                "Remove vertices wherever that makes the worst angles there better, however few cells are "
@@ -64,35 +78,50 @@ void add_goal_options(Command command, ImproveLine& line) {
 
 /// How it is done.
 void add_method_options(Command command, ImproveLine& line) {
-  command.option("--metric", line.metric, "Quality metric of the bulk passes; volume-length by default")
-      .type_name("NAME");
+  command.group("Advanced");
+  command.option("--ops", line.ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
+      .type_name("LIST")
+      .shows_default("all but cluster");
+  command.option("--iterations", line.improve.iterations, "At most N bulk iterations; 0 is no limit")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<int>::max()))
+      .shows_default();
+  command.flag("--bulk-nodes", line.improve.bulk_nodes,
+               "Remove vertices in the bulk stage, too: fewer cells, and a lower worst angle on most meshes");
+  command.option("--metric", line.metric, "Quality metric of the bulk passes; an unknown name lists them")
+      .type_name("NAME")
+      .shows_default("volume-length");
   command
       .option("--rounds", line.rounds,
               "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
-      .type_name("NAME");
-  command.option("--smoother", line.smoother, "newton, candidates, laplacian or taubin").type_name("NAME");
+      .type_name("NAME")
+      .shows_default("auto");
+  command.option("--smoother", line.smoother, "newton, candidates, laplacian or taubin")
+      .type_name("NAME")
+      .shows_default("newton");
   command.option("--compat", line.compat, "Run a published pipeline exactly: jpdc2013")
       .type_name("NAME")
       .one_of({"jpdc2013"});
 }
 
 void add_surface_options(Command command, ImproveLine& line) {
+  command.group("Surface");
   command
       .option("--surface", line.surface,
-              "What may happen to the surface: frozen (nothing, the default), flat (new triangles in "
+              "What may happen to the surface: frozen (nothing), flat (new triangles in "
               "planar faces), free (within --hausdorff of the input)")
       .type_name("MODE")
+      .shows_default("frozen")
       .one_of({"frozen", "flat", "free"});
   command
       .option("--hausdorff", line.hausdorff,
-              "Largest distance between input and output surface, with --surface free; 0: as flat. Default: "
-              "0.3 of the mean edge, at most 0.5 % of the diagonal")
+              "Largest distance between input and output surface, with --surface free; 0: as flat")
       .type_name("LENGTH")
+      .shows_default("0.3 of the mean edge, at most 0.5 % of the diagonal")
       .check(real_number(0));
-  command
-      .option("--feature-angle", line.feature_angle,
-              "Edges sharper than this stay, with --surface free; 40 by default")
+  command.option("--feature-angle", line.feature_angle, "Edges sharper than this stay, with --surface free")
       .type_name("DEG")
+      .shows_default("40")
       .check(real_number(0, 180));
   command.flag("--label-features", line.label_features,
                "Write sharp edges and corners of the surface as labels");
@@ -116,26 +145,32 @@ void add_device_options(Command command, ImproveLine& line) {
       .option("--device", line.device,
               "Where the large passes run: cpu, auto, opencl or opencl:PLATFORM.DEVICE; the output is the "
               "same everywhere")
-      .type_name("NAME");
+      .type_name("NAME")
+      .shows_default("cpu");
   command.flag("--hybrid", line.improve.hybrid, "On a device, smooth only, and reconnect on the processor");
   command
       .option("--work-group", line.improve.device_tuning.work_group,
               "Work-items of a group on a device, a power of two; 0 chooses")
       .type_name("N")
+      .shows_default()
       .one_of({0, 1, 2, 4, 8, 16, 32, 64, 128, 256});
   command.flag("--profile", line.improve.device_tuning.profile, "Measure every kernel; in the JSON report");
 }
 }  // namespace
 
 void add_improve_options(Command command, ImproveLine& line, CommonOptions& common) {
+  add_examples(command);
+  command.group("Mesh");
   command.option("IN", line.input, "Mesh to read").required().type_name("FILE").transform(stream_name());
   command.option("-o,--output", line.output, "Mesh to write; may be IN")
       .type_name("FILE")
       .transform(stream_name());
-  add_format_options(command, common, true, true);
+  add_goal_options(command, line);
+  add_surface_options(command, line);
+  add_bound_options(command, line);
+  command.group("Output");
   command.flag("--dry-run", line.dry_run, "Report only, write no mesh");
   command.flag("--plan", line.plan, "Print the stages and numbers of the run instead of doing it");
-  add_goal_options(command, line);
   command.option("--ids", line.ids, "Write the cells below the goal and why they are; - is stdout")
       .type_name("FILE")
       .transform(stream_name());
@@ -144,13 +179,14 @@ void add_improve_options(Command command, ImproveLine& line, CommonOptions& comm
       .option("--quality-array", line.quality_array,
               "Write the smallest dihedral of each cell, in degrees, as a field of this name")
       .type_name("NAME");
+  command.flag("--progress", line.progress, "Print progress as lines on stderr");
   add_method_options(command, line);
-  add_surface_options(command, line);
   add_device_options(command, line);
   command.option("--seed", line.improve.seed, "Seed of the order among equal candidates")
       .type_name("N")
-      .check(whole_number());
-  command.flag("--progress", line.progress, "Print progress as lines on stderr");
+      .check(whole_number())
+      .shows_default();
+  add_format_options(command, common, true, true);
   add_split_option(command, common);
   add_write_options(command, line.write);
   add_common_options(command, common);

@@ -13,8 +13,12 @@ par::Policy CommonOptions::policy() const {
 }
 
 void add_common_options(Command command, CommonOptions& common) {
-  command.option("-j,--threads", common.threads, "Threads; 0, the default, is every core")
+  command.group("Every subcommand");
+  command
+      .option("-j,--threads", common.threads,
+              "Threads; 0 is every core. The output is the same for each number")
       .type_name("N")
+      .shows_default()
       .check(whole_number(0, 1024));
   command.option("--json", common.json, "Write a report in JSON; - is stdout")
       .type_name("FILE")
@@ -24,6 +28,7 @@ void add_common_options(Command command, CommonOptions& common) {
 }
 
 void add_format_options(Command command, CommonOptions& common, bool reads, bool writes) {
+  command.group("Formats");
   command
       .option("--format", common.format,
               "Format of a mesh on -, the standard stream: an extension such as vtu")

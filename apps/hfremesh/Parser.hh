@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "Help.hh"
+
 namespace CLI {
 class App;
 class Option;
@@ -39,6 +41,10 @@ class Option {
   Option& expected(int least, int most);
   /// Between values in one word.
   Option& delimiter(char separator);
+  /// Shows the variable's present value in the help as what counts where none is given.
+  Option& shows_default();
+  /// The same in words, where the variable's value stands for something else.
+  Option& shows_default(const std::string& value);
   /// Cannot stand beside `other`.
   Option& excludes(const Option& other);
 
@@ -55,6 +61,11 @@ class Command {
   /// One of the subcommands has to be named.
   void require_subcommand();
 
+  /// The heading of the options that are added from now on.
+  void group(const std::string& name);
+  /// One more of the lines that the help begins with.
+  void example(const std::string& line, const std::string& what);
+
   /// `names` as "-o,--output", or a word without dashes for what is known by its place. What is given is
   /// stored in `value` while the line is parsed. T: std::string, double, std::optional<double>, int, the
   /// unsigned integers, and vectors of std::string, double and Index.
@@ -64,6 +75,8 @@ class Command {
   Option flag(const std::string& names, bool& given, const std::string& help);
 
   std::string name() const;
+  /// What there is to say of it and of all below.
+  CommandFacts facts() const;
   /// Whether the line that was parsed names it.
   bool parsed() const;
   /// Name of the subcommand that it names. Precondition: require_subcommand(), and the line was parsed.

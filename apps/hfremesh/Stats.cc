@@ -65,6 +65,9 @@ ExitCode run(const std::vector<std::string>& files, const CommonOptions& common,
 Subcommand add_stats(Command program, CommonOptions& common) {
   const auto files = std::make_shared<std::vector<std::string>>();
   Command command = program.subcommand("stats", "Print the figures of one mesh, or of two side by side");
+  command.example("hfremesh stats bad.mesh good.mesh", "figures side by side");
+  command.example("hfremesh stats bad.mesh -v", "with histograms");
+  command.group("Mesh");
   command.option("A B", *files, "Meshes to read")
       .required()
       .expected(1, 2)

@@ -44,8 +44,8 @@ void wait_passively(char** argv) {
   if (!error) execv(self.c_str(), argv);  // returns only on failure: go on as we are
 }
 
-constexpr const char* kSubcommands[] = {"improve", "move",    "check",    "stats",
-                                        "report",  "convert", "generate", "devices"};
+constexpr const char* kSubcommands[] = {"improve", "move",     "check",   "stats", "report",
+                                        "convert", "generate", "devices", "manual"};
 
 /// The arguments. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o OUT".
 std::vector<std::string> arguments(int argc, char** argv) {
@@ -124,16 +124,22 @@ std::string parsed_command(const std::vector<Subcommand>& subcommands) {
 ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams) {
   Parser parser(
       "hfremesh",
-      "Repairs and improves tetrahedral meshes.\n'hfremesh IN -o OUT' is short for 'hfremesh improve "
+      "Repairs and improves tetrahedral meshes. 'hfremesh IN -o OUT' is short for 'hfremesh improve "
       "IN -o OUT'.",
       std::string("hfremesh ") + HFR_VERSION);
   Command program = parser.program();
   program.require_subcommand();
+  program.example("hfremesh bad.mesh -o good.mesh", "improve; size, boundary and tags stay");
+  program.example("hfremesh bad.msh -o good.vtu --min-dihedral 20",
+                  "work only on cells that miss 20 degrees");
+  program.example("hfremesh check good.vtu", "inverted, flat, overlapping, broken? the exit code says");
+  program.example("hfremesh stats bad.mesh good.mesh", "figures side by side");
+  program.example("hfremesh generate cavity -o bad.mesh", "a mesh with inverted cells, to try it on");
   CommonOptions common;
-  const std::vector<Subcommand> subcommands = {add_improve(program, common),  add_move(program, common),
-                                               add_check(program, common),    add_stats(program, common),
-                                               add_report(program, common),   add_convert(program, common),
-                                               add_generate(program, common), add_devices(program, common)};
+  const std::vector<Subcommand> subcommands = {
+      add_improve(program, common),  add_move(program, common),    add_check(program, common),
+      add_stats(program, common),    add_report(program, common),  add_convert(program, common),
+      add_generate(program, common), add_devices(program, common), add_manual(program, common)};
   try {
     if (argc < 2) throw Failure(ExitCode::kUsage, "a mesh or a subcommand is required");
     if (!parser.parse(arguments(argc, argv))) return ExitCode::kDone;
