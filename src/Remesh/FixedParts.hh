@@ -15,8 +15,8 @@ namespace hfr {
 /// misspelt would hold nothing, and nobody would know. O(star) for each edge and face.
 void require_fixed_parts(const TetMesh& mesh, const SurfaceOptions& options);
 
-/// What SurfaceOptions name as fixed, fixed in the mesh itself for as long as a run takes: no operator moves or
-/// removes it, on the surface or inside.
+/// What SurfaceOptions name as fixed, fixed in the mesh itself for as long as a run takes: no operator moves
+/// or removes it, on the surface or inside.
 class FixedParts {
  public:
   /// The mesh has what `options` name.
