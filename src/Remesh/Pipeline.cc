@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Pipeline.hh"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "Remesh/Goal.hh"
 #include "Remesh/Jpdc2013.hh"
 #include "Remesh/Polish.hh"
+#include "Remesh/StuckCells.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Targets.hh"
 #include "Remesh/Trial.hh"
@@ -48,26 +50,47 @@ bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   return false;
 }
 
+/// Whether the worst angle is below `degrees`, and nothing proves that faces which may not change hold it
+/// where it is.
+bool may_rise(const Run& run, double degrees) {
+  const double now = smallest_dihedral(run.mesh, run.policy());
+  if (now >= degrees) return false;
+  const std::vector<StuckCell> worst = stuck_cells(run.mesh, now + kLeastRise, {}, run.policy());
+  return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
+}
+
 /// What a default run claims, with more cells where their number was in the way.
 void reach_claimed(const Run& run) {
   if (!run.strategy.claimed || !run.findings.met_cell_bound || run.control.stopped()) return;
   const Strategy& claimed = *run.strategy.claimed;
-  if (smallest_dihedral(run.mesh, run.policy()) >= claimed.goal->degrees) return;
+  if (!may_rise(run, claimed.goal->degrees)) return;
   run.findings.forget_cell_bound();
   Best best(run, claimed.goal->may_fall);
   reach_in_turn(run.with(claimed), *claimed.goal);
   best.settle();
 }
 
-bool run_default(const Run& run) {
+void run_default(const Run& run) {
   mend_invalid(run);
   improve_all(run, run.strategy.floor, run.strategy.targets.targets);
   reach_claimed(run);
-  return false;
+}
+
+/// What a surface that may change has left below what a default run claims, as with one that is frozen.
+void run_frozen(const Run& run) {
+  if (!run.strategy.frozen || run.control.stopped()) return;
+  const Strategy& frozen = *run.strategy.frozen;
+  if (!may_rise(run, frozen.claimed->goal->degrees)) return;
+  Best best(run, frozen.claimed->goal->may_fall);
+  Run part = run.with(frozen);
+  part.surface = nullptr;
+  run_default(part);
+  best.settle();
 }
 
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
   run_default(run);
+  run_frozen(run);
   Best best(run, effort.may_fall);
   raise_at_any_cost(run, effort, best);
   best.settle();
@@ -99,7 +122,9 @@ bool run_stages(const Run& run) {
   }
   switch (run.strategy.course) {
     case Course::kDefault:
-      return run_default(run);
+      run_default(run);
+      run_frozen(run);
+      return false;
     case Course::kGoal:
       return run_towards_goal(run, *run.strategy.goal);
     case Course::kAnyCost:

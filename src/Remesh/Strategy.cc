@@ -283,6 +283,12 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     strategy.plain = towards(kPlainGoal);
   if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens())
     strategy.claimed = with_room(towards(kClaimedGoal), n_cells);
+  if (strategy.claimed && !asked.is_frozen()) {
+    ImproveOptions other = options;
+    other.surface.mode = SurfaceMode::kFrozen;
+    other.raise_min_dihedral = false;
+    strategy.frozen = std::make_shared<const Strategy>(resolve(other, found, n_cells));
+  }
   return strategy;
 }
 

@@ -405,6 +405,10 @@ struct Strategy {
   /// Without a goal: that of kClaimedGoal, for what is left below it.
   std::shared_ptr<const Strategy> claimed;
 
+  /// Where the surface may change, without a goal: that of a run with it frozen, for what is left below
+  /// kClaimedGoal.
+  std::shared_ptr<const Strategy> frozen;
+
   /// For cells that have fallen below the input's worst angle.
   const PolishEffort& mending() const { return any_cost ? any_cost->polish : polish; }
 };
