@@ -7,17 +7,19 @@ set(hfr_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hfremesh)
 
 install(TARGETS hfremesh EXPORT hfremeshTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT lib NAMELINK_COMPONENT dev)
 install(EXPORT hfremeshTargets NAMESPACE hfremesh:: DESTINATION ${hfr_package_dir})
 if(TARGET hfremesh_tool)
-  install(TARGETS hfremesh_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS hfremesh_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
 endif()
 if(TARGET hfremesh_manual)
   set(hfr_manual ${PROJECT_BINARY_DIR}/apps/hfremesh/manual)
-  install(FILES ${hfr_manual}/hfremesh.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${hfr_manual}/hfremesh DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
-  install(FILES ${hfr_manual}/_hfremesh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
-  install(FILES ${hfr_manual}/hfremesh.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  install(FILES ${hfr_manual}/hfremesh.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT tool)
+  install(FILES ${hfr_manual}/hfremesh DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    COMPONENT tool)
+  install(FILES ${hfr_manual}/_hfremesh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT tool)
+  install(FILES ${hfr_manual}/hfremesh.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+    COMPONENT tool)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
@@ -73,3 +75,7 @@ install(FILES ${PROJECT_BINARY_DIR}/hfremeshConfig.cmake ${PROJECT_BINARY_DIR}/h
 
 configure_file(${PROJECT_SOURCE_DIR}/cmake/hfremesh.pc.in ${PROJECT_BINARY_DIR}/hfremesh.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hfremesh.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+if(PROJECT_IS_TOP_LEVEL)
+  include(HfrPackages)
+endif()

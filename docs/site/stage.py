@@ -15,7 +15,7 @@ ABOVE = {"README.md": "about.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.
 # The order of the table of contents. A page that is missing here is an error: Sphinx warns of it.
 CONTENTS = {
     "Start": ["start", "tutorials", "coming-from", "about"],
-    "Use": ["tool", "surface", "simulation", "file-formats", "reports", "json", "exit-codes", "opencl", "building"],
+    "Use": ["tool", "surface", "simulation", "file-formats", "reports", "json", "exit-codes", "opencl", "install", "building"],
     "Programs": ["library", "half-face-kernel", "python", "c-api"],
     "How it works": ["architecture", "pipeline", "quality", "operators", "scheduler", "untangling", "determinism"],
     "Figures": ["performance", "worst-angles", "peers", "paper-tables", "fuzzing"],
