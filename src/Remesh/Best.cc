@@ -24,7 +24,7 @@ constexpr std::array<double, 2> kLowShares = {0.01, 0.05};
 }  // namespace
 
 Best::Best(const Run& run, double may_fall) : run_(run), standing_(now()), mesh_(run) {
-  least_ = percentiles();
+  low_ = least_ = percentiles();
   for (double& value : least_)
     if (value > 0) value = dihedral_decision((1 - may_fall) * report_value(Metric::kMinDihedral, value));
 }
@@ -46,6 +46,7 @@ Best::Percentiles Best::percentiles() const {
   }
   return found;
 }
+
 bool Best::is_admissible(const Standing& found) const {
   // Cells that have become valid are worth more.
   if (found.n_inverted + found.n_flat < standing_.n_inverted + standing_.n_flat) return true;
@@ -59,13 +60,16 @@ void Best::note() {
   const Standing found = now();
   if (!is_better(found, standing_) || !is_admissible(found)) return;
   standing_ = found;
+  low_ = percentiles();
   mesh_.emplace(run_);
 }
 
 void Best::settle() {
   Standing found = now();
-  if (degrees(found) + kLeastRise >= degrees(standing_)) found.worst = std::max(found.worst, standing_.worst);
-  if (is_better(standing_, found) || !is_admissible(found)) mesh_->put_back(run_);
+  if (std::abs(degrees(found) - degrees(standing_)) <= kLeastRise) found.worst = standing_.worst;
+  const bool is_alike = !is_better(standing_, found) && !is_better(found, standing_);
+  if (is_better(standing_, found) || !is_admissible(found) || (is_alike && percentiles() < low_))
+    mesh_->put_back(run_);
 }
 
 }  // namespace hfr

@@ -23,8 +23,8 @@ class Best {
 
   /// The mesh may have become better.
   void note();
-  /// At the end of the stage: where the mesh is worse than the best one was, puts that back. An angle that
-  /// does not show in a table makes no mesh worse.
+  /// At the end of the stage: where the mesh is worse than the best one was, puts that back. Worst angles
+  /// that look alike in a table count alike; then the 1st percentile decides, and the 5th.
   void settle();
 
  private:
@@ -37,6 +37,7 @@ class Best {
   Run run_;
   Percentiles least_;
   Standing standing_;
+  Percentiles low_;  // of the best mesh
   std::optional<Snapshot> mesh_;
 };
 
