@@ -7,6 +7,7 @@ public headers of each layer, and one for C, say what Breathe puts there.
 """
 
 import pathlib
+import posixpath
 import re
 import shutil
 import sys
@@ -14,7 +15,7 @@ import sys
 ABOVE = {"README.md": "about.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
 # The order of the table of contents. A page that is missing here is an error: Sphinx warns of it.
 CONTENTS = {
-    "Start": ["start", "tutorials", "coming-from", "about"],
+    "Start": ["start", "tutorials", "gallery/README", "coming-from", "about"],
     "Use": ["tool", "surface", "simulation", "file-formats", "reports", "json", "exit-codes", "opencl", "install", "building"],
     "Programs": ["library", "half-face-kernel", "python", "c-api"],
     "How it works": ["architecture", "pipeline", "quality", "operators", "scheduler", "untangling", "determinism"],
@@ -42,6 +43,15 @@ def headers(root):
     return layers
 
 
+def place(inside):
+    """Where a file of the checkout stands in the site; "" where it does not."""
+    if inside in ("docs", "docs/README.md"):
+        return "index.md"
+    if inside.startswith("docs/"):
+        return inside[len("docs/") :]
+    return ABOVE.get(inside, "")
+
+
 def relinked(text, page, root):
     """The text of `page` (a path in the checkout) with links as the site has them."""
 
@@ -53,12 +63,8 @@ def relinked(text, page, root):
         if not path.is_relative_to(root) or not path.exists():
             sys.exit(f"stage: {page} links to {target}, which is not there")
         inside = path.relative_to(root).as_posix()
-        if inside == "docs" or inside == "docs/README.md":
-            return f"](index.md{anchor})"
-        if inside in ABOVE:
-            return f"]({ABOVE[inside]}{anchor})"
-        if inside.startswith("docs/"):
-            return f"]({inside[len('docs/'):]}{anchor})"
+        if place(inside):
+            return f"]({posixpath.relpath(place(inside), posixpath.dirname(place(str(page))) or '.')}{anchor})"
         return f"](#outside){{outside}}{inside}{{/outside}}"
 
     text = LINK.sub(link, text)
@@ -96,15 +102,19 @@ def main():
         return
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
-    shutil.copytree(root / "docs/pictures", out / "pictures")
-    for page in sorted((root / "docs").glob("*.md")):
-        text = relinked(page.read_text(), page.relative_to(root), root)
-        if page.name == "README.md":
-            (out / "index.md").write_text(text + contents())
+    for file in sorted((root / "docs").rglob("*")):
+        inside = file.relative_to(root).as_posix()
+        if not file.is_file() or inside.startswith("docs/site/"):
+            continue
+        target = out / place(inside)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if file.suffix == ".md":
+            target.write_text(relinked(file.read_text(), inside, root))
         else:
-            (out / page.name).write_text(text)
+            shutil.copy(file, target)
     for page, name in ABOVE.items():
         (out / name).write_text(relinked((root / page).read_text(), page, root))
+    (out / "index.md").write_text((out / "index.md").read_text() + contents())
     reference(root, out)
 
 

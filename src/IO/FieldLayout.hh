@@ -51,7 +51,7 @@ struct Layout<std::vector<double>> {
   static void set(std::vector<double>& value, int k, double x) { value[static_cast<std::size_t>(k)] = x; }
 };
 
-/// Calls f.template operator()<T>() with the type T that a field of this shape is kept in.
+/// Calls `f.template operator()<T>()` with the type T that a field of this shape is kept in.
 template <class F>
 decltype(auto) with_field_type(int components, bool integer, F&& f) {
   const auto either = [&]<class Real, class Integer>() -> decltype(auto) {
