@@ -97,9 +97,9 @@ struct Statistics {
   /// The same with interfaces between regions and labelled faces frozen too.
   EdgeWedge interface_ceiling;
   /// What the smallest dihedral of all can be at most, proven, in every mesh that keeps these faces and whose
-  /// cells go round each edge no more than once: the narrowest wedge between two of them has a single cell, the
-  /// one on both, or cells of which one has no more than half of it. 360 where nothing is proven; no more than
-  /// 0 where some cell is inverted or flat in every such mesh.
+  /// cells go round each edge no more than once: the narrowest wedge between two of them has a single cell,
+  /// the one on both, or cells of which one has no more than half of it. 360 where nothing is proven; no more
+  /// than 0 where some cell is inverted or flat in every such mesh.
   EdgeWedge angle_ceiling;
 };
 
