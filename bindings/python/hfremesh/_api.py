@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -11,6 +12,7 @@ import numpy as np
 from . import _core
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     MeshLike = Union[_core.Mesh, ArrayLike]
@@ -201,6 +203,23 @@ class Result:
     def device_note(self) -> str:
         """Why a device that was wanted was not used, or not to the end."""
         return self._run.device_note
+
+    def report(self, path: Union[str, os.PathLike[str], None], *, png: Union[str, os.PathLike[str], None] = None) -> None:
+        """Writes a page about the mesh before and after, one HTML file with histograms and views of both, and with png a
+        picture (docs/reports.md); path may be None then. The points of the mesh before must not have been moved
+        meanwhile. OSError when a file cannot be written."""
+        from . import _show
+        if path is None and png is None:
+            raise ValueError("a path for the page is wanted, or one for the picture")
+        _show.report(self._before, self.mesh, path, png)
+
+    def plot(self) -> Figure:
+        """Histograms of all dihedral angles and of each cell's smallest, before and after, as a figure of matplotlib,
+        which has to be there. Needs statistics=True."""
+        from . import _show
+        if self.after.cells == 0 < self.mesh.n_cells:
+            raise ValueError("plot() needs statistics=True")
+        return _show.plot(self._before, self.mesh, [self.before, self.after])
 
     def __repr__(self) -> str:
         return (f"<hfremesh.Result: {self.mesh.n_cells} cells, {len(self.invalid_cells)} invalid, "
