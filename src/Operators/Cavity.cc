@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include "HalfFace/Errors.hh"
 #include "Operators/PinchedStars.hh"
+#include "Parallel/DisjointSets.hh"
 #include "Quality/Damage.hh"
 
 namespace hfr {
@@ -60,9 +62,17 @@ FixedVector<Tet, Cavity::kCapacity> removed_tets(const TetMesh& mesh, const Cavi
 }
 
 /// True when the outer faces are a sphere. Where they touch themselves along an edge or in a vertex, which a
-/// cavity that grows among inverted cells may do, new cells can tear the cells round it into two groups.
+/// cavity that grows among inverted cells may do, new cells can tear the cells round it into two groups. Two
+/// spheres that touch in two vertices have Euler's number of one, and are told by their faces.
 bool is_ball(const TetMesh& mesh, const Cavity& cavity) {
-  FixedVector<std::array<VertexHandle, 2>, 6 * Cavity::kCapacity> edges;
+  struct Side {
+    std::array<VertexHandle, 2> edge;
+    std::uint32_t face;
+    bool operator<(const Side& other) const {
+      return std::tie(edge, face) < std::tie(other.edge, other.face);
+    }
+  };
+  FixedVector<Side, 6 * Cavity::kCapacity> sides;
   FixedVector<VertexHandle, 6 * Cavity::kCapacity> vertices;
   std::size_t n_faces = 0;
   for (CellHandle c : cavity.removed) {
@@ -72,22 +82,27 @@ bool is_ball(const TetMesh& mesh, const Cavity& cavity) {
       if (m.is_valid() &&
           std::find(cavity.removed.begin(), cavity.removed.end(), cell_of(m)) != cavity.removed.end())
         continue;
-      ++n_faces;
+      const auto face = static_cast<std::uint32_t>(n_faces++);
       const auto f = mesh.halfface_vertices(h);
       for (std::size_t i = 0; i < 3; ++i) {
         const auto [low, high] = std::minmax(f[i], f[(i + 1) % 3]);
-        edges.push_back({low, high});
+        sides.push_back({{low, high}, face});
         vertices.push_back(f[i]);
       }
     }
   }
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i + 2 < edges.size(); ++i)
-    if (edges[i] == edges[i + 2]) return false;
+  std::sort(sides.begin(), sides.end());
+  par::DisjointSets<std::uint32_t> faces(n_faces);
+  std::size_t n_pieces = n_faces;
+  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+    if (sides[i].edge != sides[i + 1].edge) continue;
+    if (i + 2 < sides.size() && sides[i].edge == sides[i + 2].edge) return false;
+    if (faces.join(sides[i].face, sides[i + 1].face)) --n_pieces;
+  }
   std::sort(vertices.begin(), vertices.end());
   const auto n_vertices =
       static_cast<std::size_t>(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
-  return n_vertices + n_faces == edges.size() / 2 + 2;  // Euler's number of a sphere
+  return n_pieces == 1 && n_vertices + n_faces == sides.size() / 2 + 2;  // Euler's number of a sphere
 }
 
 bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
