@@ -238,7 +238,11 @@ TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelp) {
     TetMesh more = mesh;
     const Result next = improve(more, roomy);
     EXPECT_EQ(n_of(next.stuck, StuckReason::kMaxCells), 0U);
+    EXPECT_EQ(next.cell_bound.bound, 0U);
+    EXPECT_EQ(result.cell_bound.cells, n);
+    EXPECT_EQ(result.cell_bound.bound, n > 0 ? options.max_cells : 0);
     if (n > 0) {
+      EXPECT_GT(result.cell_bound.wanted, options.max_cells);
       EXPECT_LT(next.stuck.size(), result.stuck.size()) << s;
     }
   }
