@@ -155,7 +155,13 @@ class Measurer {
       out_.area += area;
       if (const int* label = mesh_.labels().faces.find(v)) {
         face.label = *label;
-        if (*label != 0 || face.inside) out_.patch_area[*label] += face.inside ? area / 2 : area;
+        if (*label != 0 || face.inside) {
+          out_.patch_area[*label] += face.inside ? area / 2 : area;
+          for (std::size_t i = 0; i < 3; ++i) {
+            const Wide side = difference(mesh_.point(v[(i + 1) % 3]), mesh_.point(v[i]));
+            out_.patch_edges[*label] += std::sqrt(dot_of(side, side));
+          }
+        }
       }
       out_.frozen_faces.insert(face);
     }

@@ -56,6 +56,7 @@ struct Measure {
   std::multiset<Place> fixed_vertices;
   std::multiset<int> vertex_labels;
   std::map<int, long double> patch_area;   ///< by label of faces; 0 on the boundary is none
+  std::map<int, long double> patch_edges;  ///< sum of the lengths of these faces' sides
   std::map<int, long double> edge_length;  ///< by label of edges
 };
 

@@ -117,6 +117,22 @@ TEST(Promises, AreKeptByAThinBodyThatMovesByWhatCountsAsPlanar) {
   EXPECT_THAT(broken(sheet(0), sheet(1e-10), SurfaceMode::kFlat), Contains("volume"));
 }
 
+TEST(Promises, OfAPatchAreKeptToTheRoundingOfItsOutlineAndNoFurther) {
+  // A corner of the labelled face, in units of the distance of doubles at 1e12, along one of its sides.
+  const auto moved = [](double offset, double n_steps) {
+    TetMesh mesh = box();
+    const auto face = mesh.halfface_vertices(*mesh.boundary_halffaces().begin());
+    const Vec3 side = mesh.point(face[1]) - mesh.point(face[0]);
+    mesh.set_point(face[0], mesh.point(face[0]) + (-n_steps * 0x1p-13 / norm(side)) * side);
+    for (VertexHandle v : mesh.vertices()) mesh.set_point(v, mesh.point(v) + Vec3{offset, offset, offset});
+    return mesh;
+  };
+  for (double n_steps : {2.0, 64.0})
+    EXPECT_THAT(broken(moved(0, 0), moved(0, n_steps), SurfaceMode::kFlat), Contains("patch area"));
+  EXPECT_THAT(broken(moved(1e12, 0), moved(1e12, 2), SurfaceMode::kFlat), Not(Contains("patch area")));
+  EXPECT_THAT(broken(moved(1e12, 0), moved(1e12, 64), SurfaceMode::kFlat), Contains("patch area"));
+}
+
 TEST(Promises, AreBrokenByLabelsThatGo) {
   const TetMesh good = box();
   TetMesh bare = box();
