@@ -12,7 +12,7 @@ namespace {
 
 // A coordinate above this counts as inside: what rounding leaves of a point on a face.
 constexpr double kOnFace = -1e-10;
-constexpr int kLongestWalk = 256;             // cells; a walk inside a star is a few
+constexpr int kPatience = 256;                // cells of a walk that come no nearer to the point
 constexpr std::size_t kLargestSearch = 4096;  // cells of the layers round about
 
 /// Coordinates of the point in the cell; false for a flat one.
@@ -61,10 +61,12 @@ class Best {
 /// Through the face that the point lies farthest beyond, from cell to cell. True when the point is found.
 bool walk(const TetMesh& mesh, Vec3 point, CellHandle c, Best& best) {
   CellHandle from;
-  for (int i = 0; i < kLongestWalk; ++i) {
+  for (int n_in_vain = 0; n_in_vain < kPatience;) {
     std::array<double, 4> weights{};
     if (!weigh(mesh, c, point, weights)) return false;
+    const double before = best.value();
     if (best.look_at(c)) return true;
+    n_in_vain = best.value() > before ? 0 : n_in_vain + 1;
     std::array<int, 4> order = {0, 1, 2, 3};
     std::sort(order.begin(), order.end(), [&](int a, int b) {
       return weights[static_cast<std::size_t>(a)] < weights[static_cast<std::size_t>(b)];

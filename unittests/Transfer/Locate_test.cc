@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "HalfFace/Generate.hh"
 #include "Quality/Tets.hh"
@@ -54,6 +55,25 @@ TEST(Locate, PointBeyondTheSurfaceIsSaidToBeOutsideWithTheCellThatItIsLeastOutsi
   ASSERT_TRUE(at.cell.is_valid());
   EXPECT_FALSE(at.inside);
   expect_same(point_of(mesh, at), {0.52, 0.51, 1.03});
+}
+
+TEST(Locate, PointsAnyNumberOfCellsAwayAreFound) {
+  const generate::Arrays arrays = generate::jittered_box({3000, 1, 1}, 0.1, 5);
+  const TetMesh mesh = build(arrays.points, arrays.cells);
+  const auto at_x = [&](double x) {
+    std::size_t nearest = 0;
+    for (VertexHandle v : mesh.vertices())
+      if (std::abs(mesh.point(v).x - x) < std::abs(mesh.point(VertexHandle(nearest)).x - x))
+        nearest = v.idx();
+    return VertexHandle(nearest);
+  };
+  const double length = mesh.point(at_x(1e9)).x;
+  for (const double share : {0.05, 0.08, 0.1, 0.9, 1.0}) {  // of 15,000 cells
+    const Vec3 p = {share * length, 0.41, 0.52};
+    const Place at = locate(mesh, p, at_x(0));
+    ASSERT_TRUE(at.inside) << share;
+    expect_same(point_of(mesh, at), p);
+  }
 }
 
 TEST(Locate, InvertedCellsOnTheWayDoNotHideThePoint) {
