@@ -184,7 +184,7 @@ int n_created_with(const Cavity& cavity, const std::array<VertexHandle, N>& want
 /// Appends the faces into which the new vertex cuts one that goes; n_sides created cells have each.
 bool append_heirs(const Cavity& cavity, const std::array<VertexHandle, 3>& parent, int n_sides, Heirs& out) {
   constexpr std::size_t kNone = 3;
-  if (!cavity.new_vertex || out.size() + 3 > 96) return false;
+  if (!cavity.new_vertex || out.size() + 3 > kMostHeirs) return false;
   std::size_t missing = kNone;
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<VertexHandle, 3> child = parent;

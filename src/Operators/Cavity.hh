@@ -128,7 +128,8 @@ bool makes_twice(const TetMesh& mesh, const Cavity& cavity, Star& scratch, const
 struct Heir {
   std::array<VertexHandle, 3> parent, child;
 };
-using Heirs = FixedVector<Heir, 96>;
+inline constexpr std::size_t kMostHeirs = 96;
+using Heirs = FixedVector<Heir, kMostHeirs>;
 /// The heirs of the labelled faces of the boundary, and of those between the two regions, that no created
 /// cell has; none where the surface is held. A face has heirs when the new vertex cuts it: into three, or
 /// into two where an edge of it goes too. False when one has none, is fixed, or there are too many.

@@ -45,7 +45,7 @@ class OpenFaces {
 
  private:
   static constexpr std::size_t kMaxSize = 16 * Cavity::kCapacity;  // twice the faces of what goes and comes
-  static_assert(std::has_single_bit(kMaxSize));
+  static_assert(std::has_single_bit(kMaxSize) && kMaxSize == 2 * (4 * (2 * Cavity::kCapacity)));
   static constexpr std::int32_t kTaken = -2;
   std::size_t mask_;
   RawArray<std::int32_t, kMaxSize> value_;

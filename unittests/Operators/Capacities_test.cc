@@ -144,6 +144,37 @@ TEST(Capacities, CavityOf513CellsIsAnErrorInEveryBuild) {
   EXPECT_EQ(cavity.created.size(), Cavity::kCapacity);
 }
 
+TEST(Capacities, LabelsOf32FacesAreInheritedAndThoseOf33Refused) {
+  for (const Index n : {Index{32}, Index{33}}) {
+    // n cells by themselves, each cut into three by a vertex on its labelled face.
+    std::vector<Vec3> points;
+    std::vector<Corners> cells;
+    for (Index i = 0; i < n; ++i) {
+      const double x = 2.0 * i;
+      for (const Vec3 p : {Vec3{x, 0, 0}, Vec3{x + 1, 0, 0}, Vec3{x, 1, 0}, Vec3{x, 0, 1}})
+        points.push_back(p);
+      cells.push_back({4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3});
+    }
+    TetMesh mesh = build(points, cells);
+    Cavity cavity;
+    cavity.new_vertex = Vec3{0.3, 0.3, 0};
+    for (CellHandle c : mesh.cells()) {
+      const Tet t = mesh.cell(c).v;
+      mesh.labels().faces.set({t[0], t[1], t[2]}, static_cast<int>(c.idx()) + 1);
+      cavity.removed.push_back(c);
+      for (std::size_t k = 0; k < 3; ++k) {
+        cavity.created.push_back(t);
+        cavity.created[cavity.created.size() - 1][k] = Cavity::kNewVertex;
+      }
+    }
+    Heirs heirs;
+    EXPECT_EQ(find_heirs(mesh, cavity, heirs), n == 32) << n;
+    EXPECT_EQ(heirs.size(), kMostHeirs);
+    Star scratch;
+    EXPECT_FALSE(n == 33 && admissible(mesh, cavity, false, scratch));
+  }
+}
+
 TEST(Capacities, MoreThan512NewEdgesAreAllListed) {
   TetMesh mesh = jittered(8, 0.2, 1);
   Cavity cavity;
