@@ -22,14 +22,7 @@ struct ClusterSearch {
   static constexpr std::size_t kMaxPoints = 32;
   static constexpr std::size_t kMaxCreated = 96;  ///< cells; a filling with more is not found
 
-  /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
-  struct Seed {
-    CellHandle cell;
-    Growth growth;
-
-    Seed() = default;
-    explicit Seed(CellHandle c) : cell(c) { growth.first = c; }
-  };
+  using Seed = CellSeed;  ///< a poor cell
   struct Plan : PlanBase {
     Seed seed;
     /// Corners of the new cells as numbers of the cavity's points, in the order in which its cells name them.

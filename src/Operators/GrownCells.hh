@@ -30,6 +30,16 @@ struct Growth {
 };
 static_assert(sizeof(Growth) <= 72);
 
+/// Seed of an operator whose cluster grows from a cell. That of a plan also says which cells go; `cell` is
+/// then the one they grew from.
+struct CellSeed {
+  CellHandle cell;
+  Growth growth;
+
+  CellSeed() = default;
+  explicit CellSeed(CellHandle c) : cell(c) { growth.first = c; }
+};
+
 /// A growing set of cells and its outer half-faces, as seen from inside.
 class GrownCells {
  public:

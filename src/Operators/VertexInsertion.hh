@@ -23,14 +23,7 @@ struct VertexInsertion {
   /// With none or one, the worst angles end lower on the test meshes, with three, the percentiles.
   static constexpr int kMorePoor = 2;
   static constexpr std::size_t kMaxSites = 1 + 4 + 6 + 16;
-  /// A poor cell. The seed of a plan also says which cells go; `cell` is then the one they grew from.
-  struct Seed {
-    CellHandle cell;
-    Growth growth;
-
-    Seed() = default;
-    explicit Seed(CellHandle c) : cell(c) { growth.first = c; }
-  };
+  using Seed = CellSeed;  ///< a poor cell
   struct Plan : PlanBase {
     Seed seed;
     Vec3 place;
