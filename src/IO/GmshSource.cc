@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "HalfFace/Errors.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io::gmsh {
 namespace {
@@ -26,13 +27,6 @@ bool parse(std::string_view word, T& value) {
 }
 
 }  // namespace
-
-std::string shown(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
-  std::string text;
-  for (const char c : word.substr(0, kLongest)) text += c >= ' ' && c <= '~' ? c : '?';
-  return word.size() > kLongest ? text + "..." : text;
-}
 
 std::uint64_t TextSource::count() {
   const std::int64_t value = scanner_.integer();

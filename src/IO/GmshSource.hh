@@ -108,9 +108,6 @@ class BinarySource {
   bool swap_;
 };
 
-/// `word` as it may stand in a message: cut after 40 characters, nothing unprintable.
-std::string shown(std::string_view word);
-
 /// `count` as a size, once it is known that so many items of at least `bytes_each` fit into the rest of the
 /// file.
 template <class Source>

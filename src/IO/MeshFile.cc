@@ -8,6 +8,7 @@
 #include "IO/Formats.hh"
 #include "IO/OutputFile.hh"
 #include "IO/Validate.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -49,10 +50,8 @@ std::string joined(const std::vector<std::string>& words) {
 
 /// Nothing where the format is not known.
 const Format* find_format(const std::filesystem::path& path, const std::string& format) {
-  std::string extension = format.empty() ? path.extension().string() : format;
+  std::string extension = lower(format.empty() ? path.extension().string() : format);
   if (!extension.empty() && extension[0] != '.') extension.insert(0, 1, '.');
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   const auto* const found = std::find_if(std::begin(kFormats), std::end(kFormats),
                                          [&](const Format& f) { return f.extension == extension; });
   return found == std::end(kFormats) ? nullptr : found;

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "IO/Formats.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace gmsh {

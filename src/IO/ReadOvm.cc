@@ -14,6 +14,7 @@
 #include "IO/Formats.hh"
 #include "IO/OvmProperties.hh"
 #include "IO/TextScanner.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -23,14 +24,6 @@ using Triple = std::array<Index, 3>;
 bool same_cycle(const Triple& a, const Triple& b) {
   return a == b || (a[0] == b[1] && a[1] == b[2] && a[2] == b[0]) ||
          (a[0] == b[2] && a[1] == b[0] && a[2] == b[1]);
-}
-
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) {
-    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
 }
 
 /// The vertex of `corners` that `face` has not; nothing unless the face has three of them.

@@ -15,6 +15,7 @@
 #include "IO/Formats.hh"
 #include "IO/TextScanner.hh"
 #include "IO/VtuData.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 
@@ -33,13 +34,6 @@ void note_polygons(MeshData& mesh, std::size_t n_split) {
 }
 
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
 
 struct PointHash {
   std::size_t operator()(const Vec3& p) const {

@@ -13,16 +13,10 @@
 #include "IO/TextScanner.hh"
 #include "IO/VtkGrid.hh"
 #include "IO/VtuData.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
 
 /// Names are written with %20 for a blank.
 std::string unescaped(std::string_view name) {
@@ -42,13 +36,7 @@ std::string unescaped(std::string_view name) {
   return result;
 }
 
-std::string in_quotes(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown(word.substr(0, kLongest));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return "'" + shown + (word.size() > kLongest ? "...'" : "'");
-}
+std::string in_quotes(std::string_view word) { return "'" + shown(word) + "'"; }
 
 /// What can be in an array: numbers of a type, bits or strings.
 struct ValueType {

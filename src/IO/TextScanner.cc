@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "HalfFace/Errors.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -17,16 +18,6 @@ namespace {
 /// Blank, tab, line feed, vertical tab, form feed, carriage return. Bytes are compared unsigned, so that
 /// nothing beyond ASCII counts as space.
 constexpr bool is_space(char c) { return c == ' ' || static_cast<unsigned char>(c - '\t') < 5; }
-
-/// What a message shows of the text: short, and on one line whatever the bytes are.
-std::string printable(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string shown(text.substr(0, kLongest));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  if (text.size() > kLongest) shown += "...";
-  return shown;
-}
 
 }  // namespace
 
@@ -84,7 +75,7 @@ std::string_view TextScanner::rest_of_line() {
 void TextScanner::fail_expecting(std::string_view what) {
   const std::string_view found = peek_word();
   if (found.empty()) fail("the file ends too early: expected " + std::string(what));
-  fail("expected " + std::string(what) + ", found '" + printable(found) + "'");
+  fail("expected " + std::string(what) + ", found '" + shown(found) + "'");
 }
 
 double TextScanner::parse_real(bool finite) {

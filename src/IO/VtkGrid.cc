@@ -14,6 +14,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/Linearise.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -88,13 +89,6 @@ constexpr std::string_view kCellLabelNames[] = {"region",        "regions",     
                                                 "label",         "labels",      "regionid",  "region_id",
                                                 "cellentityids", "cell_tags",   "subdomain", "attribute"};
 constexpr std::string_view kPointLabelNames[] = {"label", "labels", "medit:ref", "vertex_label"};
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return result;
-}
 
 std::string counted(std::size_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");

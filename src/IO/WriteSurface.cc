@@ -14,6 +14,7 @@
 #include "HalfFace/TupleMap.hh"
 #include "IO/Formats.hh"
 #include "IO/OutputFile.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -270,9 +271,7 @@ Notes losses(const MeshData& mesh, const Surface& surface, bool holds_labels) {
 }  // namespace
 
 Notes write_surface(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options) {
-  std::string extension = options.format.empty() ? path.extension().string() : options.format;
-  for (char& c : extension)
-    if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  const std::string extension = lower(options.format.empty() ? path.extension().string() : options.format);
   const Surface surface = surface_of(mesh);
   Notes notes = losses(mesh, surface, extension == ".ply");
   OutputFile out(path);
