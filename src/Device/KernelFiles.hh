@@ -8,7 +8,7 @@
 
 namespace hfr::detail {
 
-/// A file of the folder kernels/, embedded at build time by cmake/EmbedKernels.cmake.
+/// A file of the folder kernels/, embedded at build time by cmake/EmbedFiles.cmake.
 struct KernelFile {
   const char* name;
   const char* text;
