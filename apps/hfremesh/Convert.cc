@@ -10,7 +10,7 @@
 #include "Console.hh"
 #include "Files.hh"
 #include "Json.hh"
-#include "Report.hh"
+#include "WriteMesh.hh"
 #include "hfremesh/IO/Assemble.hh"
 
 namespace hfr::app {
@@ -35,15 +35,7 @@ ExitCode run(const ConvertOptions& options, const CommonOptions& common, Json& r
     notes = loaded.notes;
     data = io::disassemble(loaded.mesh, common.policy());
   }
-  const Stopwatch write;
-  for (std::string& note : notes_on_replacing(options.output)) notes.push_back(std::move(note));
-  for (std::string& note : save(options.output, data, write_options)) notes.push_back(std::move(note));
-  report["seconds"]["write"] = write.seconds();
-  report["output"].update(contents(data));
-  report["notes"] = notes;
-  if (!common.quiet) print_notes(notes);
-  if (common.prints_table()) print_written(options.output, data);
-  return ExitCode::kDone;
+  return write_mesh(options.output, data, write_options, std::move(notes), common, report);
 }
 
 }  // namespace

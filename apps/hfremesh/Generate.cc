@@ -12,6 +12,7 @@
 #include "Memory.hh"
 #include "Numbers.hh"
 #include "Report.hh"
+#include "WriteMesh.hh"
 
 namespace hfr::app {
 namespace {
@@ -131,15 +132,25 @@ ExitCode run(const std::string& shape, const GenerateOptions& options, const Com
   data.cells = std::move(arrays.cells);
   data.regions = std::move(arrays.regions);
   report["seconds"]["generate"] = making.seconds();
-  const Stopwatch write;
-  std::vector<std::string> notes = notes_on_replacing(options.output);
-  for (std::string& note : save(options.output, data, write_options)) notes.push_back(std::move(note));
-  report["seconds"]["write"] = write.seconds();
-  report["output"].update(contents(data));
-  report["notes"] = notes;
-  if (!common.quiet) print_notes(notes);
-  if (common.prints_table()) print_written(options.output, data);
-  return ExitCode::kDone;
+  return write_mesh(options.output, data, write_options, {}, common, report);
+}
+
+void add_jitter_options(Command shape, GenerateOptions& options, const char* text) {
+  shape.option("--jitter", options.jitter, text).check(real_number()).shows_default().type_name("X");
+  shape.option("--seed", options.seed, "Seed of the jitter")
+      .check(whole_number())
+      .shows_default()
+      .type_name("N");
+}
+
+/// `standard`: the counts without the option; one for each direction of the shape.
+void add_counts_option(Command shape, GenerateOptions& options, const char* text, const char* type,
+                       const char* standard, int n_directions) {
+  shape.option("--n", options.counts, text)
+      .shows_default(standard)
+      .type_name(type)
+      .expected(n_directions)
+      .check(whole_number(0, std::numeric_limits<Index>::max()));
 }
 
 void add_cavity_options(Command shape, GenerateOptions& options) {
@@ -165,6 +176,7 @@ void add_cavity_options(Command shape, GenerateOptions& options) {
       .type_name("NAME")
       .one_of({"gaussians", "bulk-shear"})
       .shows_default("gaussians");
+  add_counts_option(shape, options, "Grid cubes along x, y and z", "NX NY NZ", "14 15 16", 3);
 }
 
 void add_box_options(Command shape, GenerateOptions& options) {
@@ -179,18 +191,53 @@ void add_box_options(Command shape, GenerateOptions& options) {
       .shows_default("1 1 1")
       .expected(3)
       .check(real_number());
-  shape.option("--jitter", options.jitter, "Random move of inner coordinates, in cube widths")
-      .check(real_number())
-      .shows_default()
-      .type_name("X");
-  shape.option("--seed", options.seed, "Seed of the jitter")
-      .check(whole_number())
-      .shows_default()
-      .type_name("N");
+  add_jitter_options(shape, options, "Random move of inner coordinates, in cube widths");
   shape.option("--regions", options.regions, "1, or 2 for two halves along x")
       .check(whole_number(1, 2))
       .shows_default()
       .type_name("N");
+  add_counts_option(shape, options, "Grid cubes along x, y and z", "NX NY NZ", "10 10 10", 3);
+}
+
+void add_radius_option(Command shape, GenerateOptions& options) {
+  shape.group("Shape");
+  shape.option("--radius", options.radius, "Radius")
+      .check(positive_number())
+      .type_name("LENGTH")
+      .shows_default();
+}
+
+void add_ball_options(Command shape, GenerateOptions& options) {
+  add_radius_option(shape, options);
+  add_jitter_options(shape, options, "Random move of inner vertices, in shortest edges");
+  add_counts_option(shape, options, "Shells", "N", "8", 1);
+}
+
+void add_cylinder_options(Command shape, GenerateOptions& options) {
+  add_radius_option(shape, options);
+  shape.option("--height", options.height, "Height")
+      .check(positive_number())
+      .type_name("LENGTH")
+      .shows_default();
+  shape.option("--twist", options.twist, "Degrees by which the top is turned")
+      .check(real_number())
+      .shows_default()
+      .type_name("DEG");
+  shape
+      .option("--wring", options.wring,
+              "Degrees by which the side is turned back and forth; from 58 on it folds over")
+      .shows_default()
+      .type_name("DEG")
+      .check(real_number());
+  add_jitter_options(shape, options, "Random move of inner vertices, in shortest edges");
+  add_counts_option(shape, options, "Rings and layers", "NR NZ", "4 12", 2);
+}
+
+void add_fandisk_options(Command shape, GenerateOptions& options) {
+  shape.group("Shape");
+  add_counts_option(shape, options, "Grid cubes along the radius, each half of the arc, each level",
+                    "NR NA NZ", "6 6 4", 3);
+  add_jitter_options(shape, options, "Random move within faces and inside, in cube widths");
 }
 
 }  // namespace
@@ -202,75 +249,17 @@ Subcommand add_generate(Command program, CommonOptions& common) {
   command.example("hfremesh generate cavity -o bad.mesh", "a mesh with inverted cells");
   command.example("hfremesh generate box --n 20 10 10 --low 0 0 0 --high 2 1 1 --regions 2 -o box.msh",
                   "two regions with an interface between them");
-  const ValueCheck count = whole_number(0, std::numeric_limits<Index>::max());
   Command cavity = command.subcommand("cavity", "Unit cube, deformed inside until cells invert");
   add_cavity_options(cavity, *options);
   Command box = command.subcommand("box", "Box of cubes cut into six cells each");
   add_box_options(box, *options);
   Command ball = command.subcommand("ball", "Ball round the origin, 20 n^3 cells");
-  ball.group("Shape");
-  ball.option("--radius", options->radius, "Radius")
-      .check(positive_number())
-      .type_name("LENGTH")
-      .shows_default();
+  add_ball_options(ball, *options);
   Command cylinder = command.subcommand("cylinder", "Upright cylinder, 18 nr^2 nz cells");
-  cylinder.group("Shape");
-  cylinder.option("--radius", options->radius, "Radius")
-      .check(positive_number())
-      .type_name("LENGTH")
-      .shows_default();
-  cylinder.option("--height", options->height, "Height")
-      .check(positive_number())
-      .type_name("LENGTH")
-      .shows_default();
-  cylinder.option("--twist", options->twist, "Degrees by which the top is turned")
-      .check(real_number())
-      .shows_default()
-      .type_name("DEG");
-  cylinder
-      .option("--wring", options->wring,
-              "Degrees by which the side is turned back and forth; from 58 on it folds over")
-      .shows_default()
-      .type_name("DEG")
-      .check(real_number());
+  add_cylinder_options(cylinder, *options);
   Command fandisk =
       command.subcommand("fandisk", "Quarter of a ring with a step: planes, cylinders, sharp edges");
-  fandisk.group("Shape");
-  fandisk.option("--n", options->counts, "Grid cubes along the radius, each half of the arc, each level")
-      .shows_default("6 6 4")
-      .type_name("NR NA NZ")
-      .expected(3)
-      .check(count);
-  fandisk.option("--jitter", options->jitter, "Random move within faces and inside, in cube widths")
-      .check(real_number())
-      .shows_default()
-      .type_name("X");
-  fandisk.option("--seed", options->seed, "Seed of the jitter")
-      .check(whole_number())
-      .shows_default()
-      .type_name("N");
-  for (Command shape : {ball, cylinder}) {
-    shape.option("--jitter", options->jitter, "Random move of inner vertices, in shortest edges")
-        .check(real_number())
-        .shows_default()
-        .type_name("X");
-    shape.option("--seed", options->seed, "Seed of the jitter")
-        .check(whole_number())
-        .shows_default()
-        .type_name("N");
-  }
-  for (Command shape : {cavity, box})
-    shape.option("--n", options->counts, "Grid cubes along x, y and z")
-        .shows_default(shape.name() == "box" ? "10 10 10" : "14 15 16")
-        .type_name("NX NY NZ")
-        .expected(3)
-        .check(count);
-  ball.option("--n", options->counts, "Shells").type_name("N").shows_default("8").expected(1).check(count);
-  cylinder.option("--n", options->counts, "Rings and layers")
-      .type_name("NR NZ")
-      .shows_default("4 12")
-      .expected(2)
-      .check(count);
+  add_fandisk_options(fandisk, *options);
   for (Command shape : {cavity, box, ball, cylinder, fandisk}) {
     shape.example("hfremesh generate " + shape.name() + " -o out.mesh", "by the default numbers");
     shape.group("Output");

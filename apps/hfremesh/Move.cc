@@ -338,6 +338,48 @@ ExitCode run(const MoveLine& line, const CommonOptions& common, Json& report) {
   return move_one(line, common, report);
 }
 
+void add_motion_options(Command command, MoveLine& line) {
+  command.group("Motion");
+  command.option("--displacement", line.displacement, "Field of the vertices by which they are moved")
+      .type_name("FIELD");
+  command
+      .option("--series", line.series,
+              "All steps of a motion: files of one connectivity, such as in_%04d.vtu; -o is a .pvd then")
+      .type_name("PATTERN");
+  command
+      .option("--on-inversion", line.on_inversion,
+              "A move that inverts cells: repair (after it), substeps (in safe parts), refuse")
+      .type_name("WHAT")
+      .shows_default()
+      .one_of({"repair", "substeps", "refuse"});
+  command
+      .option("--motion", line.motion,
+              "given: of every vertex; laplace, elastic: of the boundary, which the others follow")
+      .type_name("WHAT")
+      .shows_default()
+      .one_of({"given", "laplace", "elastic"});
+}
+
+void add_repair_options(Command command, MoveLine& line) {
+  command.group("Repair");
+  command.option("--min-dihedral", line.goal, "Goal of a repair")
+      .type_name("DEG")
+      .shows_default()
+      .check(real_number(0, 70.5, false));
+  command.option("--trigger", line.trigger, "Repair once an angle is below this")
+      .type_name("DEG")
+      .shows_default()
+      .check(real_number(0, 70.5));
+  command.option("--surface", line.surface, "What a repair may do to the surface: frozen, flat, free")
+      .type_name("MODE")
+      .shows_default()
+      .one_of({"frozen", "flat", "free"});
+  command.option("--time-limit", line.time_limit, "Seconds of each repair")
+      .type_name("S")
+      .shows_default("none")
+      .check(positive_number());
+}
+
 }  // namespace
 
 Subcommand add_move(Command program, CommonOptions& common) {
@@ -349,55 +391,18 @@ Subcommand add_move(Command program, CommonOptions& common) {
       "the inside follows the boundary; repaired to 20 degrees once below 15");
   command.group("Mesh");
   command.option("IN", line->input, "Mesh to read").type_name("FILE").transform(stream_name());
-  command.group("Motion");
-  command.option("--displacement", line->displacement, "Field of the vertices by which they are moved")
-      .type_name("FIELD");
-  command
-      .option("--series", line->series,
-              "All steps of a motion: files of one connectivity, such as in_%04d.vtu; -o is a .pvd then")
-      .type_name("PATTERN");
-  command.group("Mesh");
   command.option("-o,--output", line->output, "Mesh to write")
       .required()
       .type_name("FILE")
       .transform(stream_name());
-  command.group("Repair");
-  command.option("--min-dihedral", line->goal, "Goal of a repair")
-      .type_name("DEG")
-      .shows_default()
-      .check(real_number(0, 70.5, false));
-  command.option("--trigger", line->trigger, "Repair once an angle is below this")
-      .type_name("DEG")
-      .shows_default()
-      .check(real_number(0, 70.5));
+  add_motion_options(command, *line);
+  add_repair_options(command, *line);
   command.group("Fields");
   command
       .option("--transfer", line->transfer,
               "How a field gets over a repair: NAME:linear (of vertices), NAME:inherit, NAME:conserve or "
               "NAME:conserve:DENSITY (of cells). Others: linear, and inherited")
       .type_name("NAME:HOW");
-  command.group("Motion");
-  command
-      .option("--on-inversion", line->on_inversion,
-              "A move that inverts cells: repair (after it), substeps (in safe parts), refuse")
-      .type_name("WHAT")
-      .shows_default()
-      .one_of({"repair", "substeps", "refuse"});
-  command
-      .option("--motion", line->motion,
-              "given: of every vertex; laplace, elastic: of the boundary, which the others follow")
-      .type_name("WHAT")
-      .shows_default()
-      .one_of({"given", "laplace", "elastic"});
-  command.group("Repair");
-  command.option("--surface", line->surface, "What a repair may do to the surface: frozen, flat, free")
-      .type_name("MODE")
-      .shows_default()
-      .one_of({"frozen", "flat", "free"});
-  command.option("--time-limit", line->time_limit, "Seconds of each repair")
-      .type_name("S")
-      .shows_default("none")
-      .check(positive_number());
   add_format_options(command, common, true, true);
   add_split_option(command, common);
   add_write_options(command, line->write);
