@@ -139,6 +139,14 @@ void look_for_faults(const TetMesh& mesh, const Survey& found, par::Policy polic
   result.unfillable_faces = unfillable_faces(mesh, result.invalid_cells, result.folded_faces, policy);
 }
 
+/// Of the mesh as it ended, beside what it was.
+void add_statistics(const TetMesh& mesh, const ImproveOptions& options, const Strategy& strategy,
+                    const Findings& findings, Result& result) {
+  result.after = result.changed ? statistics(mesh, options.policy) : result.before;
+  explain(mesh, options, strategy, findings.max_cells_met, result);
+  for (const std::uint32_t size : star_sizes(mesh)) result.n_large_stars += size > Star::kCapacity ? 1 : 0;
+}
+
 }  // namespace
 
 Result improve(TetMesh& mesh, const ImproveOptions& options) {
@@ -196,11 +204,7 @@ Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) 
   result.goal_reached = known_to_meet || meets_goal(found);
   result.stop = reason_to_stop(control, options, result.goal_reached);
   result.seconds = control.seconds();
-  if (options.statistics) {
-    result.after = result.changed ? statistics(mesh, options.policy) : result.before;
-    explain(mesh, options, strategy, findings.max_cells_met, result);
-    for (const std::uint32_t size : star_sizes(mesh)) result.n_large_stars += size > Star::kCapacity ? 1 : 0;
-  }
+  if (options.statistics) add_statistics(mesh, options, strategy, findings, result);
   return result;
 }
 

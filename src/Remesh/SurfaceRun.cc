@@ -13,7 +13,8 @@
 namespace hfr {
 namespace {
 
-/// Degrees that planes which are flat to rounding may turn by.
+/// What rounding leaves of a proof, no tuning: degrees by which planes that are flat to rounding may turn. In
+/// flat mode a wedge that is negative by more than this stays negative.
 constexpr double kPlanar = 1e-6;
 
 /// What the boundary encloses; interfaces take no part.
