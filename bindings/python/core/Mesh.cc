@@ -306,6 +306,43 @@ void bind_queries(nb::class_<Mesh>& type) {
           "c"_a, "Whether a face of the cell lies on the boundary.");
 }
 
+void bind_facts(nb::class_<Mesh>& type) {
+  type.def_prop_ro(
+          "flipped", [](const Mesh& m) { return m.build.flipped; },
+          "Whether the cells came the other way round, all of them, and were turned as a whole.")
+      .def_prop_ro(
+          "reoriented", [](const Mesh& m) { return handle_array(m.build.reoriented); },
+          "(k,) int64: cells whose order contradicted their neighbours' and was turned.", kOwned)
+      .def_prop_ro(
+          "notes", [](const Mesh& m) { return m.notes; },
+          "One line for each thing that was skipped, or could not be kept, while the mesh was made.")
+      .def_prop_ro(
+          "hash", [](const Mesh& m) { return io::hash_text(io::mesh_hash(m.tets)); },
+          "16 hexadecimal digits of coordinates, cells, regions and labels: what the tool prints.")
+      .def(
+          "copy", [](const Mesh& m) { return Mesh(m); }, "A mesh of its own with all that hangs on this one.")
+      .def("__repr__", [](const Mesh& m) {
+        return "<hfremesh.Mesh: " + std::to_string(m.tets.n_vertices()) + " vertices, " +
+               std::to_string(m.tets.n_cells()) + " cells>";
+      });
+}
+
+void bind_structure(nb::module_& module) {
+  module.def(
+      "structure",
+      [](const Mesh& m, int threads) {
+        const par::Policy policy = policy_of(threads);
+        CheckResult found;
+        {
+          nb::gil_scoped_release others_run;
+          found = check(m.tets, {.policy = policy});
+        }
+        return nb::make_tuple(std::string(rule_name(found.rule)), found.message, handle_array(found.vertices),
+                              handle_array(found.cells));
+      },
+      "mesh"_a, "threads"_a = 0, "The first rule that the mesh breaks: its name, a line, vertices, cells.");
+}
+
 }  // namespace
 
 par::Policy policy_of(int threads) {
@@ -355,37 +392,8 @@ void bind_mesh(nb::module_& module) {
                    "names: dict[tuple[int, int], str] | None = None, threads: int = 0) -> None"));
   bind_arrays(type);
   bind_queries(type);
-  type.def_prop_ro(
-          "flipped", [](const Mesh& m) { return m.build.flipped; },
-          "Whether the cells came the other way round, all of them, and were turned as a whole.")
-      .def_prop_ro(
-          "reoriented", [](const Mesh& m) { return handle_array(m.build.reoriented); },
-          "(k,) int64: cells whose order contradicted their neighbours' and was turned.", kOwned)
-      .def_prop_ro(
-          "notes", [](const Mesh& m) { return m.notes; },
-          "One line for each thing that was skipped, or could not be kept, while the mesh was made.")
-      .def_prop_ro(
-          "hash", [](const Mesh& m) { return io::hash_text(io::mesh_hash(m.tets)); },
-          "16 hexadecimal digits of coordinates, cells, regions and labels: what the tool prints.")
-      .def(
-          "copy", [](const Mesh& m) { return Mesh(m); }, "A mesh of its own with all that hangs on this one.")
-      .def("__repr__", [](const Mesh& m) {
-        return "<hfremesh.Mesh: " + std::to_string(m.tets.n_vertices()) + " vertices, " +
-               std::to_string(m.tets.n_cells()) + " cells>";
-      });
-  module.def(
-      "structure",
-      [](const Mesh& m, int threads) {
-        const par::Policy policy = policy_of(threads);
-        CheckResult found;
-        {
-          nb::gil_scoped_release others_run;
-          found = check(m.tets, {.policy = policy});
-        }
-        return nb::make_tuple(std::string(rule_name(found.rule)), found.message, handle_array(found.vertices),
-                              handle_array(found.cells));
-      },
-      "mesh"_a, "threads"_a = 0, "The first rule that the mesh breaks: its name, a line, vertices, cells.");
+  bind_facts(type);
+  bind_structure(module);
 }
 
 }  // namespace hfr::python
