@@ -79,14 +79,14 @@ std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<E
   return facet;
 }
 
-/// Edges that only turn, in connected sets that fit into a box of a few times the distance that is allowed,
-/// are noise of the input and no features.
+/// Edges that are features by their angle alone, in connected sets that fit into a box of a few times the
+/// distance that is allowed, are noise of the input: they are no features any more.
 void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
                 const std::vector<std::uint8_t>& only_turns, double distance) {
   constexpr double kSmall = 3;
   struct Set {
     Vec3 low, high;
-    bool keeps = false;  // has an edge that is one for another reason
+    bool keeps = false;  // the set has an edge that is a feature for another reason
   };
   par::DisjointSets<Index> connected(points.size());
   for (const Edge& e : edges)
@@ -114,9 +114,10 @@ void drop_small(std::span<const Vec3> points, std::vector<Edge>& edges,
   }
 }
 
-/// Edges that only turn, and across which the surface turns by less when what lies within `reach` is taken
-/// together, are noise as well: on each side the faces are followed as far as that, across no other feature.
-/// A sharp edge keeps its two sides apart; one of a bumpy surface has the same surface on both sides.
+/// Edges that are features by their angle alone, and across which the surface turns by less when what lies
+/// within `reach` is taken together, are noise as well: on each side the faces are followed as far as that,
+/// across no other feature. A sharp edge keeps its two sides apart; one of a bumpy surface has the same
+/// surface on both sides.
 class Regions {
  public:
   Regions(const Arrays& arrays, std::vector<Edge>& edges, const std::vector<std::uint8_t>& only_turns,
@@ -134,7 +135,7 @@ class Regions {
     }
   }
   void drop_noise() {
-    constexpr int kPasses = 4;  // a feature that is gone lets through to others
+    constexpr int kPasses = 4;  // across a feature that one pass drops, the next one follows the faces
     for (int pass = 0; pass < kPasses; ++pass) {
       std::vector<std::uint32_t> noise;
       for (std::uint32_t i = 0; i < edges_.size(); ++i)
@@ -189,10 +190,10 @@ class Regions {
 
 struct Incidence {
   std::uint32_t n_features = 0;
-  std::array<VertexHandle, 2> along;  // other ends of the first two
+  std::array<VertexHandle, 2> along;  // other ends of the first two features here
   std::uint32_t face = 0;             // some face of the vertex
   bool locked = false;
-  bool crosses = false;                   // features of other than two faces, or more of them than two
+  bool crosses = false;                   // a feature here has other than two faces, or there are over two
   std::array<std::uint32_t, 4> beside{};  // flat mode: the facets beside the first two features
 };
 
@@ -256,7 +257,8 @@ void add_fixed(Arrays& arrays, const SurfaceOptions& options) {
     if (v.idx() < arrays.points.size()) arrays.locked_vertices.push_back(v);
 }
 
-/// Labelled faces inside a region are no part of the surface; they hold what they meet.
+/// Labelled faces inside a region are no part of the surface, but the vertices and edges they share with it
+/// are locked.
 void lock_labelled_inside(const TetMesh& mesh, Arrays& arrays) {
   std::vector<std::uint8_t> on_surface(mesh.n_vertices(), 0);
   for (const auto& f : arrays.faces)
@@ -304,7 +306,7 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     arrays.locked.push_back(arrays.fixed.back() || fixed.is_periodic(label) ? 1 : 0);
   }
   lock_labelled_inside(mesh, arrays);
-  for (const auto& entry : mesh.labels().edges.entries()) {  // those inside, too
+  for (const auto& entry : mesh.labels().edges.entries()) {  // edges inside the volume, too
     arrays.locked_edges.push_back(entry.vertices);
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
   }
@@ -312,7 +314,7 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     arrays.locked_edges.push_back(entry.vertices);
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
   }
-  for (const auto& entry : mesh.locks().faces.entries())  // those inside, too
+  for (const auto& entry : mesh.locks().faces.entries())  // faces inside the volume, too
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
   for (VertexHandle v : mesh.vertices())
     if (mesh.is_fixed(v)) arrays.locked_vertices.push_back(v);
@@ -404,7 +406,7 @@ std::vector<Incidence> incidences(const Arrays& arrays, std::vector<std::uint8_t
 }
 
 /// Sets `locked` and `feature` of the edges by facet or, without facets, by the angle between the faces.
-/// Returns 1 for edges that are features, if at all, by that alone.
+/// Returns 1 for edges that are features, if at all, by their angle alone.
 std::vector<std::uint8_t> mark_edges(const Arrays& arrays, std::span<const Vec3> normal, double cosine,
                                      Features& found) {
   std::vector<std::uint8_t> only_turns;
@@ -420,7 +422,7 @@ std::vector<std::uint8_t> mark_edges(const Arrays& arrays, std::span<const Vec3>
   return only_turns;
 }
 
-/// The features at each vertex; with facets also those beside them.
+/// Counts the features at each vertex; in flat mode notes the facets beside them as well.
 void count_features(const Features& found, std::span<Incidence> at) {
   for (const Edge& e : found.edges) {
     if (!e.feature) continue;

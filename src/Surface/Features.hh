@@ -38,7 +38,7 @@ struct Edge {
   std::array<std::uint32_t, 2> f{};
   std::array<std::uint8_t, 2> k{};
   bool manifold = false;  ///< exactly two faces, seen from the same side
-  bool feature = false;   ///< that no vertex may leave and no swap may take away
+  bool feature = false;   ///< an edge that no vertex may leave and no swap may take away
   bool locked = false;    ///< a feature that the user wants as it is
 };
 
@@ -69,6 +69,12 @@ inline Vec3 scaled_normal(const Triangle& t) { return cross(t[1] - t[0], t[2] - 
 inline Vec3 unit(Vec3 n) {
   const double length = norm(n);
   return length > 0 ? Vec3{n.x / length, n.y / length, n.z / length} : Vec3{};
+}
+/// Sum of the area vectors at length 1; zero where they cancel out.
+inline Vec3 area_normal(std::span<const Triangle> triangles) {
+  Vec3 sum;
+  for (const Triangle& t : triangles) sum = sum + scaled_normal(t);
+  return unit(sum);
 }
 inline Triangle corners(std::span<const Vec3> points, const std::array<VertexHandle, 3>& f) {
   return {points[f[0].idx()], points[f[1].idx()], points[f[2].idx()]};

@@ -24,10 +24,10 @@ std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> c
                               const SurfaceOptions& options, par::Policy policy = {});
 
 /// For each cell, 1 when the features that options.mode keeps are proven to hold it below `degrees`: the two
-/// faces at one of its feature edges leave less than that inside, and go on to. In flat mode they do so at
-/// every feature, in free mode, where facets may tilt, only where the faces themselves stay: both are fixed,
-/// or have no vertex that may move and only feature edges. The features are those of the mesh as it is. All 0
-/// in frozen mode.
+/// faces at one of its feature edges leave less than that inside, and will in every mesh that keeps the
+/// features. In flat mode this is so at every feature, in free mode, where facets may tilt, only where the
+/// faces themselves stay: both are fixed, or have no vertex that may move and only feature edges. The
+/// features are those of the mesh as it is. All 0 in frozen mode.
 std::vector<std::uint8_t> held_by_features(const TetMesh& mesh, std::span<const CellHandle> cells,
                                            double degrees, const SurfaceOptions& options,
                                            par::Policy policy = {});

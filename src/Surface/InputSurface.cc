@@ -102,7 +102,7 @@ struct InputSurface::Impl {
   std::vector<std::array<Vec3, 3>> triangles;
   std::vector<std::array<Vec3, 2>> segments;
   std::vector<Vec3> normals;
-  std::vector<NearTriangle> near;  // the triangles once more
+  std::vector<NearTriangle> near;  // the triangles, prepared for is_within()
   Tree tree;
 
   template <class Items>

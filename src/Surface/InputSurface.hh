@@ -38,8 +38,8 @@ class InputSurface {
   /// count.
   Hit nearest_within(Vec3 x, double limit) const;
   Hit nearest_within(Vec3 x, double limit, Vec3 side) const;
-  /// Both questions with items that are guessed: quick where one of these is the answer or little further. Of
-  /// items as near as a guess, the guess counts.
+  /// nearest_within() and nearest() with guesses, items that may be the answer: quick where one of them is,
+  /// or is little further. Of items as near as a guess, the guess counts.
   Hit nearest_within(Vec3 x, double limit, Vec3 side, std::span<const std::uint32_t> guesses) const;
   Hit nearest(Vec3 x, std::size_t guess) const;
   /// Is this item no further from x than `limit`? Most often quicker than its distance.

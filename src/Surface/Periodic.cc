@@ -54,7 +54,7 @@ std::string names(const Patch& a, const Patch& b) {
          " do not match: ";
 }
 
-/// For each vertex of a, in order, the one of b.
+/// For each vertex of patch a, in order, its match on patch b.
 std::vector<VertexHandle> match(const Arrays& arrays, const Patch& a, const Patch& b, double tolerance) {
   HFR_REQUIRE(a.vertices.size() == b.vertices.size() && a.faces.size() == b.faces.size(),
               names(a, b) + std::to_string(a.vertices.size()) + " vertices and " +
@@ -78,7 +78,7 @@ std::vector<VertexHandle> match(const Arrays& arrays, const Patch& a, const Patc
   }
   std::set<std::array<VertexHandle, 3>> faces;
   for (const auto& f : b.faces) faces.insert(CyclicOrder::key(f));
-  for (const auto& f : a.faces) {  // outward there is inward here
+  for (const auto& f : a.faces) {  // whose match on b is seen from its other side
     const std::array<VertexHandle, 3> opposite = {to.at(f[0]), to.at(f[2]), to.at(f[1])};
     HFR_REQUIRE(faces.contains(CyclicOrder::key(opposite)),
                 names(a, b) + "the face of vertices " + std::to_string(f[0].idx()) + " " +

@@ -9,6 +9,7 @@
 #include "Operators/Metrics.hh"
 #include "Operators/Smooth.hh"
 #include "Quality/Damage.hh"
+#include "Surface/Features.hh"
 #include "Surface/TangentSearch.hh"
 
 namespace hfr {
@@ -29,7 +30,7 @@ Triangle with(Triangle t, const std::array<VertexHandle, 3>& f, VertexHandle v, 
   return t;
 }
 
-/// Nothing where a star is too large or has an interface, or two stars share a cell.
+/// The members of an orbit. Nothing where a star is too large or has an interface, or two stars share a cell.
 std::optional<std::vector<Member>> gather(const TetMesh& mesh, std::span<const VertexHandle> orbit) {
   std::vector<Member> members;
   std::vector<CellHandle> cells;
@@ -57,12 +58,134 @@ std::optional<std::vector<Member>> gather(const TetMesh& mesh, std::span<const V
   return members;
 }
 
-Vec3 area_normal(const Member& member) {
-  Vec3 sum;
-  for (const Triangle& t : member.removed) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
-  const double length = norm(sum);  // by division: along an axis it is that axis to the last bit
-  return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : sum;
-}
+/// Search for the step of an orbit whose members are known.
+template <class Metric>
+class OrbitSearch {
+ public:
+  using Plan = typename PeriodicSmooth<Metric>::Plan;
+
+  OrbitSearch(const TetMesh& mesh, const PeriodicSmooth<Metric>& op, const std::vector<Member>& members)
+      : mesh_(mesh), op_(op), members_(members), origin_(members.front().place) {
+    for (const Member& member : members) {
+      old_worst_ = std::min(old_worst_, worst_of(member.link, op.quality));
+      n_links_ += member.link.size();
+      for (HalfFaceHandle h : member.link) {
+        n_invalid_ += op.quality[cell_of(h).idx()] > 0 ? 0 : 1;
+        damage_.add(mesh, cell_of(h));
+        for (VertexHandle w : mesh.halfface_vertices(h)) length_ += norm(mesh.point(w) - member.place);
+      }
+    }
+    worst_now_ = old_worst_;
+  }
+
+  /// The best step along `axis` or, where the vertices are on no curve, normal to it.
+  void look_for_step(Vec3 axis, bool on_curve) {
+    if (kMeasuresAngles<Metric> && old_worst_ > 0) climb(axis, on_curve);
+    if (step_ == Vec3{}) try_places(axis, on_curve);
+  }
+
+  /// The step that was found or, where the shape or other cells forbid it, one half or a quarter as long.
+  std::optional<Plan> plan() const {
+    Vec3 step = step_;
+    for (int i = 0; i < 3 && step != Vec3{}; ++i, step = 0.5 * step) {
+      Plan plan;
+      plan.old_worst = old_worst_;
+      plan.targets = targets_of(step);
+      if (plan.targets.empty()) continue;
+      plan.new_worst = worst_at(plan.targets, old_worst_);
+      if (plan.new_worst > old_worst_ && may_be_made(plan.targets)) return plan;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  /// Each vertex is put back onto its own plane or line. Where that makes their steps differ, there is none.
+  std::vector<Vec3> targets_of(Vec3 step) const {
+    const double tolerance = 1e-12 * length_;
+    std::vector<Vec3> targets;
+    for (const Member& member : members_)
+      targets.push_back(op_.surface->project(member.v, member.place + step));
+    for (std::size_t i = 1; i < targets.size(); ++i)
+      if (norm((targets[i] - members_[i].place) - (targets[0] - origin_)) > tolerance) targets.clear();
+    return targets;
+  }
+
+  double worst_at(const std::vector<Vec3>& targets, double at_least) const {
+    double worst = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < targets.size() && worst > at_least; ++i)
+      worst = std::min(worst,
+                       worst_with(mesh_, members_[i].v, members_[i].link, targets[i], op_.metric, at_least));
+    return worst;
+  }
+
+  bool consider(Vec3 wanted) {
+    const std::vector<Vec3> targets = targets_of(wanted);
+    if (targets.empty()) return false;
+    const double worst = worst_at(targets, worst_now_);
+    if (!(worst > worst_now_)) return false;
+    worst_now_ = worst;
+    step_ = targets[0] - origin_;
+    return true;
+  }
+
+  void climb(Vec3 axis, bool on_curve) {
+    MaxMinForm form(origin_, MaxMinForm::kAnglesOf<Metric>);
+    form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
+    for (const Member& member : members_) {
+      const Vec3 back = origin_ - member.place;
+      for (HalfFaceHandle h : member.link) {
+        const auto f = mesh_.halfface_vertices(h);
+        form.add(mesh_.point(f[0]) + back, mesh_.point(f[1]) + back, mesh_.point(f[2]) + back);
+      }
+    }
+    consider(form.ascend(origin_, op_.iterations) - origin_);
+  }
+
+  void try_places(Vec3 axis, bool on_curve) {
+    // Directions along the axes, so that coordinates that have to stay do so to the last bit.
+    std::array<Vec3, 3> ways = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+    for (Vec3& way : ways) way = on_curve ? dot(way, axis) * axis : way - dot(way, axis) * axis;
+    const auto steps_at = [&](double r) {
+      FixedVector<Vec3, 6> steps;
+      for (const Vec3 way : ways)
+        for (const double s : {1.0, -1.0}) steps.push_back(step_ + (s * r) * way);
+      return steps;
+    };
+    const double radius = 0.5 * length_ / (3.0 * static_cast<double>(n_links_));
+    surface::search_places_by_halving(radius, op_.halvings, steps_at,
+                                      [&](Vec3 wanted) { return consider(wanted); });
+  }
+
+  bool may_be_made(const std::vector<Vec3>& targets) const {
+    std::ptrdiff_t n_left = 0;
+    Damage left;
+    for (std::size_t k = 0; k < targets.size(); ++k) {
+      const Member& member = members_[k];
+      for (HalfFaceHandle h : member.link) {
+        n_left += quality_with(mesh_, cell_of(h), member.v, targets[k], op_.metric) > 0 ? 0 : 1;
+        left.add(mesh_, cell_of(h), member.v, targets[k]);
+      }
+      std::vector<Triangle> created;
+      for (std::size_t f = 0; f < member.faces.size(); ++f)
+        created.push_back(with(member.removed[f], member.faces[f], member.v, targets[k]));
+      if (!op_.surface->keeps_shape(member.faces, member.removed, created)) return false;
+    }
+    return n_left <= n_invalid_ && damage_.may_become(left, op_.floor);
+  }
+
+  const TetMesh& mesh_;
+  const PeriodicSmooth<Metric>& op_;
+  const std::vector<Member>& members_;
+  Vec3 origin_;  // of the first member
+  double old_worst_ = std::numeric_limits<double>::infinity();
+  double worst_now_ = 0;  // with step_
+  Vec3 step_;
+  double length_ =
+      0;  // of all edges at the members, sides of their links counted as often as they have faces
+  std::size_t n_links_ = 0;
+  std::ptrdiff_t n_invalid_ = 0;
+  Damage damage_;
+};
 
 }  // namespace
 
@@ -74,100 +197,13 @@ auto PeriodicSmooth<Metric>::evaluate(const TetMesh& mesh, std::span<const Verte
   if (!on_curve && motion_constraint.kind != SurfaceKind::kFacet) return std::nullopt;
   const auto members = gather(mesh, orbit);
   if (!members) return std::nullopt;
-  const Vec3 origin = members->front().place;
   const bool in_free = surface->options().mode == SurfaceMode::kFree;
-  const Vec3 axis = in_free && !on_curve ? area_normal(members->front()) : motion_constraint.axis;
+  const Vec3 axis =
+      in_free && !on_curve ? surface::area_normal(members->front().removed) : motion_constraint.axis;
   if (axis == Vec3{}) return std::nullopt;
-
-  std::ptrdiff_t n_invalid = 0;
-  Damage damage;
-  Plan plan;
-  plan.old_worst = std::numeric_limits<double>::infinity();
-  double length = 0;
-  std::size_t n_links = 0;
-  for (const Member& member : *members) {
-    plan.old_worst = std::min(plan.old_worst, worst_of(member.link, quality));
-    n_links += member.link.size();
-    for (HalfFaceHandle h : member.link) {
-      n_invalid += quality[cell_of(h).idx()] > 0 ? 0 : 1;
-      damage.add(mesh, cell_of(h));
-      for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - member.place);
-    }
-  }
-  // Every vertex goes to its own plane or line; a step that these part is none of the orbit.
-  const double tolerance = 1e-12 * length;
-  const auto targets_of = [&](Vec3 step) {
-    std::vector<Vec3> targets;
-    for (const Member& member : *members) targets.push_back(surface->project(member.v, member.place + step));
-    for (std::size_t i = 1; i < targets.size(); ++i)
-      if (norm((targets[i] - (*members)[i].place) - (targets[0] - origin)) > tolerance) targets.clear();
-    return targets;
-  };
-  const auto worst_at = [&](const std::vector<Vec3>& targets, double at_least) {
-    double worst = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < targets.size() && worst > at_least; ++i)
-      worst = std::min(worst,
-                       worst_with(mesh, (*members)[i].v, (*members)[i].link, targets[i], metric, at_least));
-    return worst;
-  };
-  double worst_now = plan.old_worst;
-  Vec3 step;
-  const auto consider = [&](Vec3 wanted) {
-    const std::vector<Vec3> targets = targets_of(wanted);
-    if (targets.empty()) return false;
-    const double worst = worst_at(targets, worst_now);
-    if (!(worst > worst_now)) return false;
-    worst_now = worst;
-    step = targets[0] - origin;
-    return true;
-  };
-  if (kMeasuresAngles<Metric> && plan.old_worst > 0) {
-    MaxMinForm form(origin, MaxMinForm::kAnglesOf<Metric>);
-    form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
-    for (const Member& member : *members) {
-      const Vec3 back = origin - member.place;
-      for (HalfFaceHandle h : member.link) {
-        const auto f = mesh.halfface_vertices(h);
-        form.add(mesh.point(f[0]) + back, mesh.point(f[1]) + back, mesh.point(f[2]) + back);
-      }
-    }
-    consider(form.ascend(origin, iterations) - origin);
-  }
-  if (step == Vec3{}) {
-    // Directions along the coordinates, so that those that have to stay do so to the last bit.
-    std::array<Vec3, 3> ways = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    for (Vec3& way : ways) way = on_curve ? dot(way, axis) * axis : way - dot(way, axis) * axis;
-    const auto steps_at = [&](double r) {
-      FixedVector<Vec3, 6> steps;
-      for (const Vec3 way : ways)
-        for (const double s : {1.0, -1.0}) steps.push_back(step + (s * r) * way);
-      return steps;
-    };
-    const double radius = 0.5 * length / (3.0 * static_cast<double>(n_links));
-    surface::search_places_by_halving(radius, halvings, steps_at, consider);
-  }
-  for (int i = 0; i < 3 && step != Vec3{}; ++i, step = 0.5 * step) {
-    plan.targets = targets_of(step);
-    if (plan.targets.empty()) continue;
-    plan.new_worst = worst_at(plan.targets, plan.old_worst);
-    if (!(plan.new_worst > plan.old_worst)) continue;
-    std::ptrdiff_t n_left = 0;
-    Damage left;
-    bool keeps = true;
-    for (std::size_t k = 0; k < plan.targets.size() && keeps; ++k) {
-      const Member& member = (*members)[k];
-      for (HalfFaceHandle h : member.link) {
-        n_left += quality_with(mesh, cell_of(h), member.v, plan.targets[k], metric) > 0 ? 0 : 1;
-        left.add(mesh, cell_of(h), member.v, plan.targets[k]);
-      }
-      std::vector<Triangle> created;
-      for (std::size_t f = 0; f < member.faces.size(); ++f)
-        created.push_back(with(member.removed[f], member.faces[f], member.v, plan.targets[k]));
-      keeps = surface->keeps_shape(member.faces, member.removed, created);
-    }
-    if (keeps && n_left <= n_invalid && damage.may_become(left, floor)) return plan;
-  }
-  return std::nullopt;
+  OrbitSearch<Metric> search(mesh, *this, *members);
+  search.look_for_step(axis, on_curve);
+  return search.plan();
 }
 
 HFR_INSTANTIATE_FOR_METRICS(PeriodicSmooth)

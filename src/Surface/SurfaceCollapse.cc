@@ -53,10 +53,10 @@ Scope cells_behind(const TetMesh& mesh, const Star& star) {
   return behind;
 }
 
-/// A vertex that has only one or two cells of the star may have none left that is created anew; the incident
-/// cell of such a vertex would point nowhere. So the cells behind those that belong to it come along. Which
-/// these are must not depend on the target: cells_behind(). No cells where they are too many, or of more than
-/// two regions.
+/// Gathers the cells that a collapse of v may write; none where they are too many, or of more than two
+/// regions. Besides the star: another vertex with only one or two cells in it may have none left that is
+/// created anew, and its incident cell would point nowhere, so the cells behind those come along. Which these
+/// are must not depend on the target: cells_behind().
 void gather_cluster(const TetMesh& mesh, VertexHandle v, Cluster& out) {
   out.cells.clear();
   out.n_first = 0;
@@ -191,7 +191,8 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   if (!gather_faces(mesh, v, star, faces)) return std::nullopt;
 
   double old_worst = std::numeric_limits<double>::infinity();
-  double floor = std::numeric_limits<double>::infinity();  // cells behind cannot get better
+  // The cells behind the star stay as they are: no target does better than the worst of them.
+  double floor = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     old_worst = std::min(old_worst, quality[cells[i].idx()]);
     if (cluster.corner[i] == 4) floor = std::min(floor, quality[cells[i].idx()]);

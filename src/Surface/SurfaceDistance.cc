@@ -10,7 +10,7 @@
 namespace hfr {
 namespace {
 
-constexpr double kMaxCuts = 64;  // of one triangle's edges
+constexpr double kMaxCuts = 64;  // pieces, at most, into which the points cut an edge of a triangle
 
 /// The largest distance of the points spread over some triangles. A point that is no further from some
 /// triangle than another point is from the whole surface cannot be the one: the triangles that were near to

@@ -8,10 +8,14 @@
 namespace hfr::surface {
 namespace {
 
-constexpr double kAgainst = -0.2;  // cosine
-constexpr double kOneSided = 0.2;  // of the areas, that do not cancel out
-constexpr double kOneLayer = 1.6;  // times the sum, that the areas come to at most
-constexpr double kCuts = 3;        // of an edge that is as long as the reach
+/// Cosine of the least angle to the layers' sum at which a triangle lies against them.
+constexpr double kAgainst = -0.2;
+/// The layers look one way where their area vectors add up to more than this share of their areas.
+constexpr double kOneSided = 0.2;
+/// There is one layer where the areas come to no more than this times the length of their vectors' sum.
+constexpr double kOneLayer = 1.6;
+/// Samples along an edge that is as long as the reach, and along any edge at most.
+constexpr double kCuts = 3;
 constexpr double kMostCuts = 24;
 
 Vec3 middle(const Triangle& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }

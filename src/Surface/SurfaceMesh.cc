@@ -142,7 +142,8 @@ void SurfaceMesh::Impl::take_shape(const Arrays& arrays, const surface::Features
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
     const Triangle& t = triangles[i];
     faces[i].beneath = static_cast<std::uint32_t>(i);
-    surface::all_inner_points(t, cuts_of(t), [&](Vec3 x) {  // edges and corners are shared
+    // Inner points alone: those of edges and corners would count for several faces.
+    surface::all_inner_points(t, cuts_of(t), [&](Vec3 x) {
       faces[i].samples[0].points.push_back(x);
       return true;
     });

@@ -142,8 +142,9 @@ class SurfaceMesh {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Largest distance of points of one surface from another, and the other way round, by points spread over all
-/// triangles at most `spacing` apart. Independent of what the operators keep account of.
+/// Largest distance of the points of one surface from another (`there`), and the other way round (`back`).
+/// The points are spread over all triangles, at most `spacing` apart. Independent of what the operators keep
+/// account of.
 struct SurfaceDistance {
   double there = 0, back = 0;
   double hausdorff() const { return there > back ? there : back; }

@@ -34,7 +34,8 @@ void SurfaceMesh::Impl::account(const std::vector<OmFace>& some, double sign) {
 
 void SurfaceMesh::Impl::share_samples(const std::vector<OmFace>& among,
                                       std::array<std::vector<Vec3>, 2> homeless) {
-  constexpr double kNearEnough = 0.25;  // of what is allowed
+  /// Share of the distance allowed: a sample this near to its face stays with it.
+  constexpr double kNearEnough = 0.25;
   const double enough = kNearEnough * hausdorff;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> beneath;

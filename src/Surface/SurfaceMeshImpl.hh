@@ -89,7 +89,7 @@ struct FaceRecord {
   bool interface = false;
   bool inward = false;                   // its label names it as seen from inside
   std::array<std::uint32_t, 2> sides{};  // places of its regions in Impl::regions; the second of interfaces
-  HalfFaceHandle inside;                 // where it was when last asked for
+  HalfFaceHandle inside;                 // of the volume, when last looked up
   std::uint32_t facet = 0;               // flat mode
   std::array<Samples, 2> samples;        // free mode: those `spacing` apart, and those between them
   std::uint32_t beneath = 0;             // free mode: a triangle of the input that lies about there
@@ -118,10 +118,10 @@ struct SurfaceMesh::Impl {
   std::vector<MotionConstraint> motion_constraint;
   std::shared_ptr<const InputSurface> shape, curves;  // free mode
   std::vector<std::array<VertexHandle, 3>> gone;      // labelled faces that are no more
-  std::set<int> fresh;                                // labelled faces with other vertices
-  Vec3 origin;                                        // from which volumes are measured
-  double six_volume = 0, area = 0;                    // of the input
-  double six_gain = 0;                                // of the volume since
+  std::set<int> fresh;              // numbers of labelled faces whose vertices are others now
+  Vec3 origin;                      // from which volumes are measured
+  double six_volume = 0, area = 0;  // of the input
+  double six_gain = 0;              // six times what the volume has gained since
   struct Region {
     double six_volume = 0, six_gain = 0;
   };
@@ -130,7 +130,7 @@ struct SurfaceMesh::Impl {
   std::vector<std::vector<VertexHandle>> orbits;
   std::vector<std::uint32_t> orbit_of;  // per vertex; empty without orbits
   bool alone = false;                   // there are no cells
-  bool is_open = false;                 // and the surface encloses nothing
+  bool is_open = false;                 // a surface without cells that encloses nothing
 
   bool flat() const { return options.mode != SurfaceMode::kFree; }
 
@@ -211,7 +211,7 @@ struct SurfaceMesh::Impl {
                    const Guesses& beneath, double distance) const;
 
   OmVertex add_vertex(VertexHandle v, Vec3 p);
-  /// Before the vertices of a face change.
+  /// To be called before the vertices of a face change: its label has to go from them (write_labels()).
   void note_gone(OmFace f) {
     if (record(f).patch != 0) gone.push_back(vertices(f));
   }

@@ -13,18 +13,34 @@ using namespace surface;  // what SurfaceMesh is made of
 constexpr double kDegree = std::numbers::pi / 180.0;
 /// Share of the distance allowed by which samples are judged, for the sake of what lies between them.
 constexpr double kBetween = 0.7;
-/// The same share for the further points in between, which are nearer to one another.
+/// Share of the distance allowed by which the further points between samples are judged, which are nearer to
+/// one another.
 constexpr double kCloseBetween = 0.85;
 /// A length below this share of a distance is smaller whatever rounding did.
 constexpr double kSurely = 1 - 1e-9;
 /// Cosine of the largest angle that the normal of a triangle as small as noise may have with the input's.
 constexpr double kNotBack = 0.1;
-/// Share of the volume beyond which a change in the same direction is refused.
+/// Share by which the whole volume may have changed before a change in the same direction is refused.
 constexpr double kVolume = 5e-4;
-/// Share of a region's volume beyond which such a change is refused; no single change may be larger, either.
+/// The same share for the volume of one region; no single change may be larger, either.
 constexpr double kRegionVolume = 9e-4;
 /// Regions whose volume one change may touch; one that would touch more is refused.
 constexpr std::size_t kMostRegions = 16;
+
+bool have_area(std::span<const Triangle> triangles) {
+  return std::none_of(triangles.begin(), triangles.end(),
+                      [](const Triangle& t) { return unit(scaled_normal(t)) == Vec3{}; });
+}
+
+/// True when each created triangle looks about the same way as some removed one.
+bool look_the_same_way(std::span<const Triangle> created, std::span<const Triangle> removed) {
+  constexpr double kSameSide = 0.5;
+  return std::all_of(created.begin(), created.end(), [&](const Triangle& t) {
+    const Vec3 n = unit(scaled_normal(t));
+    return std::any_of(removed.begin(), removed.end(),
+                       [&](const Triangle& d) { return dot(n, unit(scaled_normal(d))) > kSameSide; });
+  });
+}
 
 /// The square of the distance from the nearest of the triangles.
 double distance2_of(Vec3 x, std::span<const Triangle> triangles) {
@@ -142,24 +158,14 @@ bool SurfaceMesh::Impl::turn_little(std::span<const Triangle> created, std::span
 
 bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_removed,
                               std::span<const Triangle> removed, std::span<const Triangle> created) const {
-  constexpr double kSameSide = 0.5;
-  for (const Triangle& t : created) {
-    const Vec3 n = unit(scaled_normal(t));
-    if (n == Vec3{}) return false;
-    if (!impl_->flat()) continue;
-    const bool found = std::any_of(removed.begin(), removed.end(), [&](const Triangle& d) {
-      return dot(n, unit(scaled_normal(d))) > kSameSide;
-    });
-    if (!found) return false;
-  }
-  if (impl_->flat()) return true;
-
+  if (!have_area(created)) return false;
+  if (impl_->flat()) return look_the_same_way(created, removed);
   if (!impl_->keeps_regions(faces_removed, removed, created)) return false;
 
   // What was beneath the old triangles is likely to be beneath the new ones.
   Impl::Guesses beneath;
   const double h = kBetween * impl_->hausdorff;
-  std::size_t last = 0;                        // the triangle that was near
+  std::size_t last = 0;                        // the created triangle that the sample before was near to
   thread_local std::vector<NearTriangle> now;  // of this thread, so that it is allocated once
   now.clear();
   for (const Triangle& t : created) now.emplace_back(t);

@@ -7,6 +7,7 @@
 #include "Operators/MaxMinForm.hh"
 #include "Operators/Metrics.hh"
 #include "Operators/StarForm.hh"
+#include "Surface/Features.hh"
 #include "Surface/TangentSearch.hh"
 
 namespace hfr {
@@ -58,13 +59,23 @@ struct Patch {
       return dot(n, m) >= kLevel * norm(m);
     });
   }
-  Vec3 normal() const {
-    Vec3 sum;
-    for (const Triangle& t : removed) sum = sum + cross(t[1] - t[0], t[2] - t[0]);
-    const double length = norm(sum);  // by division: along an axis it is that axis to the last bit
-    return length > 0 ? Vec3{sum.x / length, sum.y / length, sum.z / length} : sum;
-  }
+  Vec3 normal() const { return surface::area_normal(removed); }
 };
+
+/// Half the mean length of the edges from `origin` to the vertices of the link.
+double half_mean_edge(const TetMesh& mesh, Vec3 origin, std::span<const HalfFaceHandle> link) {
+  double length = 0;
+  for (HalfFaceHandle h : link)
+    for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - origin);
+  return 0.5 * length / (3.0 * static_cast<double>(link.size()));
+}
+
+void add_star(const TetMesh& mesh, std::span<const HalfFaceHandle> link, MaxMinForm& form) {
+  for (HalfFaceHandle h : link) {
+    const auto f = mesh.halfface_vertices(h);
+    form.add(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]));
+  }
+}
 
 /// True when none of up to StarForm::kTrials places, which for_places(ask) tells relative to the vertex, has
 /// a star whose worst cell is better than `floor` > 0, beyond what rounding in another formula may do. All
@@ -125,23 +136,16 @@ std::optional<Move> SurfaceSearch::operator()(const TetMesh& mesh, VertexHandle 
   if (kMeasuresAngles<Metric> && move.old_worst > 0) {
     MaxMinForm form(origin, MaxMinForm::kAnglesOf<Metric>);
     form.confine(on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis);
-    for (HalfFaceHandle h : link) {
-      const auto f = mesh.halfface_vertices(h);
-      form.add(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]));
-    }
+    add_star(mesh, link, form);
     consider(form.ascend(origin, iterations));
   }
   if (place == origin) {
-    double length = 0;
-    for (HalfFaceHandle h : link)
-      for (VertexHandle w : mesh.halfface_vertices(h)) length += norm(mesh.point(w) - origin);
-    const double radius = 0.5 * length / (3.0 * static_cast<double>(link.size()));
     Vec3 u = normal_to(axis);
     u = (1.0 / norm(u)) * u;  // unit() divides, which may give another last bit
     const TangentSteps steps = on_curve ? TangentSteps::on_line(axis) : TangentSteps::in_plane(axis, u);
     std::optional<StarForm> star;
     if (std::is_same_v<Metric, VolumeLength> && move.old_worst > 0) star.emplace(mesh, v, link);
-    search_by_halving(radius, halvings, [&](double r) {
+    search_by_halving(half_mean_edge(mesh, origin, link), halvings, [&](double r) {
       const Vec3 centre = place;
       const bool hopeless = star && all_fall_short(*star, worst_now, [&](auto&& ask) {
                               for (double near : {r, 0.5 * r})
@@ -171,8 +175,8 @@ template <class Metric>
 std::optional<Move> SurfaceOffset::operator()(const TetMesh& mesh, VertexHandle v,
                                               std::span<const HalfFaceHandle> link, const Metric& metric,
                                               std::span<const double> quality) const {
-  constexpr double kTrifle = 0.97;   // of a cell's decision value
-  constexpr double kFarAbove = 1.1;  // the worst
+  constexpr double kTrifle = 0.97;   // share of the worst decision value of a star that it has to keep
+  constexpr double kFarAbove = 1.1;  // times `worst`: a star above this may become a trifle worse
   if (surface->motion_constraint(v).kind != SurfaceKind::kFacet) return std::nullopt;
   Patch patch;
   if (!patch.gather(mesh, v, link) || patch.has_interface || patch.is_flat()) return std::nullopt;

@@ -26,7 +26,7 @@ using surface::SurfaceLayers;
 using surface::unit;
 
 constexpr int kRings = 6;  // rings of faces round folded ones that take part
-constexpr int kSight = 4;  // rings that are known to be about as wide as folds
+constexpr int kSight = 4;  // rings of faces by which it is told whether a face is folded
 /// Rings of faces that take part round all that a wide fold covers: one number after the other is tried,
 /// until the distance is small enough.
 constexpr std::array<int, 5> kRingsOfCovered = {2, 1, 3, 4, 6};

@@ -92,10 +92,10 @@ struct TriangleSweep::Star {
 struct TriangleSweep::Insertion {
   std::vector<VertexHandle> polygon;
   bool closed = true;
-  std::vector<Face> faces;                                 // that it is made of
+  std::vector<Face> faces;                                 // that the polygon is made of
   std::vector<std::array<VertexHandle, 2>> flips;          // edges across which it has grown, in order
   double worst = std::numeric_limits<double>::infinity();  // of the faces
-  Vec3 axis;                                               // that the new vertex stays normal to, or on
+  Vec3 axis;  // normal to the plane, or along the line, in which the new vertex stays
   bool on_line = false;
   Vec3 anchor, middle;
   double size = 0;

@@ -28,7 +28,8 @@ class TriangleSweep {
   std::size_t n_below() const;
   double worst() const;  ///< infinity without triangles
 
-  /// Each looks at clusters in which something has changed since it last did, and returns its changes.
+  /// Each operator looks at clusters in which something has changed since it last did, and returns the number
+  /// of its changes.
   std::size_t swap();
   std::size_t collapse();
   std::size_t smooth();
