@@ -5,7 +5,9 @@
 //   hfr_fuzz --from N --count N | --minutes M         cases in worker processes that may crash or hang
 //   hfr_fuzz --seeds FILE                             the numbers in a file, one a line, # begins a comment
 // with --jobs N workers, --limit S seconds (120) after which a case counts as hanging, --slow S seconds after
-// which it is reported. Exit code 1 where there are findings, or the cases were not worth running.
+// which it is reported. Both are seconds of the processor, so that a busy machine makes no findings; a case
+// that sleeps hangs after twenty times the limit. Exit code 1 where there are findings, or the cases were not
+// worth running.
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -16,6 +18,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -43,10 +46,19 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Seconds of the processor that a process has taken; 0 where it is no more.
+double processor_seconds(pid_t process) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(process, &clock) != 0 || clock_gettime(clock, &time) != 0) return 0;
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// What a worker tells; in memory that it shares with the one who watches.
 struct Worker {
   std::atomic<std::uint64_t> at{0};  ///< place in the list of cases
   std::atomic<double> since{0};      ///< when it began with it
+  std::atomic<double> spent{0};      ///< processor seconds that it had taken then
   std::atomic<std::uint64_t> run{0}, refused{0}, changed{0}, invalid{0}, pinched{0}, findings{0}, large{0};
 };
 
@@ -155,6 +167,7 @@ Numbers numbers_of(const CommandLine& line) {
                        double end) {
   for (std::uint64_t at = me.at; at < numbers.size() && now() < end;
        at = me.at += static_cast<std::uint64_t>(line.jobs)) {
+    me.spent = processor_seconds(getpid());
     me.since = now();
     const Case wanted = make_case(numbers[at]);
     const Outcome outcome = run_case(wanted, folder);
@@ -206,6 +219,7 @@ class Watch {
  private:
   void start(std::size_t i) {
     workers_[i].since = now();
+    workers_[i].spent = 0;
     pids_[i] = fork();
     if (pids_[i] < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (pids_[i] != 0) return;
@@ -214,13 +228,19 @@ class Watch {
     work(line_, numbers_, workers_[i], folder, end_);
   }
 
+  bool has_no_end(const Worker& worker, pid_t process) const {
+    constexpr double kAsleep = 20;  // times the limit, for one that takes no time of the processor
+    const double spent = worker.spent;
+    return processor_seconds(process) - spent > line_.limit || now() - worker.since > kAsleep * line_.limit;
+  }
+
   /// True while the worker has something to do.
   bool look_after(std::size_t i) {
     if (pids_[i] == 0) return false;
     Worker& worker = workers_[i];
     int status = 0;
     const bool ended = waitpid(pids_[i], &status, WNOHANG) == pids_[i];
-    const bool hangs = !ended && worker.since > 0 && now() - worker.since > line_.limit;
+    const bool hangs = !ended && worker.since > 0 && has_no_end(worker, pids_[i]);
     if (!ended && !hangs) return true;
     if (ended && WIFEXITED(status) && WEXITSTATUS(status) == 0) {
       pids_[i] = 0;
