@@ -132,9 +132,9 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
   return false;
 }
 
-/// The best of several tries at the patch: none unless its worst cell gets better. Vertices are taken out
-/// only where none that was put in has helped. `whole`: the run whose surface, if patches have one, may
-/// change in the patch as well.
+/// The best of the tries of one kind at the patch, the first kind of which one helps: none unless its worst
+/// cell gets better. What a dearer kind would add to that is left to the next turn, which sees the patch as
+/// it is by then. `whole`: the run whose surface, if patches have one, may change in the patch as well.
 Outcome search(const Patch& patch, const Run& whole, Room room, double goal, const PatchEffort& effort) {
   const PatchTrial& rules = whole.strategy.patch;
   const Strategy strategy = strategy_of_patch(whole.strategy);
@@ -146,8 +146,9 @@ Outcome search(const Patch& patch, const Run& whole, Room room, double goal, con
   const double worked_for = std::min(rules.ahead * goal, rules.largest);
   if (n_below(patch.mesh(), worked_for, policy) > effort.few) return best;
   const double enough = dihedral_decision(goal);
+  Try::Kind helped = Try::kNothing;
   for (const Try& attempt : tries_of(effort)) {
-    if (best.worst >= enough || (attempt.kind == Try::kRemoval && best.mesh) || clock.stopped()) break;
+    if (best.worst >= enough || (best.mesh && attempt.kind != helped) || clock.stopped()) break;
     TetMesh mesh = patch.mesh();
     LoneRun lone(mesh, strategy, clock.seconds_left());
     lone.findings().is_folded = whole.findings.is_folded;
@@ -161,6 +162,7 @@ Outcome search(const Patch& patch, const Run& whole, Room room, double goal, con
       best.held_back = true;
       continue;
     }
+    helped = attempt.kind;
     best.worst = worst;
     best.mesh = std::move(mesh);
   }
