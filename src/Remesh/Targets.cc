@@ -23,6 +23,11 @@ bool lacks_vertices(const Run& run) {
   return n_movable <= run.strategy.throughout.movable * static_cast<double>(frozen.size());
 }
 
+bool is_poor_throughout(const Run& run) {
+  const ThroughoutEffort& poor = run.strategy.throughout;
+  return lacks_vertices(run) || share_below(run.mesh, poor.below, run.policy()) > poor.share;
+}
+
 /// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
 void raise_throughout(const Run& run, const ThroughoutEffort& effort, double degrees) {
   CellBounds bounds = run.bounds;
@@ -38,8 +43,9 @@ void raise_throughout(const Run& run, const ThroughoutEffort& effort, double deg
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
   const TargetEffort& effort = run.strategy.targets;
   const ThroughoutEffort& throughout = run.strategy.throughout;
-  const bool bounded = is_bounded(run), lacks = bounded && lacks_vertices(run);
+  const bool bounded = is_bounded(run), is_poor = bounded && is_poor_throughout(run);
   double now = smallest_dihedral(run.mesh, run.policy());
+  double highest = now;     // that it has been on the way
   double last = 0;          // that was worked for
   bool has_brought = true;  // enough, the target before
   for (const TargetAngle& target : targets) {
@@ -49,13 +55,16 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
     const double share = share_below(run.mesh, target.degrees, run.policy());
     if (share > target.largest_share && !(has_brought && bounded)) continue;
     last = target.degrees;
-    if (share > (lacks ? throughout.dig_share : target.largest_share))
+    if (share > (is_poor ? throughout.dig_share : target.largest_share))
       raise_throughout(run, throughout, target.degrees);
     else
       polish(run, run.strategy.polish, target.degrees);
     now = smallest_dihedral(run.mesh, run.policy());
+    highest = std::max(highest, now);
     has_brought = share_below(run.mesh, target.degrees, run.policy()) < effort.enough_left * share;
   }
+  // What is worked for with obtuse angles in mind takes from the worst cells at times.
+  if (now < highest && !run.control.stopped()) polish(run, run.strategy.polish, highest);
 }
 
 void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngle> targets) {
@@ -63,8 +72,7 @@ void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngl
   if (smallest_dihedral(run.mesh, run.policy()) < floor) polish(run, strategy.polish, floor);
   const ThroughoutEffort& poor = strategy.throughout;
   // Where the mesh is poor throughout, vertices go to the worst cells first.
-  const bool throughout = is_bounded(run) && (lacks_vertices(run) ||
-                                              share_below(run.mesh, poor.below, run.policy()) > poor.share);
+  const bool throughout = is_bounded(run) && is_poor_throughout(run);
   if (strategy.refine && !throughout) refine(run, *strategy.refine);
   raise_to_targets(run, targets);
   // What was put in first is well connected by now, which shows where vertices are still missing.
