@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A body that turns once in a box, step by step, through three programs, as a Markdown table.
 
-usage: bench/moving_body.py [--n N] [--steps S] [--goal DEG] [--trigger DEG] [--only NAME ...]
+usage: bench/moving_body.py [--n N] [--steps S] [--goal DEG] [--trigger DEG] [--transfer HOW] [--only NAME ...]
 
 Wants the Python packages hfremesh, mmgpy, gmsh, numpy and scipy. An ellipsoid turns about an inclined axis; all that
 lies within its reach turns with it, the box rests, and what is between is sheared, so that no mesh lasts. Every
@@ -12,7 +12,7 @@ program is given the same motion of whatever vertices it has:
   gmsh       meshes the volume anew in every step, between the surfaces as they are; Delaunay, Optimize
 A field is carried along: in each step it changes by what the exact function changes by at the vertex, so that what it
 is off by in the end was made by carrying it over, and by that alone. For Mmg and Gmsh, which do not carry fields, this
-script interpolates linearly in the mesh as it was; the time of that is left out. Times are CPU time of one thread, of
+script interpolates in the mesh as it was, by the same formula; the time of that is left out. Times are CPU time of one thread, of
 the step, or of the meshing with what copies arrays in and out.
 """
 import argparse
@@ -58,8 +58,22 @@ def exact(points):
     return np.sin(3 * points[:, 0]) * np.cos(2 * points[:, 1]) + points[:, 2] ** 2
 
 
-def interpolate(points, cells, values, at, near=48):
-    """Linear in the cell that has each place, or comes nearest to having it, among those with the nearest middles."""
+def gradients(points, cells, values):
+    """At each point: least squares over its edges, with the weight 1/length⁴, as Transfer::kQuadratic has them."""
+    edges = np.sort(cells[:, [0, 1, 0, 2, 0, 3, 1, 2, 1, 3, 2, 3]].reshape(-1, 2), axis=1)
+    edges = np.unique(edges, axis=0)
+    matrix, right = np.zeros((len(points), 3, 3)), np.zeros((len(points), 3))
+    for a, b in (edges.T, edges.T[::-1]):
+        d = points[b] - points[a]
+        weighted = d / np.sum(d * d, axis=1)[:, None] ** 2
+        np.add.at(matrix, a, weighted[:, :, None] * d[:, None, :])
+        np.add.at(right, a, (values[b] - values[a])[:, None] * weighted)
+    return np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+
+
+def interpolate(points, cells, values, at, how, near=48):
+    """In the cell that has each place, or comes nearest to having it, among those with the nearest middles."""
+    slopes = gradients(points, cells, values) if how == "quadratic" else None
     tree = scipy.spatial.cKDTree(points[cells].mean(axis=1))
     best, out = np.full(len(at), -np.inf), np.zeros(len(at))
     inverse = np.linalg.inv(np.swapaxes(points[cells][:, 1:] - points[cells][:, :1], 1, 2))
@@ -67,9 +81,15 @@ def interpolate(points, cells, values, at, near=48):
     for column in candidates.T:
         w = np.einsum("nij,nj->ni", inverse[column], at - points[cells[column, 0]])
         w = np.concatenate([1 - w.sum(axis=1, keepdims=True), w], axis=1)
+        corners = cells[column]
+        found = (w * values[corners]).sum(axis=1)
+        if slopes is not None:
+            bend = np.einsum("nk,nkj,nkj->n", w, slopes[corners], at[:, None] - points[corners]) / 2
+            bent = np.clip(found + bend, values[corners].min(axis=1), values[corners].max(axis=1))
+            found = np.where(w.min(axis=1) >= -1e-10, bent, found)
         better = w.min(axis=1) > best
         best[better] = w.min(axis=1)[better]
-        out[better] = (w * values[cells[column]]).sum(axis=1)[better]
+        out[better] = found[better]
     return out
 
 
@@ -78,8 +98,8 @@ class Hfremesh:
 
     def __init__(self, points, cells, field, options):
         mesh = hf.Mesh(points, cells, point_fields={"T": field})
-        self.rm = hf.Remesher(mesh, goal=options.goal, trigger=options.trigger, transfer={"T": "linear"}, parents=False,
-                              threads=1)
+        self.rm = hf.Remesher(mesh, goal=options.goal, trigger=options.trigger, transfer={"T": options.transfer},
+                              parents=False, threads=1)
 
     def step(self, angle):
         points = self.rm.points
@@ -107,7 +127,7 @@ class Peer:
         if made is None:
             return took, False
         points, cells = made
-        self.field = interpolate(self.points, self.cells, self.field, points)
+        self.field = interpolate(self.points, self.cells, self.field, points, self.options.transfer)
         self.points, self.cells = points, cells
         return took, True
 
@@ -180,6 +200,7 @@ def main():
     parser.add_argument("--steps", type=int, default=40, help="of the whole turn")
     parser.add_argument("--goal", type=float, default=30, help="degrees")
     parser.add_argument("--trigger", type=float, default=15.5, help="degrees")
+    parser.add_argument("--transfer", choices=["linear", "quadratic"], default="linear", help="of the field")
     parser.add_argument("--only", nargs="*", default=["hfremesh", "mmg", "gmsh"])
     options = parser.parse_args()
     first = hf.improve(*box_round_ellipsoid(options.n), threads=1)

@@ -51,7 +51,8 @@ constexpr std::array<std::pair<const char*, SurfaceMode>, 3> kSurfaces = {
 constexpr std::array<const char*, 9> kCauses = {"none",      "inverted", "angle", "metric", "jacobian",
                                                 "indicator", "motion",   "steps", "asked"};
 
-/// NAME:linear, NAME:inherit, NAME:conserve or NAME:conserve:DENSITY. The name may have colons.
+/// NAME:linear, NAME:quadratic, NAME:inherit, NAME:conserve or NAME:conserve:DENSITY. The name may have
+/// colons.
 FieldTransfer field_transfer(const std::string& text) {
   const auto parts = [](const std::string& whole) {
     const std::size_t at = whole.rfind(':');
@@ -61,12 +62,13 @@ FieldTransfer field_transfer(const std::string& text) {
   const auto [name, last] = parts(text);
   const auto [inner, how] = parts(name);
   try {
-    if (how == "conserve" && last != "linear" && last != "inherit" && last != "conserve")
+    if (how == "conserve" && last != "linear" && last != "quadratic" && last != "inherit" &&
+        last != "conserve")
       return {.name = inner, .how = Transfer::kConserve, .density = last};
     return {.name = name, .how = transfer_from_name(last)};
   } catch (const InvalidInput&) {
     throw Failure(ExitCode::kUsage, "--transfer " + in_quotes(text) +
-                                        ": NAME:linear, NAME:inherit, NAME:conserve or "
+                                        ": NAME:linear, NAME:quadratic, NAME:inherit, NAME:conserve or "
                                         "NAME:conserve:DENSITY is wanted");
   }
 }
@@ -77,7 +79,7 @@ std::vector<FieldTransfer> fields_of(const TetMesh& mesh, const MoveLine& line) 
   for (const std::string& text : line.transfer) fields.push_back(field_transfer(text));
   const auto add = [&](const std::string& name, Transfer how) {
     const bool known = std::any_of(fields.begin(), fields.end(), [&](const FieldTransfer& f) {
-      return f.name == name && (f.how == Transfer::kLinear) == (how == Transfer::kLinear);
+      return f.name == name && is_of_vertices(f.how) == is_of_vertices(how);
     });
     if (known) return;
     const FieldTransfer field{.name = name, .how = how};
@@ -400,8 +402,8 @@ Subcommand add_move(Command program, CommonOptions& common) {
   command.group("Fields");
   command
       .option("--transfer", line->transfer,
-              "How a field gets over a repair: NAME:linear (of vertices), NAME:inherit, NAME:conserve or "
-              "NAME:conserve:DENSITY (of cells). Others: linear, and inherited")
+              "How a field gets over a repair: NAME:linear or NAME:quadratic (of vertices), NAME:inherit, "
+              "NAME:conserve or NAME:conserve:DENSITY (of cells). Others: linear, and inherited")
       .type_name("NAME:HOW");
   add_format_options(command, common, true, true);
   add_split_option(command, common);

@@ -287,7 +287,7 @@ constexpr std::array kRemesherRows = std::to_array<Row<R>>({
       "of fixed vertices, which others follow.",
       false},
      set_motion},
-    {{"transfer", "NAME:linear, NAME:inherit, NAME:conserve or NAME:conserve:DENSITY",
+    {{"transfer", "NAME:linear, NAME:quadratic, NAME:inherit, NAME:conserve or NAME:conserve:DENSITY",
       "A field that is carried over repairs, and how.", true},
      add_transfer},
     {{"parents", kFlag,

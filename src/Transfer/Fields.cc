@@ -10,14 +10,17 @@
 
 #include "IO/FieldLayout.hh"
 #include "Transfer/Conserve.hh"
+#include "Transfer/Gradients.hh"
 
 namespace hfr {
 namespace {
 
 using detail::DenseStored;
 
-constexpr std::array<std::pair<std::string_view, Transfer>, 3> kNames = {
-    {{"linear", Transfer::kLinear}, {"inherit", Transfer::kInherit}, {"conserve", Transfer::kConserve}}};
+constexpr std::array<std::pair<std::string_view, Transfer>, 4> kNames = {{{"linear", Transfer::kLinear},
+                                                                          {"quadratic", Transfer::kQuadratic},
+                                                                          {"inherit", Transfer::kInherit},
+                                                                          {"conserve", Transfer::kConserve}}};
 
 DenseStored* find(const PropertySet::DenseList& list, const std::string& name) {
   for (const std::shared_ptr<DenseStored>& p : list)
@@ -72,7 +75,7 @@ std::unique_ptr<Values> values_of(DenseStored& property) {
 
 /// The property that a transfer works on; throws InvalidInput where there is none that it could.
 DenseStored& required(const TetMesh& mesh, const std::string& name, Transfer how) {
-  const bool of_vertices = how == Transfer::kLinear;
+  const bool of_vertices = is_of_vertices(how);
   const auto& list = of_vertices ? mesh.properties().vertices : mesh.properties().cells;
   const auto& other = of_vertices ? mesh.properties().cells : mesh.properties().vertices;
   DenseStored* found = find(list, name);
@@ -87,8 +90,46 @@ DenseStored& required(const TetMesh& mesh, const std::string& name, Transfer how
   return *found;
 }
 
-void transfer_linear(const TetMesh& old, TetMesh& now, const Edits& edits, const std::string& name,
-                     FieldReport& report) {
+/// What the old field has at a vertex within its old cell.
+double interpolated(const Values& from, const std::array<VertexHandle, 4>& corners,
+                    const std::array<double, 4>& weights, int k) {
+  // In differences, so that a constant stays one.
+  const double first = from.get(corners[0].idx(), k);
+  double value = first;
+  for (std::size_t j = 1; j < 4; ++j) value += weights[j] * (from.get(corners[j].idx(), k) - first);
+  return value;
+}
+
+/// By what the gradients at the corners bend it: Σ w_i g_i·(x - x_i) / 2, which makes the whole exact for
+/// quadratic functions whose gradients these are. 0 where one is not known.
+double bend(const TetMesh& old, const Values& from, const Gradients& gradients, const PlacedVertex& v,
+            int k) {
+  const auto& corners = old.cell_vertices(v.old_cell);
+  double sum = 0;
+  for (std::size_t j = 0; j < 4; ++j) {
+    const std::span<const Gradients::Term> terms = gradients.terms(corners[j]);
+    if (terms.empty()) return 0;
+    const double here = from.get(corners[j].idx(), k);
+    Vec3 gradient;
+    for (const Gradients::Term& term : terms)
+      gradient = gradient + (from.get(term.neighbour.idx(), k) - here) * term.weight;
+    sum += v.weights[j] * dot(gradient, v.point - old.point(corners[j]));
+  }
+  return 0.5 * sum;
+}
+
+double within_corners(double value, const Values& from, const std::array<VertexHandle, 4>& corners, int k) {
+  double low = from.get(corners[0].idx(), k), high = low;
+  for (std::size_t j = 1; j < 4; ++j) {
+    low = std::min(low, from.get(corners[j].idx(), k));
+    high = std::max(high, from.get(corners[j].idx(), k));
+  }
+  return value < low ? low : value > high ? high : value;
+}
+
+/// Linearly, and with gradients bent.
+void transfer_interpolated(const TetMesh& old, TetMesh& now, const Edits& edits, const std::string& name,
+                           const Gradients* gradients, FieldReport& report) {
   const auto from = values_of(required(old, name, Transfer::kLinear));
   const auto to = values_of(required(now, name, Transfer::kLinear));
   for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
@@ -101,10 +142,9 @@ void transfer_linear(const TetMesh& old, TetMesh& now, const Edits& edits, const
       report.n_outside += v.inside ? 0 : 1;
       const auto& corners = old.cell_vertices(v.old_cell);
       for (int k = 0; k < from->n_components(); ++k) {
-        // In differences, so that a constant stays one.
-        const double first = from->get(corners[0].idx(), k);
-        double value = first;
-        for (std::size_t j = 1; j < 4; ++j) value += v.weights[j] * (from->get(corners[j].idx(), k) - first);
+        double value = interpolated(*from, corners, v.weights, k);
+        if (gradients && v.inside)
+          value = within_corners(value + bend(old, *from, *gradients, v, k), *from, corners, k);
         to->set(v.vertex.idx(), k, value);
       }
     }
@@ -159,8 +199,11 @@ void transfer_conserved(const TetMesh& old, TetMesh& now, const Cavities& caviti
 Transfer transfer_from_name(std::string_view name) {
   for (const auto& [known, transfer] : kNames)
     if (name == known) return transfer;
-  throw InvalidInput("'" + std::string(name) + "' is no way to transfer a field: linear, inherit, conserve");
+  throw InvalidInput("'" + std::string(name) +
+                     "' is no way to transfer a field: linear, quadratic, inherit, conserve");
 }
+
+bool is_of_vertices(Transfer how) { return how == Transfer::kLinear || how == Transfer::kQuadratic; }
 
 void validate_fields(const TetMesh& mesh, std::span<const FieldTransfer> fields) {
   for (const FieldTransfer& field : fields) {
@@ -190,6 +233,7 @@ std::vector<FieldReport> transfer_fields(const TetMesh& old, TetMesh& now, const
   validate_fields(old, fields);
   std::vector<FieldReport> reports(fields.size());
   std::optional<Cavities> cavities;
+  std::optional<Gradients> gradients;
   // Densities before what they weigh, callbacks when all else is done.
   for (const int turn : {0, 1, 2})
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -199,7 +243,11 @@ std::vector<FieldReport> transfer_fields(const TetMesh& old, TetMesh& now, const
       reports[i].name = field.name;
       switch (field.how) {
         case Transfer::kLinear:
-          transfer_linear(old, now, edits, field.name, reports[i]);
+          transfer_interpolated(old, now, edits, field.name, nullptr, reports[i]);
+          break;
+        case Transfer::kQuadratic:
+          if (!gradients) gradients.emplace(old, edits, policy);
+          transfer_interpolated(old, now, edits, field.name, &*gradients, reports[i]);
           break;
         case Transfer::kInherit:
           transfer_inherited(old, now, edits, field.name, reports[i]);

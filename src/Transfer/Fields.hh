@@ -28,9 +28,17 @@ enum class Transfer {
   kConserve,
   /// By FieldTransfer::callback.
   kCallback,
+  /// A field of vertices that is smooth: as kLinear, and bent by the gradients that the old values have at
+  /// the
+  /// corners of the old cell. The error falls with the cube of the cells' size and not with the square where
+  /// these gradients are good, and adds up more slowly over many repairs. Exact for linear functions, and for
+  /// constants to the bit; no value leaves the range of the corners'. Beyond the mesh as it was: as kLinear.
+  kQuadratic,
 };
-/// "linear", "inherit", "conserve"; throws InvalidInput that lists them.
+/// "linear", "quadratic", "inherit", "conserve"; throws InvalidInput that lists them.
 Transfer transfer_from_name(std::string_view name);
+/// Whether what it carries over is a field of vertices, or of cells. False for kCallback.
+bool is_of_vertices(Transfer how);
 
 /// How one field, a property of vertices or cells, gets from the mesh as it was to the mesh as it is.
 struct FieldTransfer {

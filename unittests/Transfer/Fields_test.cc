@@ -90,6 +90,84 @@ TEST(TransferLinear, ConstantStaysOneToTheBitAndVerticesThatHaveNotMovedKeepThei
   EXPECT_GT(n_kept, 100U);
 }
 
+/// Of all vertices that have moved or are new: by how much the field is off at most, and in the mean.
+std::pair<double, double> off(const WithFields& two, const std::string& name,
+                              const std::function<double(Vec3)>& exact) {
+  const auto field = two.now.get_vertex_property<double>(name);
+  double most = 0, sum = 0;
+  std::size_t n = 0;
+  for (VertexHandle v : two.now.vertices()) {
+    const double error = std::abs((*field)[v] - exact(two.now.point(v)));
+    most = std::max(most, error);
+    sum += error;
+    n += error > 0 ? 1 : 0;
+  }
+  return {most, sum / static_cast<double>(std::max<std::size_t>(n, 1))};
+}
+
+TEST(TransferQuadratic, LinearFunctionsAreExactAndConstantsStayToTheBit) {
+  WithFields two(5, 0.15, 1);
+  two.add_vertex_field<double>("T", linear);
+  two.add_vertex_field<double>("c", [](Vec3) { return 0.1; });
+  two.add_vertex_field<Vec3>("x", [](Vec3 p) { return p; });
+  const auto reports = two.transfer({{.name = "T", .how = Transfer::kQuadratic},
+                                     {.name = "c", .how = Transfer::kQuadratic},
+                                     {.name = "x", .how = Transfer::kQuadratic}});
+  const auto t = two.now.get_vertex_property<double>("T");
+  const auto c = two.now.get_vertex_property<double>("c");
+  const auto x = two.now.get_vertex_property<Vec3>("x");
+  for (VertexHandle v : two.now.vertices()) {
+    EXPECT_NEAR((*t)[v], linear(two.now.point(v)), 1e-13);
+    EXPECT_EQ((*c)[v], 0.1);
+    EXPECT_NEAR(norm((*x)[v] - two.now.point(v)), 0, 1e-14);
+  }
+  const Edits edits = two.edits();
+  EXPECT_EQ(reports[0].n_changed, edits.created_vertices.size() + edits.moved_vertices.size());
+  EXPECT_GT(reports[0].n_changed, 10U);
+}
+
+TEST(TransferQuadratic, SmoothFunctionIsCloserThanLinearly) {
+  const auto smooth = [](Vec3 p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + p.z * p.z; };
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    WithFields two(8, 0.15, seed);
+    two.add_vertex_field<double>("linear", smooth);
+    two.add_vertex_field<double>("bent", smooth);
+    two.transfer({{.name = "linear"}, {.name = "bent", .how = Transfer::kQuadratic}});
+    EXPECT_LT(off(two, "bent", smooth).second, 0.5 * off(two, "linear", smooth).second);
+  }
+}
+
+TEST(TransferQuadratic, NoValueLeavesTheRangeOfTheCornersThatTheVertexLiesBetween) {
+  WithFields two(6, 0.15, 5);
+  two.add_vertex_field<double>("step", [](Vec3 p) { return p.x < 0.5 ? 0.0 : 1.0; });
+  two.transfer({{.name = "step", .how = Transfer::kQuadratic}});
+  const auto step = two.now.get_vertex_property<double>("step");
+  std::size_t n_between = 0;
+  for (VertexHandle v : two.now.vertices()) {
+    EXPECT_GE((*step)[v], 0);
+    EXPECT_LE((*step)[v], 1);
+    n_between += (*step)[v] > 0 && (*step)[v] < 1 ? 1 : 0;
+  }
+  EXPECT_GT(n_between, 5U) << "no vertex lies where the field jumps";
+}
+
+TEST(TransferQuadratic, SizeOfTheMeshDoesNotMatter) {
+  std::vector<double> values;
+  for (const double scale : {1.0, 0x1p-100, 0x1p100}) {
+    WithFields two(4, 0.15, 6);
+    for (TetMesh* mesh : {&two.old, &two.now})
+      for (VertexHandle v : mesh->vertices()) mesh->set_point(v, scale * mesh->point(v));
+    two.add_vertex_field<double>("T", [&](Vec3 p) { return std::sin(3 * p.x / scale) + p.y / scale; });
+    two.transfer({{.name = "T", .how = Transfer::kQuadratic}});
+    const auto t = two.now.get_vertex_property<double>("T");
+    double sum = 0;
+    for (VertexHandle v : two.now.vertices()) sum += (*t)[v];
+    values.push_back(sum);
+  }
+  EXPECT_NEAR(values[1], values[0], 1e-9);
+  EXPECT_NEAR(values[2], values[0], 1e-9);
+}
+
 TEST(TransferInherited, CreatedCellsHaveTheValueOfTheCellThatTheyCoverMostOf) {
   WithFields two(5, 0.15, 3);
   two.add_cell_field<int>("material", [](CellHandle c) { return static_cast<int>(c.idx()); });
@@ -172,7 +250,7 @@ TEST(TransferFields, WhatCannotBeTransferredIsNamed) {
   EXPECT_THAT(says({.name = "rho", .how = Transfer::kConserve, .density = "u"}),
               HasSubstr("more than one component"));
   EXPECT_THAT(says({.name = "own", .how = Transfer::kCallback}), HasSubstr("has none"));
-  EXPECT_THAT(message([] { transfer_from_name("copy"); }), HasSubstr("linear, inherit, conserve"));
+  EXPECT_THAT(message([] { transfer_from_name("copy"); }), HasSubstr("linear, quadratic, inherit, conserve"));
 }
 
 TEST(TransferFields, SameBitsForAnyNumberOfThreads) {

@@ -117,6 +117,7 @@ TEST(Move, WhatIsWrongIsSaidInALine) {
   fails("in.vtu --displacement u -o out.vtu --trigger 20", 1, "--trigger must not be above");
   fails("in.vtu --displacement u -o out.vtu --transfer mass", 1, "NAME:linear");
   fails("in.vtu --displacement u -o out.vtu --transfer mass:linear", 1, "'mass' is one of cells");
+  fails("in.vtu --displacement u -o out.vtu --transfer mass:quadratic", 1, "'mass' is one of cells");
   fails("in.vtu --displacement u -o out.vtu --transfer none:conserve", 1, "no field 'none'");
   fails("--series in_%d.vtu -o out.pvd", 2, "at least two files");
   fails("--series in_%d.vtu -o out.vtu", 1, "written as .pvd");
