@@ -29,6 +29,7 @@ struct MoveLine {
   std::string input, output, displacement, series;
   std::vector<std::string> transfer;
   double goal = 15, trigger = 10, time_limit = 0;
+  std::string trigger_field;
   std::string on_inversion = "repair", motion = "given", surface = "frozen";
   io::WriteOptions write;
 };
@@ -104,6 +105,7 @@ RemesherOptions remesher_options(const MoveLine& line, const CommonOptions& comm
   if (line.time_limit > 0) options.improve.time_limit = line.time_limit;
   options.improve.cancel = [&signals] { return signals.cancelled(); };
   options.triggers.min_dihedral = line.trigger;
+  options.triggers.indicator_field = line.trigger_field;
   options.on_inversion = named(kOnInversion, line.on_inversion);
   options.motion = named(kMotions, line.motion);
   return options;
@@ -372,6 +374,10 @@ void add_repair_options(Command command, MoveLine& line) {
       .type_name("DEG")
       .shows_default()
       .check(real_number(0, 70.5));
+  command
+      .option("--trigger-field", line.trigger_field,
+              "Repair, too, where this field of cells is not 0; it is carried over like the others")
+      .type_name("FIELD");
   command.option("--surface", line.surface, "What a repair may do to the surface: frozen, flat, free")
       .type_name("MODE")
       .shows_default()

@@ -16,8 +16,15 @@
 #include "hfremesh/Remesh/Remesher.hh"
 
 struct hfr_options {
-  hfr::ImproveOptions options;    ///< of hfr_improve()
-  hfr::RemesherOptions remesher;  ///< what of it was set, too, and what is a remesher's alone
+  /// A field that the caller carries over himself.
+  struct OnTransfer {
+    std::string name;
+    hfr_transfer_callback call;
+    void* user;
+  };
+  hfr::ImproveOptions options;          ///< of hfr_improve()
+  hfr::RemesherOptions remesher;        ///< what of it was set, too, and what is a remesher's alone
+  std::vector<OnTransfer> on_transfer;  ///< a remesher's, too
   std::string message;
 };
 

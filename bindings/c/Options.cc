@@ -63,6 +63,15 @@ hfr_status hfr_options_on_cancel(hfr_options* options, hfr_cancel_callback ask, 
   });
 }
 
+hfr_status hfr_options_on_transfer(hfr_options* options, const char* name, hfr_transfer_callback call,
+                                   void* user) {
+  return guarded(options, [&] {
+    const std::string called(text_of(name, "name"));
+    std::erase_if(options->on_transfer, [&](const hfr_options::OnTransfer& t) { return t.name == called; });
+    if (call) options->on_transfer.push_back({called, call, user});
+  });
+}
+
 const char* hfr_options_message(const hfr_options* options) {
   return options ? options->message.c_str() : "the options are NULL";
 }

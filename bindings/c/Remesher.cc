@@ -15,6 +15,7 @@ struct hfr_remesher {
   std::vector<RepairResult> repairs;  ///< of the last step, or the one of the last repair
   std::vector<CellHandle> refused;
   std::string message;
+  bool is_in_callback = false;
 };
 
 namespace {
@@ -117,6 +118,43 @@ Table table_of(const hfr_remesher& r, std::int64_t repair, const std::string& wh
   throw InvalidInput("a repair has no '" + what + "'; hfremesh.h lists what it has");
 }
 
+/// Work with the remesher that a callback of its own may not ask for.
+template <class F>
+hfr_status guarded_work(hfr_remesher* r, F&& f) {
+  return guarded(r, [&] {
+    HFR_REQUIRE(!r->is_in_callback, "a callback that transfers a field may not step, move, repair or reset");
+    f();
+  });
+}
+
+/// Shows the caller this repair as the only one while he carries a field over.
+void call_back(hfr_remesher& r, const hfr_options::OnTransfer& field, const TetMesh& old,
+               const Edits& edits) {
+  hfr_mesh before;
+  before.tets = old;
+  before.base = r.mesh->base;
+  std::vector<RepairResult> others = std::move(r.repairs);
+  r.repairs.clear();
+  r.repairs.push_back({.edits = edits, .fields = {}});
+  r.is_in_callback = true;
+  const hfr_transfer shown = {field.name.c_str(), &before, r.mesh, &r};
+  const int said = field.call(&shown, field.user);
+  r.is_in_callback = false;
+  r.repairs = std::move(others);
+  HFR_REQUIRE(said == 0, "field '" + field.name + "': its callback failed with " + std::to_string(said));
+}
+
+RemesherOptions options_of(hfr_remesher& r, const hfr_options& options) {
+  RemesherOptions out = options.remesher;
+  for (const hfr_options::OnTransfer& field : options.on_transfer)
+    out.fields.push_back({.name = field.name,
+                          .how = Transfer::kCallback,
+                          .callback = [&r, field](const TetMesh& old, TetMesh&, const Edits& edits) {
+                            call_back(r, field, old, edits);
+                          }});
+  return out;
+}
+
 }  // namespace
 
 hfr_status hfr_remesher_new(hfr_mesh* mesh, const hfr_options* options, hfr_remesher** out) {
@@ -125,7 +163,8 @@ hfr_status hfr_remesher_new(hfr_mesh* mesh, const hfr_options* options, hfr_reme
     HFR_REQUIRE(out, "out is NULL");
     auto made = std::make_unique<hfr_remesher>();
     made->mesh = mesh;
-    made->remesher = std::make_unique<Remesher>(mesh->tets, options ? options->remesher : RemesherOptions());
+    made->remesher =
+        std::make_unique<Remesher>(mesh->tets, options ? options_of(*made, *options) : RemesherOptions());
     *out = made.release();
   });
 }
@@ -137,7 +176,7 @@ const char* hfr_remesher_message(const hfr_remesher* remesher) {
 }
 
 hfr_status hfr_remesher_step(hfr_remesher* r, const hfr_array* displacement, hfr_step* step) {
-  return guarded(r, [&] {
+  return guarded_work(r, [&] {
     StepResult done = r->remesher->step(displacement_of(*r, displacement));
     if (done.changed) forget_run(*r->mesh);
     r->repairs = std::move(done.repairs);
@@ -156,7 +195,7 @@ hfr_status hfr_remesher_step(hfr_remesher* r, const hfr_array* displacement, hfr
 }
 
 hfr_status hfr_remesher_move(hfr_remesher* r, const hfr_array* displacement, hfr_step* step) {
-  return guarded(r, [&] {
+  return guarded_work(r, [&] {
     MoveResult done = r->remesher->move(displacement_of(*r, displacement));
     r->repairs.clear();
     r->refused = std::move(done.refused);
@@ -169,7 +208,7 @@ hfr_status hfr_remesher_move(hfr_remesher* r, const hfr_array* displacement, hfr
 }
 
 hfr_status hfr_remesher_repair(hfr_remesher* r, hfr_step* step) {
-  return guarded(r, [&] {
+  return guarded_work(r, [&] {
     RepairResult done = r->remesher->repair();
     forget_run(*r->mesh);
     r->refused.clear();
@@ -185,7 +224,7 @@ hfr_status hfr_remesher_repair(hfr_remesher* r, hfr_step* step) {
 }
 
 hfr_status hfr_remesher_transfer(hfr_remesher* r) {
-  return guarded(r, [&] { r->remesher->transfer(); });
+  return guarded_work(r, [&] { r->remesher->transfer(); });
 }
 
 int hfr_remesher_needs_repair(const hfr_remesher* r) {
@@ -193,7 +232,7 @@ int hfr_remesher_needs_repair(const hfr_remesher* r) {
 }
 
 hfr_status hfr_remesher_reset(hfr_remesher* r) {
-  return guarded(r, [&] {
+  return guarded_work(r, [&] {
     r->remesher->reset();
     r->repairs.clear();
     r->refused.clear();

@@ -46,7 +46,6 @@ typedef struct hfr_array {
   int64_t row_stride; /* bytes from row to row; 0: rows follow one another */
 } hfr_array;
 
-typedef struct hfr_mesh hfr_mesh;
 typedef struct hfr_options hfr_options;
 
 /* --- the library --- */
@@ -80,6 +79,23 @@ typedef void (*hfr_progress_callback)(const hfr_progress* now, void* user);
 typedef int (*hfr_cancel_callback)(void* user);
 HFR_C_EXPORT hfr_status hfr_options_on_progress(hfr_options* options, hfr_progress_callback call, void* user);
 HFR_C_EXPORT hfr_status hfr_options_on_cancel(hfr_options* options, hfr_cancel_callback ask, void* user);
+typedef struct hfr_mesh hfr_mesh;
+typedef struct hfr_remesher hfr_remesher;
+
+/* One repair of a step, whose fields are being carried over. All of it is valid during the call alone. */
+typedef struct hfr_transfer {
+  const char* name;       /* of the field */
+  hfr_mesh* before;       /* a copy of the mesh as it was, with the field's values */
+  hfr_mesh* after;        /* the remesher's own mesh, to be given the values by hfr_mesh_set_field() */
+  hfr_remesher* remesher; /* hfr_remesher_count() and hfr_remesher_get() say of repair 0 what this one did */
+} hfr_transfer;
+/* 0, or a number of one's own: the step fails then, with mesh and fields as they were before it. */
+typedef int (*hfr_transfer_callback)(const hfr_transfer* now, void* user);
+/* For a remesher: `call` carries the field of this name over repairs, when those of the option "transfer"
+ * have been. NULL: nobody does. The calls come from the thread that called hfr_remesher_step() or
+ * _transfer(), and may only read the mesh, the remesher's count and get, and set fields. */
+HFR_C_EXPORT hfr_status hfr_options_on_transfer(hfr_options* options, const char* name,
+                                                hfr_transfer_callback call, void* user);
 /* The line about the last call that failed; "" after one that did not. Valid until the next call. */
 HFR_C_EXPORT const char* hfr_options_message(const hfr_options* options);
 
@@ -181,8 +197,6 @@ typedef struct hfr_result {
 HFR_C_EXPORT hfr_status hfr_improve(hfr_mesh* mesh, const hfr_options* options, hfr_result* result);
 
 /* --- a mesh inside of a simulation --- */
-
-typedef struct hfr_remesher hfr_remesher;
 
 /* Why a mesh is repaired, the strongest that holds. */
 typedef enum hfr_cause {

@@ -48,6 +48,23 @@ TEST(Move, MeshIsMovedRepairedAndItsFieldsAreCarriedOver) {
   for (VertexHandle v : mesh.vertices()) ASSERT_NEAR(heat[v], 1 + 2 * mesh.point(v).x, 1e-12);
 }
 
+TEST(Move, FieldOfCellsCallsForARepair) {
+  Tool tool;
+  TetMesh before = box(0.05);
+  auto marked = before.request_cell_property<double>("marked");
+  io::write(tool.path("none.vtu"), before);
+  for (CellHandle c : before.cells()) marked[c] = c.idx() % 7 == 0 ? 1 : 0;
+  io::write(tool.path("some.vtu"), before);
+  const auto cause = [&](const std::string& arguments) {
+    const Outcome outcome = tool.run("move " + arguments + " --displacement u -o out.vtu --json r.json -q");
+    EXPECT_EQ(outcome.code, 0) << arguments << ": " << outcome.err;
+    return json::parse(tool.content("r.json"))["step"]["cause"].get<std::string>();
+  };
+  EXPECT_EQ(cause("some.vtu --trigger-field marked"), "indicator");
+  EXPECT_EQ(cause("none.vtu --trigger-field marked"), "none");
+  EXPECT_EQ(cause("some.vtu"), "none");
+}
+
 TEST(Move, MoveWithoutABadCellLeavesTheConnectivity) {
   Tool tool;
   const TetMesh before = box(0.05);
@@ -119,6 +136,7 @@ TEST(Move, WhatIsWrongIsSaidInALine) {
   fails("in.vtu --displacement u -o out.vtu --transfer mass:linear", 1, "'mass' is one of cells");
   fails("in.vtu --displacement u -o out.vtu --transfer mass:quadratic", 1, "'mass' is one of cells");
   fails("in.vtu --displacement u -o out.vtu --transfer none:conserve", 1, "no field 'none'");
+  fails("in.vtu --displacement u -o out.vtu --trigger-field none", 1, "no field 'none'");
   fails("--series in_%d.vtu -o out.pvd", 2, "at least two files");
   fails("--series in_%d.vtu -o out.vtu", 1, "written as .pvd");
   fails("--series in.vtu -o out.pvd", 1, "%04d is wanted");

@@ -450,6 +450,93 @@ static void a_remesher_steps_and_says_what_it_did(void) {
   free(cells), free(created), free(parents), free(shares), free(now), free(values), free(ids), free(still);
 }
 
+typedef struct transfers {
+  int calls, wrong, fail_with;
+} transfers;
+
+/* Linear, by hand: places and weights from the edits, old values from the mesh as it was. */
+static int carries_heat(const hfr_transfer* now, void* user) {
+  transfers* seen = user;
+  ++seen->calls;
+  if (seen->fail_with) return seen->fail_with;
+  const int64_t n_old = hfr_mesh_count(now->before, "vertices"), m_old = hfr_mesh_count(now->before, "cells"),
+                n = hfr_mesh_count(now->after, "vertices");
+  double* old = malloc((size_t)n_old * sizeof(double));
+  double* values = malloc((size_t)n * sizeof(double));
+  int64_t* cells = malloc((size_t)m_old * 4 * sizeof(int64_t));
+  int64_t* old_vertices = malloc((size_t)n * sizeof(int64_t));
+  const hfr_array a = array(old, n_old, 1, HFR_FLOAT64), b = array(values, n, 1, HFR_FLOAT64),
+                  c = array(cells, m_old, 4, HFR_INT64), o = array(old_vertices, n, 1, HFR_INT64);
+  seen->wrong += strcmp(now->name, "heat") != 0;
+  seen->wrong += hfr_mesh_get_field(now->before, "vertices", now->name, &a) != HFR_OK;
+  seen->wrong += hfr_mesh_get(now->before, "cells", &c) != HFR_OK;
+  seen->wrong += hfr_remesher_get(now->remesher, 0, "old_vertices", &o) != HFR_OK;
+  for (int64_t v = 0; v < n; ++v) values[v] = old_vertices[v] < 0 ? 1e30 : old[old_vertices[v]];
+  const char* lists[2][2] = {{"created_vertices", "created_weights"}, {"moved_vertices", "moved_weights"}};
+  for (int k = 0; k < 2; ++k) {
+    const int64_t placed = hfr_remesher_count(now->remesher, 0, lists[k][0]);
+    int64_t* places = malloc((size_t)placed * 2 * sizeof(int64_t) + 1);
+    double* weights = malloc((size_t)placed * 4 * sizeof(double) + 1);
+    const hfr_array p = array(places, placed, 2, HFR_INT64), w = array(weights, placed, 4, HFR_FLOAT64);
+    seen->wrong += hfr_remesher_get(now->remesher, 0, lists[k][0], &p) != HFR_OK;
+    seen->wrong += hfr_remesher_get(now->remesher, 0, lists[k][1], &w) != HFR_OK;
+    for (int64_t i = 0; i < placed; ++i) {
+      double value = 0;
+      for (int j = 0; j < 4; ++j) value += weights[4 * i + j] * old[cells[4 * places[2 * i + 1] + j]];
+      values[places[2 * i]] = value;
+    }
+    free(places), free(weights);
+  }
+  seen->wrong += hfr_mesh_set_field(now->after, "vertices", now->name, &b) != HFR_OK;
+  seen->wrong += hfr_remesher_repair(now->remesher, NULL) != HFR_INVALID_INPUT;
+  seen->wrong += hfr_remesher_count(now->remesher, 1, "parents") != -1;
+  free(old), free(values), free(cells), free(old_vertices);
+  return 0;
+}
+
+static void a_callback_carries_a_field_over(void) {
+  hfr_mesh* mesh = cube();
+  hfr_options* options = hfr_options_new();
+  hfr_remesher* remesher = NULL;
+  hfr_step step;
+  transfers seen = {0, 0, 7};
+  static double d[POINTS][3], heat[POINTS], points[POINTS][3], same[POINTS][3];
+  hfr_array displacement = array(d, POINTS, 3, HFR_FLOAT64), h = array(heat, POINTS, 1, HFR_FLOAT64),
+            p = array(points, POINTS, 3, HFR_FLOAT64), q = array(same, POINTS, 3, HFR_FLOAT64);
+  CHECK(hfr_mesh_get(mesh, "points", &p) == HFR_OK);
+  for (int v = 0; v < POINTS; ++v) heat[v] = points[v][0] + 2 * points[v][1];
+  CHECK(hfr_mesh_set_field(mesh, "vertices", "heat", &h) == HFR_OK);
+  CHECK(hfr_options_on_transfer(options, NULL, carries_heat, &seen) == HFR_INVALID_INPUT);
+  CHECK(hfr_options_on_transfer(options, "forgotten", carries_heat, NULL) == HFR_OK);
+  CHECK(hfr_options_on_transfer(options, "forgotten", NULL, NULL) == HFR_OK);
+  CHECK(hfr_options_on_transfer(options, "heat", carries_heat, &seen) == HFR_OK);
+  CHECK(hfr_remesher_new(mesh, options, &remesher) == HFR_OK);
+
+  /* One that fails: the mesh stays, and the line has its number. */
+  STEP_REFUSED(hfr_remesher_step(remesher, &displacement, &step), HFR_INVALID_INPUT,
+               "field 'heat': its callback failed with 7");
+  CHECK(seen.calls == 1 && hfr_mesh_count(mesh, "cells") == CELLS);
+  CHECK(hfr_mesh_get(mesh, "points", &q) == HFR_OK && memcmp(points, same, sizeof same) == 0);
+
+  seen.fail_with = 0;
+  CHECK(hfr_remesher_step(remesher, &displacement, &step) == HFR_OK && step.changed && step.inverted == 0);
+  CHECK(seen.calls == 2 && seen.wrong == 0 && hfr_remesher_count(remesher, 0, "created_cells") > 0);
+  const int64_t n = hfr_mesh_count(mesh, "vertices");
+  double* now = malloc((size_t)n * 3 * sizeof(double));
+  double* values = malloc((size_t)n * sizeof(double));
+  p = array(now, n, 3, HFR_FLOAT64);
+  h = array(values, n, 1, HFR_FLOAT64);
+  CHECK(hfr_mesh_get(mesh, "points", &p) == HFR_OK &&
+        hfr_mesh_get_field(mesh, "vertices", "heat", &h) == HFR_OK);
+  int wrong = 0;
+  for (int64_t v = 0; v < n; ++v) wrong += fabs(values[v] - now[3 * v] - 2 * now[3 * v + 1]) > 1e-9;
+  CHECK(wrong == 0);
+  hfr_remesher_free(remesher);
+  hfr_options_free(options);
+  hfr_mesh_free(mesh);
+  free(now), free(values);
+}
+
 int main(int argc, char** argv) {
   CHECK(hfr_abi_version() == HFR_ABI_VERSION && hfr_version()[0] >= '0');
   arrays_of_every_type_and_stride();
@@ -463,6 +550,7 @@ int main(int argc, char** argv) {
   files_and_fixed_things(argc > 1 ? argv[1] : ".");
   a_bad_option_leaves_the_mesh();
   a_remesher_steps_and_says_what_it_did();
+  a_callback_carries_a_field_over();
   printf("%d checks, %d failed\n", n_checks, n_failed);
   return n_failed == 0 && n_checks > 100 ? 0 : 1;
 }
