@@ -4,11 +4,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <hfremesh/HalfFace/Generate.hh>
 #include <hfremesh/HalfFace/TetMesh.hh>
+#include <hfremesh/IO/ReadWrite.hh>
 #include <vector>
 
 namespace example {
+
+/// Two meshes for a picture (`hfremesh report before.vtu after.vtu --png both.png`), where a folder is named.
+class Pair {
+ public:
+  explicit Pair(const char* folder) {
+    if (!folder) return;
+    folder_ = folder;
+    std::filesystem::create_directories(folder_);
+  }
+  bool is_wanted() const { return !folder_.empty(); }
+  void before(const hfr::TetMesh& mesh) const { write("before.vtu", mesh); }
+  void after(const hfr::TetMesh& mesh) const { write("after.vtu", mesh); }
+
+ private:
+  void write(const char* name, const hfr::TetMesh& mesh) const {
+    if (is_wanted()) hfr::io::write(folder_ / name, mesh);
+  }
+  std::filesystem::path folder_;
+};
 
 /// The cube from -1 to 1 with an ellipsoid of these half-axes left out of its middle: about 5.8 n³ cells. The
 /// cells follow rays from the ellipsoid to the cube.

@@ -3,7 +3,7 @@
 // is given; the vertices inside follow as those of an elastic body, and what that squeezes is repaired. Then
 // steps too far to be taken at once, whose repairs are ended by a time limit and by a cancel: each is undone,
 // and the mesh is as it was to the last bit. Ends with 1 where a step has left an inverted cell, or was not
-// undone. Usage: example_falling_ball [N STEPS]     6 N³ cells in the box round the ball
+// undone. Usage: example_falling_ball [N STEPS [FOLDER]]     6 N³ cells in the box round it
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -49,6 +49,8 @@ int main(int argc, char** argv) try {
     }
     return displacement;
   };
+  const example::Pair pair(argc > 3 ? argv[3] : nullptr);
+  pair.before(mesh);
   double worst = 180;
   std::size_t n_repairs = 0, n_inverted = 0;
   const double way = 3.5;  // five diameters
@@ -58,6 +60,7 @@ int main(int argc, char** argv) try {
     worst = std::min(worst, step.min_dihedral);
     n_repairs += step.repairs.size();
     n_inverted += step.n_inverted;
+    if (i == n_steps / 2 - 1) pair.after(mesh);  // the deepest
   }
   std::printf("%d steps, %zu repairs: smallest angle %.2f degrees, %zu cells\n", n_steps, n_repairs, worst,
               mesh.n_cells());

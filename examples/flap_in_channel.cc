@@ -7,7 +7,7 @@
 //   - within a window the mesh only moves, so that the coupling's numbers of the flap's vertices stay;
 //   - at the end of one it is repaired where it has to be, and the coupling is told of the new numbers.
 // Ends with 1 where a window has left an inverted cell, or a repair has changed what a conserved field holds.
-// Usage: example_flap_in_channel [N WINDOWS]     24 N³ cells in the channel; N even
+// Usage: example_flap_in_channel [N WINDOWS [FOLDER]]     24 N³ cells in the channel; N even
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +15,8 @@
 #include <hfremesh/HalfFace/Geometry.hh>
 #include <hfremesh/Remesh/Remesher.hh>
 #include <numbers>
+
+#include "Meshes.hh"
 
 namespace {
 
@@ -166,6 +168,8 @@ int main(int argc, char** argv) try {
   options.fields = {{.name = "dye", .how = hfr::Transfer::kConserve}};
   hfr::Remesher remesher(fluid.mesh, options);
 
+  const example::Pair pair(argc > 3 ? argv[3] : nullptr);
+  double worst_shown = 180;
   Coupling coupling(n_windows);
   coupling.set_vertices(fluid.list_flap());
   hfr::TetMesh saved;
@@ -188,8 +192,12 @@ int main(int argc, char** argv) try {
     farthest = std::max(farthest, std::abs(coupling.tip()));
     if (remesher.needs_repair() != hfr::RepairCause::kNone) {
       const double before = fluid.dye();
+      const bool shows = pair.is_wanted() && remesher.min_dihedral() < worst_shown;
+      if (shows) pair.before(fluid.mesh);
+      if (shows) worst_shown = remesher.min_dihedral();
       remesher.repair();
       remesher.transfer();
+      if (shows) pair.after(fluid.mesh);
       lost = std::max(lost, std::abs(fluid.dye() - before) / before);
       coupling.reset_vertices(fluid.list_flap());
       ++n_repairs;

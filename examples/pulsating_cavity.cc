@@ -3,7 +3,7 @@
 // fall below the trigger and cells invert. A temperature, of vertices, and a density, of cells, move with the
 // material and are carried over the repairs. Prints how far they are from what they began with after each
 // period, when all material is back at its place, and what became of the mass. Ends with 1 where that is more
-// than rounding. Usage: example_pulsating_cavity [N STEPS_A_PERIOD]     6 N³ cells
+// than rounding. Usage: example_pulsating_cavity [N STEPS_A_PERIOD [FOLDER]]     6 N³ cells
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +11,8 @@
 #include <hfremesh/HalfFace/Geometry.hh>
 #include <hfremesh/Remesh/Remesher.hh>
 #include <numbers>
+
+#include "Meshes.hh"
 
 namespace {
 
@@ -64,7 +66,8 @@ int main(int argc, char** argv) try {
   options.improve.min_dihedral = 15;
   options.fields = {{.name = "heat"}, {.name = "density", .how = hfr::Transfer::kConserve}};
   hfr::Remesher remesher(mesh, options);
-  double mass_error = 0;
+  const example::Pair pair(argc > 3 ? argv[3] : nullptr);
+  double mass_error = 0, worst = 180;  // the worst mesh that was repaired is shown
   int n_repairs = 0;
   const auto time = [&](int i) { return kLargest * std::sin(2 * std::numbers::pi * i / period); };
   for (int i = 1; i <= 2 * period; ++i) {
@@ -76,8 +79,12 @@ int main(int argc, char** argv) try {
     for (hfr::CellHandle c : mesh.cells())  // a cell keeps what it holds
       density[c] *= before[c.idx()] / hfr::volume(mesh, c);
     if (remesher.needs_repair() != hfr::RepairCause::kNone) {
+      const bool shows = pair.is_wanted() && remesher.min_dihedral() < worst;
+      if (shows) pair.before(mesh);
+      if (shows) worst = remesher.min_dihedral();
       remesher.repair();
       remesher.transfer();
+      if (shows) pair.after(mesh);
       ++n_repairs;
     }
     mass_error = std::max(mass_error, std::abs(mass(mesh, density) - mass_first) / mass_first);
