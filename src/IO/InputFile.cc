@@ -22,6 +22,11 @@ namespace {
 
 std::string reason_of(int error) { return std::generic_category().message(error); }
 
+[[noreturn]] void fail(const std::filesystem::path& path, int error) {
+  if (error == ENOMEM) throw ResourceLimit(path.string() + ": not enough memory");
+  fail(path, reason_of(error));
+}
+
 std::string read_to_end(int descriptor, const std::filesystem::path& path) {
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // bytes
   std::string bytes;
@@ -30,7 +35,7 @@ std::string read_to_end(int descriptor, const std::filesystem::path& path) {
     if (bytes.size() - size < kAtOnce) bytes.resize(2 * bytes.size() + kAtOnce);
     const ssize_t n = ::read(descriptor, bytes.data() + size, bytes.size() - size);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(path, reason_of(errno));
+    if (n < 0) fail(path, errno);
     size += static_cast<std::size_t>(n);
     if (n == 0) break;
   }
@@ -49,7 +54,7 @@ InputFile::InputFile(const std::filesystem::path& path, std::string extension)
   }
   // Without O_NONBLOCK a pipe would be waited for before it can be refused.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) fail(path, reason_of(errno));
+  if (descriptor < 0) fail(path, errno);
   struct stat info {};
   int error = ::fstat(descriptor, &info) == 0 ? 0 : errno;
   if (error == 0 && S_ISDIR(info.st_mode)) error = EISDIR;
@@ -66,7 +71,7 @@ InputFile::InputFile(const std::filesystem::path& path, std::string extension)
     }
   }
   ::close(descriptor);
-  if (error != 0) fail(path, reason_of(error));
+  if (error != 0) fail(path, error);
   if (!regular) fail(path, "Not a regular file");
 }
 

@@ -76,6 +76,7 @@ void remove_temporary_files() noexcept {
 
 OutputFile::OutputFile(const std::filesystem::path& target)
     : target_(target), replaced_(target), slot_(kMostListed) {
+  buffer_.reserve(kBufferSize + kLongestNumber);  // before there is a file that would stay if this throws
   struct stat info {};
   const bool to_stdout = is_standard_output(target);
   const bool exists = !to_stdout && ::stat(target.c_str(), &info) == 0;
@@ -98,7 +99,6 @@ OutputFile::OutputFile(const std::filesystem::path& target)
     fail(error);
   }
   std::setvbuf(file_, nullptr, _IONBF, 0);  // buffer_ is the buffer
-  buffer_.reserve(kBufferSize + kLongestNumber);
 }
 
 OutputFile::~OutputFile() {

@@ -200,6 +200,27 @@ TEST(ExitCodes, FiveForMoreMemoryThanThereIs) {
   EXPECT_THAT(tool.files(), IsEmpty());
 }
 
+TEST(ExitCodes, FiveForAFileThatMemoryDoesNotHold) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
+#endif
+  Tool tool;
+  const Outcome outcome = tool.shell("truncate -s 1G in.vtu; ulimit -v 400000; \"$TOOL\" in.vtu -o out.mesh");
+  EXPECT_EQ(outcome.code, 5) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("in.vtu: not enough memory"));
+  EXPECT_THAT(tool.files(), ElementsAre("in.vtu"));
+}
+
+TEST(ExitCodes, NoTemporaryFileStaysHoweverLittleMemoryThereIs) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
+#endif
+  Tool tool;
+  tool.shell("\"$TOOL\" generate box --n 2 2 2 -o in.vtu");
+  tool.shell("for k in $(seq 12000 250 40000); do (ulimit -v $k; \"$TOOL\" in.vtu -o out.vtu -q -j 1); done");
+  EXPECT_THAT(tool.files(), ElementsAre("in.vtu", "out.vtu")) << "or the limits are too low for any run";
+}
+
 TEST(ExitCodes, FiveForMoreCellsThanAnIndexCounts) {
   Tool tool;
   const Outcome outcome = tool.run("generate ball --n 4000 -o out.mesh");
