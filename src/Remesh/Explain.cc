@@ -59,7 +59,7 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy&
     if (cell.reason == StuckReason::kNotFound) cell.reason = ended;
   if (max_cells_met > 0 && has(options.ops, Ops::kInsert))
     result.cell_bound = blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
-  if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, options);
+  if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, result.unfillable_faces, options);
 }
 
 }  // namespace hfr

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/SurfaceRun.hh"
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "HalfFace/Errors.hh"
 #include "Remesh/StuckCells.hh"
@@ -127,12 +129,22 @@ void SurfaceCopy::put_back(SurfaceMesh* surface) const {
 SurfaceRun::~SurfaceRun() = default;
 
 HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
-                     const ImproveOptions& options) {
-  const std::vector<CellHandle> cells = cells_held_back(stuck);
+                     std::span<const HalfFaceHandle> unfillable, const ImproveOptions& options) {
+  std::vector<CellHandle> cells = cells_held_back(stuck);
   HeldCells held;
   held.cells = cells.size();
   held.known = true;
-  for (FreedBy by : freed_by(mesh, cells, degrees, options.surface, options.policy)) {
+  for (HalfFaceHandle h : unfillable) cells.push_back(cell_of(h));
+  const std::vector<FreedBy> by_cell = freed_by(mesh, cells, degrees, options.surface, options.policy);
+  const auto fold_begin = by_cell.begin() + static_cast<std::ptrdiff_t>(held.cells);
+  const FreedBy fold =
+      fold_begin == by_cell.end() ? FreedBy::kShape : *std::min_element(fold_begin, by_cell.end());
+  std::vector<CellHandle> folded;  // ascending, as `stuck` is
+  for (const StuckCell& cell : stuck)
+    if (cell.reason == StuckReason::kFoldedSurface) folded.push_back(cell.cell);
+  for (std::size_t i = 0; i < held.cells; ++i) {
+    const bool on_fold = std::binary_search(folded.begin(), folded.end(), cells[i]);
+    const FreedBy by = on_fold ? std::min(by_cell[i], fold) : by_cell[i];
     if (by == FreedBy::kFlat) ++held.by_flat;
     if (by == FreedBy::kFree) ++held.by_free;
     if (by == FreedBy::kShape) ++held.by_shape;

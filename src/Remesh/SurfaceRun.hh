@@ -57,9 +57,10 @@ class SurfaceCopy {
   std::shared_ptr<const SurfaceMesh> copy_;
 };
 
-/// What the frozen surface holds back among the cells that are stuck below `degrees`.
+/// What the frozen surface holds back among the cells that are stuck below `degrees`. A cell that a fold of
+/// the boundary makes invalid is freed by what frees a cell on the fold; `unfillable`: unfillable_faces().
 HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, double degrees,
-                     const ImproveOptions& options);
+                     std::span<const HalfFaceHandle> unfillable, const ImproveOptions& options);
 
 /// With a surface that may change: proofs by faces that do not stay are taken back, and what the features
 /// keep below the angle is said to be.

@@ -56,7 +56,8 @@ void rebuild(SurfaceMesh*, const TetMesh&, par::Policy) {}
 SurfaceCopy::SurfaceCopy(const SurfaceMesh*) {}
 void SurfaceCopy::put_back(SurfaceMesh*) const {}
 
-HeldCells held_cells(const TetMesh&, const std::vector<StuckCell>& stuck, double, const ImproveOptions&) {
+HeldCells held_cells(const TetMesh&, const std::vector<StuckCell>& stuck, double,
+                     std::span<const HalfFaceHandle>, const ImproveOptions&) {
   HeldCells held;
   held.cells = cells_held_back(stuck).size();
   return held;

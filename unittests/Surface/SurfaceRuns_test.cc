@@ -198,6 +198,25 @@ TEST(SurfaceRuns, FrozenSaysWhatTheSurfaceHoldsBackAndWhatWouldFreeIt) {
   EXPECT_EQ(held(bent(0), SurfaceMode::kFlat, 30).held.cells, 0U) << "counted for a frozen surface only";
 }
 
+TEST(Surface, WhatAFoldOfTheBoundaryHoldsIsFreedByWhatFreesTheFold) {
+  // A pressed box with jittered sides: two of its faces fold onto one another, and no mesh with them is
+  // without an invalid cell. The one that there is has corners of the box only.
+  generate::Arrays arrays = generate::jittered_box({4, 4, 4}, 0.35, 20);
+  for (Vec3& p : arrays.points) p.z *= 0.1;
+  const TetMesh input = built(arrays);
+  const auto run = [&](SurfaceMode mode) {
+    TetMesh mesh = input;
+    return improve(mesh, with(mode));
+  };
+  const Result frozen = run(SurfaceMode::kFrozen);
+  ASSERT_GT(frozen.unfillable_faces.size(), 0U);
+  ASSERT_GT(frozen.after.inverted.size() + frozen.after.flat.size(), 0U);
+  ASSERT_GT(frozen.held.cells, 0U);
+  const Result flat = run(SurfaceMode::kFlat);
+  ASSERT_EQ(flat.after.inverted.size() + flat.after.flat.size(), 0U) << "there is nothing to be freed";
+  EXPECT_EQ(frozen.held.by_shape, 0U);
+}
+
 /// A sector of a ring with a bent roof: straight and round sharp edges, smooth walls, and flat sides.
 TetMesh fan(double jitter) {
   generate::Arrays arrays = generate::jittered_box({8, 4, 4}, jitter, 7);
