@@ -303,9 +303,10 @@ std::size_t PassRunner<Metric>::insert_pass(const Turn& turn) {
           if (!turn.focus.everything() && !run.may_add_poor_cells) op.poor_below = turn.focus.below;
           std::vector<typename Op::Seed> seeds;
           for (CellHandle c : worst_apart(cells, turn.focus)) seeds.emplace_back(c);
-          const std::size_t n_waiting = std::max<std::size_t>(seeds.size() + waiting_.size(), 1);
-          op.max_sites = std::max(effort.sites_of_round / n_waiting, effort.sites_of_many);
-          if (n_waiting > effort.few_seeds) op.least_promise = effort.promise_of_many;
+          if (seeds.size() + waiting_.size() > effort.few_seeds) {
+            op.max_sites = effort.sites_of_many;
+            op.least_promise = effort.promise_of_many;
+          }
           return round.run(op, seeds);
         },
         list);

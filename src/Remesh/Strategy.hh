@@ -90,16 +90,13 @@ struct PassEffort {
   std::size_t cells_of_vertex = 4;  ///< that a new one takes, about
   std::size_t search_points = 14;   ///< points of a cavity whose fillings are searched (ClusterSearch)
   std::size_t search_nodes = 300;   ///< of each search: more found little more on the test meshes
-  /// Sites of a new vertex that a round of insertion follows up, the most promising ones of each cell that
-  /// waits for a vertex: all there are of the last seven, `sites_of_many` of each where there are 64 or more.
-  /// Of those with less than 0.3 of the promise that is needed, one in 200 makes a plan; for the last cells
-  /// each counts.
-  std::size_t sites_of_round = 192;
-  std::size_t sites_of_many = 3;
-  /// Where more cells than these wait, sites have to promise as much; see VertexInsertion::least_promise.
-  /// With a frozen surface nearly half of the cells have no site of more than 0.5, and one in twelve of these
-  /// a plan.
+  /// Where more cells than this wait for a vertex, only the most promising sites are followed up for each:
+  /// `sites_of_many` find the same as all on the test meshes, in half the time; for the last ones each
+  /// counts.
   std::size_t few_seeds = 64;
+  std::size_t sites_of_many = 3;
+  /// Least promise of such a site; see VertexInsertion::least_promise. With a frozen surface nearly half of
+  /// the cells have no site of more, and one in twelve of these a plan.
   double promise_of_many = 0;
   /// Where so many vertices of a curved surface are looked at, or one in `many_moves_share` of the mesh, the
   /// worst cell of a star has to rise by `move_gain` for its vertex to move: moves cost far more there than
