@@ -12,8 +12,8 @@ program is given the same motion of whatever vertices it has:
   gmsh       meshes the volume anew in every step, between the surfaces as they are; Delaunay, Optimize
 A field is carried along: in each step it changes by what the exact function changes by at the vertex, so that what it
 is off by in the end was made by carrying it over, and by that alone. For Mmg and Gmsh, which do not carry fields, this
-script interpolates in the mesh as it was, by the same formula; the time of that is left out. Times are CPU time of one thread, of
-the step, or of the meshing with what copies arrays in and out.
+script interpolates in the mesh as it was, by the same formula; the time of that is left out. Times are CPU time of
+one thread, of the step, or of the meshing with what copies arrays in and out.
 """
 import argparse
 import os

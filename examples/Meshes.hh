@@ -12,23 +12,23 @@
 
 namespace example {
 
-/// Two meshes for a picture (`hfremesh report before.vtu after.vtu --png both.png`), where a folder is named.
-class Pair {
+/// Where meshes are written to that somebody may want to look at; nowhere without a name. Pictures are made
+/// by `hfremesh report before.vtu after.vtu --png both.png`.
+class Folder {
  public:
-  explicit Pair(const char* folder) {
-    if (!folder) return;
-    folder_ = folder;
-    std::filesystem::create_directories(folder_);
+  explicit Folder(const char* name) {
+    if (!name) return;
+    path_ = name;
+    std::filesystem::create_directories(path_);
   }
-  bool is_wanted() const { return !folder_.empty(); }
-  void before(const hfr::TetMesh& mesh) const { write("before.vtu", mesh); }
-  void after(const hfr::TetMesh& mesh) const { write("after.vtu", mesh); }
+  bool is_wanted() const { return !path_.empty(); }
+  const std::filesystem::path& path() const { return path_; }
+  void write(const char* name, const hfr::TetMesh& mesh) const {
+    if (is_wanted()) hfr::io::write(path_ / name, mesh);
+  }
 
  private:
-  void write(const char* name, const hfr::TetMesh& mesh) const {
-    if (is_wanted()) hfr::io::write(folder_ / name, mesh);
-  }
-  std::filesystem::path folder_;
+  std::filesystem::path path_;
 };
 
 /// The cube from -1 to 1 with an ellipsoid of these half-axes left out of its middle: about 5.8 n³ cells. The

@@ -49,8 +49,8 @@ int main(int argc, char** argv) try {
     }
     return displacement;
   };
-  const example::Pair pair(argc > 3 ? argv[3] : nullptr);
-  pair.before(mesh);
+  const example::Folder folder(argc > 3 ? argv[3] : nullptr);
+  folder.write("before.vtu", mesh);
   double worst = 180;
   std::size_t n_repairs = 0, n_inverted = 0;
   const double way = 3.5;  // five diameters
@@ -60,7 +60,7 @@ int main(int argc, char** argv) try {
     worst = std::min(worst, step.min_dihedral);
     n_repairs += step.repairs.size();
     n_inverted += step.n_inverted;
-    if (i == n_steps / 2 - 1) pair.after(mesh);  // the deepest
+    if (i == n_steps / 2 - 1) folder.write("after.vtu", mesh);  // the deepest
   }
   std::printf("%d steps, %zu repairs: smallest angle %.2f degrees, %zu cells\n", n_steps, n_repairs, worst,
               mesh.n_cells());

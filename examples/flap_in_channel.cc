@@ -168,7 +168,7 @@ int main(int argc, char** argv) try {
   options.fields = {{.name = "dye", .how = hfr::Transfer::kConserve}};
   hfr::Remesher remesher(fluid.mesh, options);
 
-  const example::Pair pair(argc > 3 ? argv[3] : nullptr);
+  const example::Folder folder(argc > 3 ? argv[3] : nullptr);
   double worst_shown = 180;
   Coupling coupling(n_windows);
   coupling.set_vertices(fluid.list_flap());
@@ -192,12 +192,12 @@ int main(int argc, char** argv) try {
     farthest = std::max(farthest, std::abs(coupling.tip()));
     if (remesher.needs_repair() != hfr::RepairCause::kNone) {
       const double before = fluid.dye();
-      const bool shows = pair.is_wanted() && remesher.min_dihedral() < worst_shown;
-      if (shows) pair.before(fluid.mesh);
+      const bool shows = folder.is_wanted() && remesher.min_dihedral() < worst_shown;
+      if (shows) folder.write("before.vtu", fluid.mesh);
       if (shows) worst_shown = remesher.min_dihedral();
       remesher.repair();
       remesher.transfer();
-      if (shows) pair.after(fluid.mesh);
+      if (shows) folder.write("after.vtu", fluid.mesh);
       lost = std::max(lost, std::abs(fluid.dye() - before) / before);
       coupling.reset_vertices(fluid.list_flap());
       ++n_repairs;

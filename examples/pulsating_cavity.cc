@@ -66,7 +66,7 @@ int main(int argc, char** argv) try {
   options.improve.min_dihedral = 15;
   options.fields = {{.name = "heat"}, {.name = "density", .how = hfr::Transfer::kConserve}};
   hfr::Remesher remesher(mesh, options);
-  const example::Pair pair(argc > 3 ? argv[3] : nullptr);
+  const example::Folder folder(argc > 3 ? argv[3] : nullptr);
   double mass_error = 0, worst = 180;  // the worst mesh that was repaired is shown
   int n_repairs = 0;
   const auto time = [&](int i) { return kLargest * std::sin(2 * std::numbers::pi * i / period); };
@@ -79,12 +79,12 @@ int main(int argc, char** argv) try {
     for (hfr::CellHandle c : mesh.cells())  // a cell keeps what it holds
       density[c] *= before[c.idx()] / hfr::volume(mesh, c);
     if (remesher.needs_repair() != hfr::RepairCause::kNone) {
-      const bool shows = pair.is_wanted() && remesher.min_dihedral() < worst;
-      if (shows) pair.before(mesh);
+      const bool shows = folder.is_wanted() && remesher.min_dihedral() < worst;
+      if (shows) folder.write("before.vtu", mesh);
       if (shows) worst = remesher.min_dihedral();
       remesher.repair();
       remesher.transfer();
-      if (shows) pair.after(mesh);
+      if (shows) folder.write("after.vtu", mesh);
       ++n_repairs;
     }
     mass_error = std::max(mass_error, std::abs(mass(mesh, density) - mass_first) / mass_first);

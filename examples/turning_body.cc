@@ -39,24 +39,20 @@ std::vector<hfr::Vec3> turn(const hfr::TetMesh& mesh, double angle) {
 
 class Series {
  public:
-  explicit Series(const char* folder) {
-    if (!folder) return;
-    folder_ = folder;
-    std::filesystem::create_directories(folder_);
-  }
+  explicit Series(const char* folder) : folder_(folder) {}
   void add(const hfr::TetMesh& mesh, int step) {
-    if (folder_.empty()) return;
+    if (!folder_.is_wanted()) return;
     char name[32];
     std::snprintf(name, sizeof name, "step_%04d.vtu", step);
-    hfr::io::write(folder_ / name, mesh);
+    folder_.write(name, mesh);
     entries_ += "    <DataSet timestep=\"" + std::to_string(step) + "\" file=\"" + name + "\"/>\n";
-    std::ofstream(folder_ / "series.pvd")
+    std::ofstream(folder_.path() / "series.pvd")
         << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n"
         << entries_ << "  </Collection>\n</VTKFile>\n";
   }
 
  private:
-  std::filesystem::path folder_;
+  example::Folder folder_;
   std::string entries_;
 };
 

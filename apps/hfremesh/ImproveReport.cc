@@ -114,8 +114,9 @@ void report_run(Json& report, const TetMesh& mesh, const Result& result, const I
 void print_ceiling(const Result& result) {
   const EdgeWedge& ceiling = result.after.angle_ceiling;
   if (result.surface.mode != SurfaceMode::kFrozen || !ceiling.cell.is_valid()) return;
-  if (!result.unfillable_faces.empty()) return;  // no mesh is without an invalid cell, which is said already
-  constexpr double kRegular = 70.528;            // degrees; no tetrahedron has more
+  // Where no mesh is without an invalid cell, that is said already.
+  if (!result.unfillable_faces.empty()) return;
+  constexpr double kRegular = 70.528;  // degrees; no tetrahedron has more
   if (ceiling.degrees >= kRegular) return;
   print("smallest angle: at most {:.2f} degrees with this surface (proven), {:.2f} reached\n",
         ceiling.degrees, result.after.min_dihedral.min);

@@ -46,7 +46,9 @@ typedef struct hfr_array {
   int64_t row_stride; /* bytes from row to row; 0: rows follow one another */
 } hfr_array;
 
+typedef struct hfr_mesh hfr_mesh;
 typedef struct hfr_options hfr_options;
+typedef struct hfr_remesher hfr_remesher;
 
 /* --- the library --- */
 
@@ -79,8 +81,6 @@ typedef void (*hfr_progress_callback)(const hfr_progress* now, void* user);
 typedef int (*hfr_cancel_callback)(void* user);
 HFR_C_EXPORT hfr_status hfr_options_on_progress(hfr_options* options, hfr_progress_callback call, void* user);
 HFR_C_EXPORT hfr_status hfr_options_on_cancel(hfr_options* options, hfr_cancel_callback ask, void* user);
-typedef struct hfr_mesh hfr_mesh;
-typedef struct hfr_remesher hfr_remesher;
 
 /* One repair of a step, whose fields are being carried over. All of it is valid during the call alone. */
 typedef struct hfr_transfer {

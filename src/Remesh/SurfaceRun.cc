@@ -134,14 +134,14 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
   HeldCells held;
   held.cells = cells.size();
   held.known = true;
-  for (HalfFaceHandle h : unfillable) cells.push_back(cell_of(h));
-  const std::vector<FreedBy> by_cell = freed_by(mesh, cells, degrees, options.surface, options.policy);
-  const auto fold_begin = by_cell.begin() + static_cast<std::ptrdiff_t>(held.cells);
-  const FreedBy fold =
-      fold_begin == by_cell.end() ? FreedBy::kShape : *std::min_element(fold_begin, by_cell.end());
   std::vector<CellHandle> folded;  // ascending, as `stuck` is
   for (const StuckCell& cell : stuck)
     if (cell.reason == StuckReason::kFoldedSurface) folded.push_back(cell.cell);
+  if (!folded.empty())
+    for (HalfFaceHandle h : unfillable) cells.push_back(cell_of(h));
+  const std::vector<FreedBy> by_cell = freed_by(mesh, cells, degrees, options.surface, options.policy);
+  FreedBy fold = FreedBy::kShape;
+  for (std::size_t i = held.cells; i < by_cell.size(); ++i) fold = std::min(fold, by_cell[i]);
   for (std::size_t i = 0; i < held.cells; ++i) {
     const bool on_fold = std::binary_search(folded.begin(), folded.end(), cells[i]);
     const FreedBy by = on_fold ? std::min(by_cell[i], fold) : by_cell[i];

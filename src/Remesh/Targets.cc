@@ -45,7 +45,6 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
   const ThroughoutEffort& throughout = run.strategy.throughout;
   const bool bounded = is_bounded(run), is_poor = bounded && is_poor_throughout(run);
   double now = smallest_dihedral(run.mesh, run.policy());
-  double highest = now;     // that it has been on the way
   double last = 0;          // that was worked for
   bool has_brought = true;  // enough, the target before
   for (const TargetAngle& target : targets) {
@@ -60,11 +59,8 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
     else
       polish(run, run.strategy.polish, target.degrees);
     now = smallest_dihedral(run.mesh, run.policy());
-    highest = std::max(highest, now);
     has_brought = share_below(run.mesh, target.degrees, run.policy()) < effort.enough_left * share;
   }
-  // What is worked for with obtuse angles in mind takes from the worst cells at times.
-  if (now < highest && !run.control.stopped()) polish(run, run.strategy.polish, highest);
 }
 
 void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngle> targets) {

@@ -30,9 +30,9 @@ enum class Transfer {
   kCallback,
   /// A field of vertices that is smooth: as kLinear, and bent by the gradients that the old values have at
   /// the
-  /// corners of the old cell. The error falls with the cube of the cells' size and not with the square where
-  /// these gradients are good, and adds up more slowly over many repairs. Exact for linear functions, and for
-  /// constants to the bit; no value leaves the range of the corners'. Beyond the mesh as it was: as kLinear.
+  /// corners of the old cell. The errors of kLinear have one sign where vertices move between old ones, and
+  /// add up over repairs; these are a fraction of them. Exact for linear functions, and for constants to the
+  /// bit; no value leaves the range of the corners'. Beyond the mesh as it was: as kLinear.
   kQuadratic,
 };
 /// "linear", "quadratic", "inherit", "conserve"; throws InvalidInput that lists them.

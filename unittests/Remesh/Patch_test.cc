@@ -261,6 +261,28 @@ TEST(SearchPatches, TakesVerticesOutWhereNothingElseHelps) {
   EXPECT_GT(raised, 1);
 }
 
+TEST(SearchPatches, LeavesDearerTriesToTheNextTurnWhereOneHasHelped) {
+  PatchEffort all = kLittleEffort;
+  all.few = 1000;
+  all.patches = 1;
+  all.turns = 1;
+  all.degrees = 5;  // more than tries come to at once
+  PatchEffort first = all;
+  first.rows = first.vertices = first.removals = 0;
+  int helped = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = poor_box(s);
+    TetMesh other = mesh;
+    const ImproveOptions options = serial();
+    StageBench bench(mesh, options), other_bench(other, options);
+    if (!search_patches(bench.run, 60, first)) continue;
+    ++helped;
+    EXPECT_TRUE(search_patches(other_bench.run, 60, all));
+    EXPECT_TRUE(identical(mesh, other)) << s;
+  }
+  EXPECT_GT(helped, 2);
+}
+
 TEST(SearchPatches, PutsAnApexOverEachNeedleOfABandAtOnce) {
   PatchEffort effort = kLittleEffort;
   effort.vertices = 0;

@@ -188,10 +188,17 @@ TEST(ExitCodes, FiveWhenTheTimeIsUpAndTheMeshIsWritten) {
   EXPECT_EQ(tool.run("stats out.mesh").code, 0);
 }
 
-TEST(ExitCodes, FiveForMoreMemoryThanThereIs) {
+/// Runs whose address space is limited.
+class LittleMemory : public ::testing::Test {
+ protected:
+  void SetUp() override {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
+    GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
 #endif
+  }
+};
+
+TEST_F(LittleMemory, FiveForMoreMemoryThanThereIs) {
   Tool tool;
   const Outcome outcome = tool.shell("ulimit -v 400000; \"$TOOL\" generate box --n 300 300 300 -o out.mesh");
   EXPECT_EQ(outcome.code, 5) << outcome.err;
@@ -200,10 +207,7 @@ TEST(ExitCodes, FiveForMoreMemoryThanThereIs) {
   EXPECT_THAT(tool.files(), IsEmpty());
 }
 
-TEST(ExitCodes, FiveForAFileThatMemoryDoesNotHold) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
-#endif
+TEST_F(LittleMemory, FiveForAFileThatMemoryDoesNotHold) {
   Tool tool;
   const Outcome outcome = tool.shell("truncate -s 1G in.vtu; ulimit -v 400000; \"$TOOL\" in.vtu -o out.mesh");
   EXPECT_EQ(outcome.code, 5) << outcome.err;
@@ -211,10 +215,7 @@ TEST(ExitCodes, FiveForAFileThatMemoryDoesNotHold) {
   EXPECT_THAT(tool.files(), ElementsAre("in.vtu"));
 }
 
-TEST(ExitCodes, NoTemporaryFileStaysHoweverLittleMemoryThereIs) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
-#endif
+TEST_F(LittleMemory, NoTemporaryFileStaysHoweverLittleMemoryThereIs) {
   Tool tool;
   tool.shell("\"$TOOL\" generate box --n 2 2 2 -o in.vtu");
   tool.shell("for k in $(seq 12000 250 40000); do (ulimit -v $k; \"$TOOL\" in.vtu -o out.vtu -q -j 1); done");

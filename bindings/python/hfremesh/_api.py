@@ -284,8 +284,8 @@ def improve(
     regions: (m,) integers. fields: {name: array of n or m rows}; point_fields and cell_fields say which. triangles:
     (k, 3) faces that stay as they are. fixed_vertices: (k,).
 
-    transfer: {name: how}, how being 'linear' or 'quadratic' (fields of vertices), 'inherit' or 'conserve' (fields of cells), or
-    ('conserve', density), a field that values are weighted by. Other fields are attached to their vertices and cells.
+    transfer: {name: how}, how being 'linear' or 'quadratic' (fields of vertices), 'inherit' or 'conserve' (fields of
+    cells), or ('conserve', density), a field that values are weighted by. Other fields are attached to their vertices and cells.
 
     progress: called between passes with a Progress. cancel: asked between passes; True ends the run. KeyboardInterrupt
     does, too. Either way the result has the best mesh so far, and stop is 'cancelled'. What a callback raises is

@@ -33,8 +33,8 @@ class Remesher(_core.Remesher):
     motion: 'given' (a displacement for every vertex), or 'laplace' and 'elastic': of the boundary and of fixed vertices
     alone, which others follow.
 
-    transfer: {name: how} for fields of the mesh: 'linear' or 'quadratic' (of vertices), 'inherit' or 'conserve' (of cells), or
-    ('conserve', density), or a function f(old, new, edits) of two Meshes and what the repair did, which returns the new
+    transfer: {name: how} for fields of the mesh: 'linear' or 'quadratic' (of vertices), 'inherit' or 'conserve' (of
+    cells), or ('conserve', density), or a function f(old, new, edits) of two Meshes and what the repair did, which returns the new
     values, one row a vertex or cell of `new`; there the field has what operators made of it. Others are attached to
     their vertices and cells.
 
