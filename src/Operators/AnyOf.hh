@@ -25,7 +25,7 @@ struct AnyOf {
   };
   using Metric = decltype(std::tuple_element_t<0, std::tuple<Ops...>>::metric);
   static constexpr bool kRankByGain = true;
-  static constexpr double kSeedNanoseconds = std::max({seed_nanoseconds<Ops>()...});
+  static constexpr double kSeedNanoseconds = std::min({seed_nanoseconds<Ops>()...});
 
   std::tuple<Ops...> operators;
   Metric metric = std::get<0>(operators).metric;

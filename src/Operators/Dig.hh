@@ -21,14 +21,6 @@ namespace hfr::detail {
 inline constexpr int kAscent = 12;            // steps of one move of the new vertex
 inline constexpr std::size_t kPatience = 12;  // cells dug without finding a better cavity
 
-/// A cavity, the place of the new vertex, and what they would be worth.
-struct Site {
-  Growth growth;
-  Vec3 place;
-  double old_worst = 0;
-  double new_worst = -std::numeric_limits<double>::infinity();
-};
-
 /// Every outer face of the cavity gets a cell.
 struct NoneIsCut {
   bool operator()(HalfFaceHandle) const { return false; }

@@ -16,6 +16,7 @@ namespace hfr {
 /// result is the best there is; it contains the paper's EDGE operator, whose star forms are the fans.
 template <class Metric>
 struct EdgeRemoval {
+  static constexpr double kSeedNanoseconds = 2'000;
   static constexpr int kMaxRing = 32;  ///< larger rings are left alone
 
   using Seed = EdgeHandle;  ///< 6·cell + local edge, of any cell of the ring

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
@@ -148,6 +149,17 @@ class GrownCells {
   std::size_t n_kept_ = 0;
 };
 
+namespace detail {
+
+/// A cavity, the place of the new vertex, and what they would be worth.
+struct Site {
+  Growth growth;
+  Vec3 place;
+  double old_worst = 0;
+  double new_worst = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace detail
 }  // namespace hfr
 
 #endif

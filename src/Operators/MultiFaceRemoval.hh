@@ -26,6 +26,7 @@ struct FaceTree {
 /// a dynamic programme. With one face it is the 2-3 swap.
 template <class Metric>
 struct MultiFaceRemoval {
+  static constexpr double kSeedNanoseconds = 2'000;
   /// Either half-face of an inner face. The seed of a plan also says which other faces go.
   struct Seed {
     HalfFaceHandle halfface;

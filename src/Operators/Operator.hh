@@ -54,6 +54,34 @@ concept LocalOperator = std::derived_from<typename Op::Plan, PlanBase> &&
   op.metric;
 };
 
+/// An operator whose evaluation is dear, and falls into steps of parts that read the mesh and write nothing
+/// but a place of their own: where few seeds wait, the parts of a step run at the same time.
+///  - Parts: what has been found out about one seed; made of the seed.
+///  - n_parts: parts of the step; 0: the evaluation has ended, and any step after it has none either. May put
+///    in order what the step before found.
+///  - evaluate_part: one of them.
+///  - plan: what comes of all; evaluate() is to give the same (see evaluate_in_turn()).
+template <class Op>
+concept EvaluatesInParts = LocalOperator<Op> &&
+    std::constructible_from<typename Op::Parts, typename Op::Seed> &&
+    requires(const Op op, const TetMesh& mesh, typename Op::Parts& parts, int step, std::size_t part) {
+  { op.n_parts(parts, step) } -> std::same_as<std::size_t>;
+  { op.evaluate_part(mesh, parts, step, part) } -> std::same_as<void>;
+  { op.plan(mesh, parts) } -> std::same_as<std::optional<typename Op::Plan>>;
+};
+
+/// The parts of one seed, one after the other.
+template <class Op>
+std::optional<typename Op::Plan> evaluate_in_turn(const Op& op, const TetMesh& mesh,
+                                                  const typename Op::Seed& seed) {
+  typename Op::Parts parts(seed);
+  for (int step = 0;; ++step) {
+    const std::size_t n = op.n_parts(parts, step);
+    if (n == 0) return op.plan(mesh, parts);
+    for (std::size_t i = 0; i < n; ++i) op.evaluate_part(mesh, parts, step, i);
+  }
+}
+
 /// What a plan says of its cavity and the cavity does not hold; empty where they agree. Rounds hand out slots
 /// by the plan and write by the cavity, so builds with assertions stop where the two differ. `scope` is that
 /// of the plan's seed.

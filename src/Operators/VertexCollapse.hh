@@ -15,6 +15,7 @@ namespace hfr {
 /// link, which is the collapse of the edge between the two. Every link vertex is tried.
 template <class Metric>
 struct VertexCollapse {
+  static constexpr double kSeedNanoseconds = 20'000;
   using Seed = VertexHandle;
   struct Plan : PlanBase {
     VertexHandle seed;

@@ -46,6 +46,42 @@ bool multiplies_poor(const TetMesh& mesh, const VertexInsertion<Metric>& op, con
   return n_created > n_removed + VertexInsertion<Metric>::kMorePoor;
 }
 
+/// First places of a seed are numbered: the middle of the cell, of its faces, of its edges, and four over
+/// each constrained face. Those of one such face are one part, since they are found together.
+constexpr std::size_t kFirstParts = 1 + 4 + 6 + 4;
+
+/// Digs from the first places that belong to one part; where there is none, the site stays what it is.
+template <class Metric, class Sites>
+void dig_first(const TetMesh& mesh, CellHandle c, std::size_t part, const detail::Digger<Metric>& digger,
+               Sites& sites) {
+  GrownCells cells(mesh, c);
+  const auto at = [&](std::size_t i) { return mesh.point(mesh.cell(c).v[i]); };
+  if (part == 0) {
+    sites[part] = digger.dig(cells, 0.25 * ((at(0) + at(1)) + (at(2) + at(3))));
+  } else if (part < 5) {
+    const HalfFaceHandle h = halfface_of(c, static_cast<int>(part - 1));
+    if (!cells.grow(h)) return;
+    const auto p = detail::points_of(mesh, h);
+    sites[part] = digger.dig(cells, (1.0 / 3.0) * ((p[0] + p[1]) + p[2]));
+  } else if (part < 11) {
+    HalfFaceHandle behind;  // which the next cell lies
+    const bool inside =
+        mesh.walk_ring(c, static_cast<int>(part - 5), [&](CellHandle d, VertexHandle p, VertexHandle) {
+          if (behind.is_valid() && !cells.grow(behind)) return false;
+          behind = mesh.ring_exit(d, p);
+          return true;
+        });
+    const auto& ends = kEdgeCorners[part - 5];
+    if (inside) sites[part] = digger.dig(cells, 0.5 * (at(ends[0]) + at(ends[1])));
+  } else {
+    const HalfFaceHandle h = halfface_of(c, static_cast<int>(part - 11));
+    if (!mesh.is_constrained(h)) return;
+    const auto places = places_above<Metric>(detail::points_of(mesh, h));
+    for (std::size_t i = 0; i < places.size(); ++i)
+      sites[11 + 4 * (part - 11) + i] = digger.dig(cells, places[i]);
+  }
+}
+
 }  // namespace
 
 template <class Metric>
@@ -55,61 +91,56 @@ void VertexInsertion<Metric>::scope(const TetMesh& mesh, const Seed& seed, Scope
 
 template <class Metric>
 auto VertexInsertion<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> std::optional<Plan> {
-  const detail::Digger<Metric> digger(mesh, metric, quality, max_cells);
-  if (only_place) {
-    const detail::Site site = digger.dig(GrownCells(mesh, seed.cell), *only_place);
-    if (!(site.new_worst > 0 && site.new_worst > gain * site.old_worst)) return std::nullopt;
-    return detail::plan_for(*this, mesh, seed, site);
-  }
-  FixedVector<detail::Site, kMaxSites> sites;
-  const auto try_from = [&](const GrownCells& cells, Vec3 place) {
-    sites.push_back(digger.dig(cells, place));
-  };
-  const Cell& cell = mesh.cell(seed.cell);
-  const GrownCells alone(mesh, seed.cell);
-  const auto at = [&](std::size_t i) { return mesh.point(cell.v[i]); };
-  try_from(alone, 0.25 * ((at(0) + at(1)) + (at(2) + at(3))));
-  for (int k = 0; k < 4; ++k) {
-    GrownCells pair = alone;
-    if (!pair.grow(halfface_of(seed.cell, k))) continue;
-    const auto f = mesh.halfface_vertices(halfface_of(seed.cell, k));
-    try_from(pair, (1.0 / 3.0) * ((mesh.point(f[0]) + mesh.point(f[1])) + mesh.point(f[2])));
-  }
-  for (int e = 0; e < 6; ++e) {
-    GrownCells ring = alone;
-    HalfFaceHandle behind;  // which the next cell lies
-    const bool inside = mesh.walk_ring(seed.cell, e, [&](CellHandle c, VertexHandle p, VertexHandle) {
-      if (behind.is_valid() && !ring.grow(behind)) return false;
-      behind = mesh.ring_exit(c, p);
-      return true;
-    });
-    const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
-    if (inside) try_from(ring, 0.5 * (at(ends[0]) + at(ends[1])));
-  }
-  for (int k = 0; k < 4; ++k) {
-    const HalfFaceHandle h = halfface_of(seed.cell, k);
-    if (mesh.is_constrained(h))
-      for (Vec3 place : places_above<Metric>(detail::points_of(mesh, h))) try_from(alone, place);
-  }
+  return evaluate_in_turn(*this, mesh, seed);
+}
+
+template <class Metric>
+std::size_t VertexInsertion<Metric>::n_parts(Parts& parts, int step) const {
+  if (only_place) return step == 0 ? 1 : 0;
+  if (step == 0) return kFirstParts;
+  if (step > 1) return 0;
+  const auto& sites = parts.sites;
   std::array<std::uint8_t, kMaxSites> order;
-  const auto last = order.begin() + static_cast<std::ptrdiff_t>(sites.size());
-  std::iota(order.begin(), last, std::uint8_t{0});
-  std::sort(order.begin(), last, [&](std::uint8_t i, std::uint8_t j) {
+  std::iota(order.begin(), order.end(), std::uint8_t{0});
+  std::sort(order.begin(), order.end(), [&](std::uint8_t i, std::uint8_t j) {
     return sites[i].new_worst != sites[j].new_worst ? sites[i].new_worst > sites[j].new_worst : i < j;
   });
-  detail::Site best;
-  for (std::size_t i = 0; i < std::min(max_sites, sites.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(max_sites, kMaxSites); ++i) {
     if (only_site >= 0 && i != static_cast<std::size_t>(only_site)) continue;
     const detail::Site& start = sites[order[i]];
-    if (start.new_worst < least_promise * gain * start.old_worst) continue;
-    const detail::Site site = digger.follow_up(start, kMaxDigs);
-    const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
-    if (site.new_worst > best.new_worst && site.new_worst > least && !multiplies_poor(mesh, *this, site))
-      best = site;
+    if (start.new_worst > 0 && start.new_worst >= least_promise * gain * start.old_worst)
+      parts.followed.push_back(order[i]);
   }
-  // Smaller inverted cells would look better in some metrics, and be cut again without end.
-  if (!(best.new_worst > 0)) return std::nullopt;
-  return detail::plan_for(*this, mesh, seed, best);
+  return parts.followed.size();
+}
+
+template <class Metric>
+void VertexInsertion<Metric>::evaluate_part(const TetMesh& mesh, Parts& parts, int step,
+                                            std::size_t part) const {
+  const detail::Digger<Metric> digger(mesh, metric, quality, max_cells);
+  if (only_place) {
+    detail::Site& site = parts.sites[0];
+    site = digger.dig(GrownCells(mesh, parts.seed.cell), *only_place);
+    if (site.new_worst > gain * site.old_worst) parts.followed.push_back(0);
+    return;
+  }
+  if (step == 0) return dig_first(mesh, parts.seed.cell, part, digger, parts.sites);
+  detail::Site& site = parts.sites[parts.followed[part]];
+  site = digger.follow_up(site, kMaxDigs);
+  const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
+  if (!(site.new_worst > least) || multiplies_poor(mesh, *this, site)) site.new_worst = -HFR_INFINITY;
+}
+
+template <class Metric>
+auto VertexInsertion<Metric>::plan(const TetMesh& mesh, const Parts& parts) const -> std::optional<Plan> {
+  const detail::Site* best = nullptr;
+  for (std::uint8_t i : parts.followed) {
+    const detail::Site& site = parts.sites[i];
+    // Smaller inverted cells would look better in some metrics, and be cut again without end.
+    if (site.new_worst > (best ? best->new_worst : 0)) best = &site;
+  }
+  if (!best) return std::nullopt;
+  return detail::plan_for(*this, mesh, parts.seed, *best);
 }
 
 template <class Metric>

@@ -2,6 +2,8 @@
 #ifndef HFR_OPERATORS_VERTEX_INSERTION_HH
 #define HFR_OPERATORS_VERTEX_INSERTION_HH
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -28,6 +30,15 @@ struct VertexInsertion {
     Seed seed;
     Vec3 place;
   };
+  /// An evaluation, step by step: cavities dug from the first places, then the most promising ones followed
+  /// up. See EvaluatesInParts.
+  struct Parts {
+    explicit Parts(const Seed& s) : seed(s) {}
+
+    Seed seed;
+    std::array<detail::Site, kMaxSites> sites;      ///< by number of the first place
+    FixedVector<std::uint8_t, kMaxSites> followed;  ///< numbers of those that are followed up, in turn
+  };
 
   Metric metric;
   std::span<const double> quality;  ///< decision value per cell
@@ -49,6 +60,9 @@ struct VertexInsertion {
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;
+  std::size_t n_parts(Parts& parts, int step) const;
+  void evaluate_part(const TetMesh& mesh, Parts& parts, int step, std::size_t part) const;
+  std::optional<Plan> plan(const TetMesh& mesh, const Parts& parts) const;
   void cavity(const TetMesh& mesh, const Plan& plan, Cavity& out) const;
   Tet identity(const TetMesh& mesh, const Seed& seed) const;
 };

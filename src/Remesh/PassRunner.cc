@@ -24,6 +24,13 @@
 #include "Scheduler/SmoothPass.hh"
 
 namespace hfr {
+namespace {
+
+// Seeds of a listed cell, about: others have a smaller listed cell, or are constrained.
+constexpr double kEdgesOfCell = 4, kFacesOfCell = 3;
+
+}  // namespace
+
 // What there is in improve(), but for the surface: a new operator is its files, one row here, and one line of
 // help in the tool.
 template <class Metric>
@@ -163,9 +170,12 @@ std::size_t PassRunner<Metric>::edge_pass(const Turn& turn) {
   using Op = EdgeRemoval<Metric>;
   const Run& run = this->run();
   return rounds<Op>(PassKind::kEdge, turn, [&](auto& round, const Worklist& list) {
-    return round.run(Op{metric_, run.work.quality}, list.cells().size(), [&](std::size_t i, auto&& visit) {
-      visit_edge_seeds(run.mesh, list, CellHandle(list.cells()[i]), visit);
-    });
+    return round.run(
+        Op{metric_, run.work.quality}, list.cells().size(),
+        [&](std::size_t i, auto&& visit) {
+          visit_edge_seeds(run.mesh, list, CellHandle(list.cells()[i]), visit);
+        },
+        kEdgesOfCell);
   });
 }
 
@@ -174,9 +184,12 @@ std::size_t PassRunner<Metric>::face_pass(const Turn& turn) {
   using Op = FaceSwap<Metric>;
   const Run& run = this->run();
   return rounds<Op>(PassKind::kFace, turn, [&](auto& round, const Worklist& list) {
-    return round.run(Op{metric_, run.work.quality}, list.cells().size(), [&](std::size_t i, auto&& visit) {
-      visit_face_seeds(run.mesh, list, CellHandle(list.cells()[i]), visit);
-    });
+    return round.run(
+        Op{metric_, run.work.quality}, list.cells().size(),
+        [&](std::size_t i, auto&& visit) {
+          visit_face_seeds(run.mesh, list, CellHandle(list.cells()[i]), visit);
+        },
+        kFacesOfCell);
   });
 }
 
@@ -213,15 +226,19 @@ std::size_t PassRunner<Metric>::mixed_pass(const Turn& turn) {
     const std::size_t n_cells = list.cells().size();
     std::vector<VertexHandle> vertices;
     if (turn.removes_vertices && has(effort().ops, Ops::kNode)) vertices = removable(list);
-    return round.run(op, n_cells + vertices.size(), [&](std::size_t i, auto&& visit) {
-      if (i >= n_cells) return visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
-      const CellHandle c(list.cells()[i]);
-      if (with_edge)
-        visit_edge_seeds(run.mesh, list, c, [&](EdgeHandle e) { visit(Seed(std::in_place_index<0>, e)); });
-      if (with_face)
-        visit_face_seeds(run.mesh, list, c,
-                         [&](HalfFaceHandle h) { visit(Seed(std::in_place_index<1>, h)); });
-    });
+    return round.run(
+        op, n_cells + vertices.size(),
+        [&](std::size_t i, auto&& visit) {
+          if (i >= n_cells) return visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
+          const CellHandle c(list.cells()[i]);
+          if (with_edge)
+            visit_edge_seeds(run.mesh, list, c,
+                             [&](EdgeHandle e) { visit(Seed(std::in_place_index<0>, e)); });
+          if (with_face)
+            visit_face_seeds(run.mesh, list, c,
+                             [&](HalfFaceHandle h) { visit(Seed(std::in_place_index<1>, h)); });
+        },
+        kEdgesOfCell + kFacesOfCell);
   });
 }
 
@@ -230,10 +247,13 @@ std::size_t PassRunner<Metric>::multi_face_pass(const Turn& turn) {
   using Op = MultiFaceRemoval<Metric>;
   const Run& run = this->run();
   return rounds<Op>(PassKind::kMultiFace, turn, [&](auto& round, const Worklist& list) {
-    return round.run(Op{metric_, run.work.quality}, list.cells().size(), [&](std::size_t i, auto&& visit) {
-      visit_face_seeds(run.mesh, list, CellHandle(list.cells()[i]),
-                       [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
-    });
+    return round.run(
+        Op{metric_, run.work.quality}, list.cells().size(),
+        [&](std::size_t i, auto&& visit) {
+          visit_face_seeds(run.mesh, list, CellHandle(list.cells()[i]),
+                           [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+        },
+        kFacesOfCell);
   });
 }
 

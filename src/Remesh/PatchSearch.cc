@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <span>
@@ -23,7 +25,7 @@
 namespace hfr {
 namespace {
 
-constexpr double kPatchNanoseconds = 1e7;
+constexpr double kTryNanoseconds = 1e6;
 
 struct Outcome {
   std::optional<TetMesh> mesh;
@@ -132,41 +134,128 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
   return false;
 }
 
-/// The best of the tries of one kind at the patch, the first kind of which one helps: none unless its worst
-/// cell gets better. What a dearer kind would add to that is left to the next turn, which sees the patch as
-/// it is by then. `whole`: the run whose surface, if patches have one, may change in the patch as well.
-Outcome search(const Patch& patch, const Run& whole, Room room, double goal, const PatchEffort& effort) {
-  const PatchTrial& rules = whole.strategy.patch;
-  const Strategy strategy = strategy_of_patch(whole.strategy);
-  const par::Policy policy = strategy.pass.policy;
-  RunControl clock(whole.control.seconds_left());
-  Outcome best;
-  best.worst = survey(patch.mesh(), policy).worst;
-  const double least = rules.rise * best.worst;
-  const double worked_for = std::min(rules.ahead * goal, rules.largest);
-  if (n_below(patch.mesh(), worked_for, policy) > effort.few) return best;
-  const double enough = dihedral_decision(goal);
-  Try::Kind helped = Try::kNothing;
-  for (const Try& attempt : tries_of(effort)) {
-    if (best.worst >= enough || (best.mesh && attempt.kind != helped) || clock.stopped()) break;
-    TetMesh mesh = patch.mesh();
-    LoneRun lone(mesh, strategy, clock.seconds_left());
-    lone.findings().is_folded = whole.findings.is_folded;
-    if (!begin(attempt, lone.run(), rules, worked_for)) continue;
-    lone.work().attach(mesh, policy);
-    const PartOfSurface part(mesh, rules.has_surface ? whole.surface : nullptr, patch.vertices());
-    polish(lone.run(part.get()), strategy.polish, worked_for);
-    const double worst = survey(mesh, policy).worst;
-    if (!(worst > std::max(best.worst, least))) continue;
-    if (!room.holds(mesh)) {
-      best.held_back = true;
-      continue;
-    }
-    helped = attempt.kind;
-    best.worst = worst;
-    best.mesh = std::move(mesh);
+/// What a try has left of the worst cell of a patch, and the patch where that is better than it was.
+struct Attempt {
+  double worst = 0;
+  bool has_room = true;
+  std::optional<TetMesh> mesh;
+};
+
+/// The tries at one patch. Those of one kind are compared, the first kind of which one helps: none unless the
+/// worst cell gets better. What a dearer kind would add to that is left to the next turn, which sees the
+/// patch as it is by then. Tries may be made in any order and at the same time; which of them count does not
+/// depend on that.
+class PatchTries {
+ public:
+  /// `whole`: the run whose surface, if patches have one, may change in the patch as well.
+  PatchTries(const Patch& patch, const Run& whole, Room room, double goal, std::span<const Try> tries)
+      : patch_(patch),
+        whole_(whole),
+        room_(room),
+        strategy_(strategy_of_patch(whole.strategy)),
+        tries_(tries),
+        attempts_(tries.size()),
+        worst_(survey(patch.mesh(), strategy_.pass.policy).worst),
+        least_(rules().rise * worst_),
+        enough_(dihedral_decision(goal)),
+        worked_for_(std::min(rules().ahead * goal, rules().largest)) {}
+
+  /// Whether there is something to be done, for few cells.
+  bool is_worth_trying(std::size_t few) const {
+    return worst_ < enough_ && n_below(patch_.mesh(), worked_for_, strategy_.pass.policy) <= few;
   }
-  return best;
+
+  /// Makes try number t, unless one before it that has ended by now makes it idle.
+  void make(std::size_t t) {
+    if (!is_idle(t)) attempts_[t] = attempt(tries_[t]);
+    note(t);
+  }
+
+  /// What the tries come to in their order.
+  Outcome outcome() {
+    Outcome best;
+    best.worst = worst_;
+    Try::Kind helped = Try::kNothing;
+    for (std::size_t t = 0; t < tries_.size(); ++t) {
+      Attempt& one = attempts_[t];
+      if (best.worst >= enough_ || (best.mesh && tries_[t].kind != helped)) break;
+      if (!one.mesh || !(one.worst > std::max(best.worst, least_))) continue;
+      if (!one.has_room) {
+        best.held_back = true;
+        continue;
+      }
+      helped = tries_[t].kind;
+      best.worst = one.worst;
+      best.mesh = std::move(one.mesh);
+    }
+    return best;
+  }
+
+ private:
+  const PatchTrial& rules() const { return whole_.strategy.patch; }
+
+  /// Whether a try that helps, of an earlier kind or to all that is asked for, comes before it: then
+  /// outcome() does not come to it.
+  bool is_idle(std::size_t t) const {
+    return t > enough_from_.load(std::memory_order_relaxed) ||
+           tries_[t].kind > helps_.load(std::memory_order_relaxed);
+  }
+  void note(std::size_t t) {
+    const Attempt& one = attempts_[t];
+    if (!one.mesh || !one.has_room) return;
+    const auto lower = [](auto& least, auto value) {
+      auto now = least.load(std::memory_order_relaxed);
+      while (value < now && !least.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+      }
+    };
+    lower(helps_, static_cast<int>(tries_[t].kind));
+    if (one.worst >= enough_) lower(enough_from_, t);
+  }
+
+  Attempt attempt(const Try& how) const {
+    Attempt one;
+    RunControl clock(whole_.control.seconds_left());
+    if (clock.stopped()) return one;
+    TetMesh mesh = patch_.mesh();
+    LoneRun lone(mesh, strategy_, clock.seconds_left());
+    lone.findings().is_folded = whole_.findings.is_folded;
+    if (!begin(how, lone.run(), rules(), worked_for_)) return one;
+    lone.work().attach(mesh, strategy_.pass.policy);
+    const PartOfSurface part(mesh, rules().has_surface ? whole_.surface : nullptr, patch_.vertices());
+    polish(lone.run(part.get()), strategy_.polish, worked_for_);
+    one.worst = survey(mesh, strategy_.pass.policy).worst;
+    one.has_room = room_.holds(mesh);
+    if (one.worst > std::max(worst_, least_)) one.mesh = std::move(mesh);
+    return one;
+  }
+
+  const Patch& patch_;
+  const Run& whole_;
+  const Room room_;
+  const Strategy strategy_;
+  std::span<const Try> tries_;
+  std::vector<Attempt> attempts_;
+  double worst_, least_, enough_, worked_for_;  // decision values but for the last, which is an angle
+  std::atomic<int> helps_{Try::kRemoval + 1};   // the first kind of which one helps
+  std::atomic<std::size_t> enough_from_{kNoLimit};
+};
+
+/// What the tries bring to each patch. Tries and patches share nothing, so all of them may run at once: the
+/// first try of each patch, then the second of each …, because one that helps saves those after it.
+std::vector<Outcome> search(const Run& run, std::span<const Patch> patches, double goal,
+                            const PatchEffort& effort) {
+  const std::vector<Try> tries = tries_of(effort);
+  std::deque<PatchTries> all;
+  std::vector<std::size_t> open;  // numbers of those that are tried on
+  for (const Patch& patch : patches) {
+    all.emplace_back(patch, run, room_of(patch, run.mesh, run.bounds), goal, tries);
+    if (all.back().is_worth_trying(effort.few)) open.push_back(all.size() - 1);
+  }
+  par::for_each_dynamic(run.policy().for_items_of(kTryNanoseconds), open.size() * tries.size(), 1,
+                        [&](std::size_t i) { all[open[i % open.size()]].make(i / open.size()); });
+  std::vector<Outcome> outcomes;
+  for (PatchTries& one : all) outcomes.push_back(one.outcome());
+  return outcomes;
 }
 
 /// Patches round the worst of the cells that share none.
@@ -227,13 +316,7 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     const std::vector<Patch> patches =
         disjoint_patches(run, std::span(worst).first(std::min(n_centres, worst.size())), effort);
     if (patches.empty()) break;
-    std::vector<Outcome> outcomes(patches.size());
-    par::for_each_dynamic(run.policy().for_items_of(kPatchNanoseconds), patches.size(), 1,
-                          [&](std::size_t i) {
-                            const Room room = room_of(patches[i], run.mesh, run.bounds);
-                            outcomes[i] = search(patches[i], run, room, next, effort);
-                          });
-    const PutBack done = put_back(run, patches, outcomes);
+    const PutBack done = put_back(run, patches, search(run, patches, next, effort));
     ++pass.rounds;
     pass.seeds += patches.size();
     pass.candidates += done.n_candidates;

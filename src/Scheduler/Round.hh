@@ -94,10 +94,12 @@ class Round : private detail::RoundCore {
   }
 
   /// Looks at what visit_seeds(i, visit) passes to visit(seed), for i = 0 … n_sources-1: seeds are made where
-  /// they are evaluated, while their cells are in cache, and never stored.
+  /// they are evaluated, while their cells are in cache, and never stored. `seeds_a_source`: about how many
+  /// each i has, by which few of them are shared among threads.
   template <class VisitSeeds>
-  RoundCounts run(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds) {
+  RoundCounts run(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds, double seeds_a_source = 1) {
     op_ = &op;
+    source_nanoseconds_ = seeds_a_source * seed_nanoseconds<Op>();
     const auto evaluate_seeds = [&] { return evaluate(n_sources, visit_seeds); };
     evaluate_ = {[](const void* context) { return (*static_cast<decltype(&evaluate_seeds)>(context))(); },
                  &evaluate_seeds};
@@ -134,7 +136,11 @@ class Round : private detail::RoundCore {
   template <class VisitSeeds>
   std::size_t evaluate(std::size_t n_sources, VisitSeeds&& visit_seeds) {
     // Seeds differ much in cost, so threads take pieces as they come; pieces are joined in their order.
-    const int n_threads = par::thread_count(options_.policy.for_items_of(seed_nanoseconds<Op>()), n_sources);
+    const int n_threads = par::thread_count(options_.policy.for_items_of(source_nanoseconds_), n_sources);
+    if constexpr (EvaluatesInParts<Op>)
+      if (options_.policy.threads > 1 &&
+          n_sources < static_cast<std::size_t>(kPiecesAThread * options_.policy.threads))
+        return evaluate_in_parts(n_sources, visit_seeds);
     const int n_pieces = n_threads == 1 ? 1 : kPiecesAThread * n_threads;
     std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_pieces));
     std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_pieces), 0);
@@ -161,7 +167,39 @@ class Round : private detail::RoundCore {
     return std::accumulate(n_seeds.begin(), n_seeds.end(), std::size_t{0});
   }
 
+  /// The same for few seeds that are dear: step by step, the parts of all seeds together.
+  template <class VisitSeeds>
+  std::size_t evaluate_in_parts(std::size_t n_sources, VisitSeeds&& visit_seeds) {
+    struct Part {
+      std::size_t seed, number;
+    };
+    std::vector<typename Op::Parts> seeds;
+    for (std::size_t i = 0; i < n_sources; ++i)
+      visit_seeds(i, [&](typename Op::Seed seed) { seeds.emplace_back(seed); });
+    std::vector<Part> parts;
+    par::Policy together = options_.policy;
+    together.serial_below = 2;
+    for (int step = 0; step == 0 || !parts.empty(); ++step) {
+      parts.clear();
+      for (std::size_t s = 0; s < seeds.size(); ++s)
+        for (std::size_t n = op_->n_parts(seeds[s], step), i = 0; i < n; ++i) parts.push_back({s, i});
+      par::for_each_dynamic(together, parts.size(), 1, [&](std::size_t i) {
+        op_->evaluate_part(mesh_, seeds[parts[i].seed], step, parts[i].number);
+      });
+    }
+    candidates_ = {};
+    const bool check = needs_admission();
+    Cavity cavity;
+    Star scratch;
+    for (const typename Op::Parts& one : seeds) {
+      const std::optional<Plan> plan = op_->plan(mesh_, one);
+      if (plan && may_be_committed(*plan, check, cavity, scratch)) candidates_.push_back(*plan);
+    }
+    return seeds.size();
+  }
+
   const Op* op_ = nullptr;  // while run() lasts
+  double source_nanoseconds_ = 0;
   struct {
     std::size_t (*call)(const void*) = nullptr;
     const void* context = nullptr;

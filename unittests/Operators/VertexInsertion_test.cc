@@ -11,6 +11,7 @@ namespace {
 
 static_assert(LocalOperator<VertexInsertion<VolumeLength>>);
 static_assert(LocalOperator<VertexInsertion<MinSine2>>);
+static_assert(EvaluatesInParts<VertexInsertion<MinSine2>>);
 
 template <class Metric>
 using Seed = typename VertexInsertion<Metric>::Seed;
@@ -101,6 +102,35 @@ TYPED_TEST(VertexInsertionMetrics, AcceptedCavitiesKeepVolumeAndRaiseTheWorst) {
   }
   EXPECT_GT(accepted, 60);
   EXPECT_GT(dug, 50);
+}
+
+TEST(VertexInsertion, PartsOfAStepMayComeInAnyOrder) {
+  int n_plans = 0;
+  for (std::uint64_t s = 1; s <= 4; ++s) {
+    const TetMesh mesh = jittered(4, 0.35, s);
+    const auto quality = qualities(mesh, MinSine2{});
+    VertexInsertion<MinSine2> op{{}, quality};
+    op.least_promise = s % 2 == 0 ? 0.5 : 0;
+    if (s == 3) op.max_sites = 3;
+    for (std::size_t i = 0; i < mesh.n_cells(); i += 5) {
+      const Seed<MinSine2> seed(C(i));
+      VertexInsertion<MinSine2>::Parts parts(seed);
+      int step = 0;
+      for (std::size_t n = 0; (n = op.n_parts(parts, step)) > 0; ++step)
+        for (std::size_t k = n; k-- > 0;) op.evaluate_part(mesh, parts, step, k);
+      EXPECT_EQ(op.n_parts(parts, step + 1), 0U);
+      const auto expected = op.evaluate(mesh, seed);
+      const auto plan = op.plan(mesh, parts);
+      ASSERT_EQ(plan.has_value(), expected.has_value());
+      if (!plan) continue;
+      ++n_plans;
+      EXPECT_EQ(plan->place, expected->place);
+      EXPECT_EQ(plan->new_worst, expected->new_worst);
+      EXPECT_EQ(plan->n_removed, expected->n_removed);
+      EXPECT_EQ(plan->seed.growth.steps, expected->seed.growth.steps);
+    }
+  }
+  EXPECT_GT(n_plans, 100);
 }
 
 TEST(VertexInsertion, SliverAmongFrozenVerticesIsMended) {

@@ -16,6 +16,7 @@
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/StarFromVertex.hh"
 #include "Operators/VertexCollapse.hh"
+#include "Operators/VertexInsertion.hh"
 #include "Quality/Damage.hh"
 #include "Scheduler/Rank.hh"
 #include "Scheduler/Seeds.hh"
@@ -482,6 +483,29 @@ TEST(Round, InsertionsAddVerticesInRankOrder) {
     else
       EXPECT_TRUE(identical(*one, bench.mesh)) << threads << " threads";
   }
+}
+
+TEST(Round, FewSeedsThatAreDearAreSharedByTheirParts) {
+  using Op = VertexInsertion<VolumeLength>;
+  std::size_t n_winners = 0;
+  for (const std::size_t n_seeds : {1U, 2U, 5U, 20U, 60U}) {
+    std::optional<TetMesh> one;
+    for (const int threads : {1, 2, 3, 7}) {
+      Bench bench(0.45, n_seeds);
+      std::vector<Op::Seed> seeds;
+      for (std::size_t i = 0; i < n_seeds; ++i) seeds.emplace_back(C(i * bench.mesh.n_cells() / n_seeds));
+      Round<Op> round(bench.mesh, bench.work, {{threads, 1000}, true, 1});
+      const RoundCounts counts = round.run(Op{{}, bench.work.quality}, seeds);
+      EXPECT_EQ(counts.seeds, n_seeds);
+      expect_sound(bench.mesh, bench.work);
+      if (!one) {
+        one = bench.mesh;
+        n_winners += counts.winners;
+      }
+      EXPECT_TRUE(identical(*one, bench.mesh)) << threads << " threads";
+    }
+  }
+  EXPECT_GT(n_winners, 10U);
 }
 
 TEST(Round, SmoothingMayRunInRoundsToo) {
