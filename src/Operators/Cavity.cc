@@ -105,31 +105,57 @@ bool is_ball(const TetMesh& mesh, const Cavity& cavity) {
   return n_pieces == 1 && n_vertices + n_faces == sides.size() / 2 + 2;  // Euler's number of a sphere
 }
 
-bool labels_survive(const TetMesh& mesh, const Cavity& cavity) {
-  const Labels& labels = mesh.labels();
-  const Locks& locks = mesh.locks();
-  if (!labels.faces.empty() || !locks.faces.empty()) {
-    for (CellHandle c : cavity.removed) {
-      for (int k = 0; k < 4; ++k) {
-        const HalfFaceHandle h = halfface_of(c, k);
-        const HalfFaceHandle m = mesh.opposite_halfface(h);
-        if (!m.is_valid() || m < h) continue;
-        const auto first = cavity.removed.begin() + static_cast<std::ptrdiff_t>(cavity.n_removed_first);
-        const auto other = std::find(cavity.removed.begin(), cavity.removed.end(), cell_of(m));
-        // See find_heirs() for what an interface is labelled with.
-        const bool is_first = std::find(cavity.removed.begin(), first, c) != first;
-        const bool inside = other != cavity.removed.end() && is_first == (other < first);
-        const auto face = mesh.halfface_vertices(h);
-        if (inside && (labels.faces.find(face) || locks.faces.find(face))) return false;
-      }
+/// Whether an edge or face may have a label or be fixed: then all its vertices are constrained.
+template <std::size_t N>
+bool may_be_labelled(const std::array<VertexHandle, N>& simplex, const StarKnowledge& known) {
+  return known.constrained.empty() || std::all_of(simplex.begin(), simplex.end(), [&](VertexHandle v) {
+           return known.constrained[v.idx()] != 0;
+         });
+}
+
+bool faces_survive(const TetMesh& mesh, const Cavity& cavity, const StarKnowledge& known) {
+  const auto& labels = mesh.labels().faces;
+  const auto& locks = mesh.locks().faces;
+  if (labels.empty() && locks.empty()) return true;
+  const auto first = cavity.removed.begin() + static_cast<std::ptrdiff_t>(cavity.n_removed_first);
+  for (CellHandle c : cavity.removed) {
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(c, k);
+      const HalfFaceHandle m = mesh.opposite_halfface(h);
+      if (!m.is_valid() || m < h) continue;
+      const auto face = mesh.halfface_vertices(h);
+      if (!may_be_labelled(face, known)) continue;
+      const auto other = std::find(cavity.removed.begin(), cavity.removed.end(), cell_of(m));
+      // See find_heirs() for what an interface is labelled with.
+      const bool is_first = std::find(cavity.removed.begin(), first, c) != first;
+      const bool inside = other != cavity.removed.end() && is_first == (other < first);
+      if (inside && (labels.find(face) || locks.find(face))) return false;
     }
   }
-  if (!labels.edges.empty() || !locks.edges.empty()) {
-    const SimplexSet<2> kept = edges_of(cavity.created);
-    for (const auto& edge : edges_of(removed_tets(mesh, cavity)))
-      if (!kept.has(edge) && (labels.edges.find(edge) || locks.edges.find(edge))) return false;
+  return true;
+}
+
+bool edges_survive(const TetMesh& mesh, const Cavity& cavity, const StarKnowledge& known) {
+  const auto& labels = mesh.labels().edges;
+  const auto& locks = mesh.locks().edges;
+  if (labels.empty() && locks.empty()) return true;
+  for (CellHandle c : cavity.removed) {
+    const auto& v = mesh.cell(c).v;
+    for (const auto& ends : kEdgeCorners) {
+      const std::array<VertexHandle, 2> edge = {v[ends[0]], v[ends[1]]};
+      if (!may_be_labelled(edge, known) || !(labels.find(edge) || locks.find(edge))) continue;
+      const auto has_edge = [&](const Tet& t) {
+        return std::count(t.begin(), t.end(), edge[0]) + std::count(t.begin(), t.end(), edge[1]) == 2;
+      };
+      if (std::none_of(cavity.created.begin(), cavity.created.end(), has_edge)) return false;
+    }
   }
-  return !cavity.removed_vertex.is_valid() || labels.vertex(cavity.removed_vertex) == 0;
+  return true;
+}
+
+bool labels_survive(const TetMesh& mesh, const Cavity& cavity, const StarKnowledge& known) {
+  return faces_survive(mesh, cavity, known) && edges_survive(mesh, cavity, known) &&
+         (!cavity.removed_vertex.is_valid() || mesh.labels().vertex(cavity.removed_vertex) == 0);
 }
 
 /// False only when it is sure that no cell has all the vertices.
@@ -276,7 +302,7 @@ bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Sta
     }
   }
   Heirs heirs;
-  if (!labels_survive(mesh, cavity) || !find_heirs(mesh, cavity, heirs)) return false;
+  if (!labels_survive(mesh, cavity, known) || !find_heirs(mesh, cavity, heirs)) return false;
   return !check_links || (is_ball(mesh, cavity) && !makes_twice(mesh, cavity, scratch, known));
 }
 

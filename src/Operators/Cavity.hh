@@ -99,11 +99,14 @@ inline std::array<CavityPart, 2> parts_of(const Cavity& cavity) {
 
 class PinchedStars;
 
-/// What is known of the stars of a mesh, for who asks whether an edge or face exists: only a vertex all of
-/// whose cells are known can say that it does not.
+/// What is known of the vertices of a mesh. Of their stars for who asks whether an edge or face exists: only
+/// a vertex all of whose cells are known can say that it does not.
 struct StarKnowledge {
   std::span<const std::uint32_t> star_size = {};  ///< number of cells per vertex; empty: not known
   const PinchedStars* pinched = nullptr;
+  /// Of each vertex what constrained_vertices() says, by which most edges and faces have no label; empty: not
+  /// known.
+  std::span<const std::uint8_t> constrained = {};
 };
 
 /// True when the cavity may be committed as far as labels, regions and, if `check_links`, the link condition
@@ -114,7 +117,7 @@ struct StarKnowledge {
 ///    that can take its label (see find_heirs()), and none that is fixed goes,
 ///  - the outer faces are a sphere and no edge or face would exist twice (the full link condition; it can
 ///    only fail where cells are inverted or the boundary meets itself, so callers leave it out elsewhere).
-/// `known` is what the last of these is asked of; see makes_twice().
+/// `known` is what the last of these is asked of (see makes_twice()), and saves looking for labels.
 bool admissible(const TetMesh& mesh, const Cavity& cavity, bool check_links, Star& scratch,
                 const StarKnowledge& known = {});
 

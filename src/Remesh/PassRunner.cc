@@ -170,10 +170,19 @@ std::size_t PassRunner<Metric>::edge_pass(const Turn& turn) {
   using Op = EdgeRemoval<Metric>;
   const Run& run = this->run();
   return rounds<Op>(PassKind::kEdge, turn, [&](auto& round, const Worklist& list) {
+    const std::size_t n_cells = list.cells().size();
+    // On a device all edges are looked at, and so they are here in the metric of its passes.
+    const bool first_does =
+        kMeasuresAngles<Metric> && effort().first_edge_does && n_cells > effort().few_seeds;
     return round.run(
-        Op{metric_, run.work.quality}, list.cells().size(),
+        Op{metric_, run.work.quality}, n_cells,
         [&](std::size_t i, auto&& visit) {
-          visit_edge_seeds(run.mesh, list, CellHandle(list.cells()[i]), visit);
+          const CellHandle c(list.cells()[i]);
+          if (first_does)
+            visit_edge_seeds_until(run.mesh, list, c,
+                                   [&](EdgeHandle e) { return visit(e) >= turn.focus.below; });
+          else
+            visit_edge_seeds(run.mesh, list, c, visit);
         },
         kEdgesOfCell);
   });
@@ -229,7 +238,10 @@ std::size_t PassRunner<Metric>::mixed_pass(const Turn& turn) {
     return round.run(
         op, n_cells + vertices.size(),
         [&](std::size_t i, auto&& visit) {
-          if (i >= n_cells) return visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
+          if (i >= n_cells) {
+            visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
+            return;
+          }
           const CellHandle c(list.cells()[i]);
           if (with_edge)
             visit_edge_seeds(run.mesh, list, c,

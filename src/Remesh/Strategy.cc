@@ -90,6 +90,8 @@ PassEffort pass_effort(const Asked& asked) {
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) pass.device_from = 0;
   pass.device_only_smooths = options.hybrid;
   if (asked.is_frozen()) pass.promise_of_many = 0.5;
+  // A cell that is all but flat is best mended by what leaves most.
+  pass.first_edge_does = asked.has_goal() && *options.min_dihedral > kPlainGoal;
   return pass;
 }
 
@@ -281,8 +283,11 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   };
   if (strategy.untangle && !(asked.has_goal() && *options.min_dihedral <= kPlainGoal))
     strategy.plain = towards(kPlainGoal);
-  if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens())
-    strategy.claimed = with_room(towards(kClaimedGoal), n_cells);
+  if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens()) {
+    const auto claimed = with_room(towards(kClaimedGoal), n_cells);
+    claimed->pass.first_edge_does = false;  // what is left by then is hard
+    strategy.claimed = claimed;
+  }
   if (strategy.claimed && !asked.is_frozen()) {
     ImproveOptions other = options;
     other.surface.mode = SurfaceMode::kFrozen;

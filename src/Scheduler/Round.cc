@@ -108,7 +108,7 @@ class RoundCore::State {
     if (!check && !damaged) return true;
     round_.cavity(plan, cavity);
     if (cavity.moved.is_valid() && !work_.pinched.empty() && work_.pinched[cavity.moved.idx()]) return false;
-    const StarKnowledge known{work_.star_size, &pinched_stars_};
+    const StarKnowledge known{work_.star_size, &pinched_stars_, work_.frozen};
     if (!admissible(mesh_, cavity, options_.check_links, scratch, known)) return false;
     if (!options_.check_links && holds_links(cavity) && makes_twice(mesh_, cavity, scratch, known))
       return false;

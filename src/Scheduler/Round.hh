@@ -94,7 +94,8 @@ class Round : private detail::RoundCore {
   }
 
   /// Looks at what visit_seeds(i, visit) passes to visit(seed), for i = 0 … n_sources-1: seeds are made where
-  /// they are evaluated, while their cells are in cache, and never stored. `seeds_a_source`: about how many
+  /// they are evaluated, while their cells are in cache, and never stored. visit() returns the worst decision
+  /// value that the seed's plan leaves; -infinity where there is none. `seeds_a_source`: about how many
   /// each i has, by which few of them are shared among threads.
   template <class VisitSeeds>
   RoundCounts run(const Op& op, std::size_t n_sources, VisitSeeds&& visit_seeds, double seeds_a_source = 1) {
@@ -157,7 +158,9 @@ class Round : private detail::RoundCore {
         visit_seeds(i, [&](typename Op::Seed seed) {
           ++n;
           const std::optional<Plan> plan = op_->evaluate(mesh_, seed);
-          if (plan && may_be_committed(*plan, check, cavity, scratch)) mine.push_back(*plan);
+          if (!plan || !may_be_committed(*plan, check, cavity, scratch)) return -HFR_INFINITY;
+          mine.push_back(*plan);
+          return plan->new_worst;
         });
       }
       n_seeds[piece] = n;

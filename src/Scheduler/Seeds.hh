@@ -2,6 +2,8 @@
 #ifndef HFR_SCHEDULER_SEEDS_HH
 #define HFR_SCHEDULER_SEEDS_HH
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -45,15 +47,33 @@ class Worklist {
   std::vector<std::uint8_t> listed_;
 };
 
-/// Calls visit(seed) for the inner edges of listed cell c that are c's to name: c is the smallest listed cell
-/// of the ring. Over all listed cells, each inner edge of theirs is visited once.
+/// Whether the edge of listed cell c, an inner one, is c's to name: c is the smallest listed cell of the
+/// ring.
+inline bool names_edge(const TetMesh& mesh, const Worklist& list, CellHandle c, int edge) {
+  return mesh.walk_ring(
+      c, edge, [&](CellHandle other, VertexHandle, VertexHandle) { return !(other < c && list.has(other)); });
+}
+/// Calls visit(seed) for the edges that are c's to name. Over all listed cells, each inner edge of theirs is
+/// visited once.
 template <class Visit>
 void visit_edge_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
-  for (int e = 0; e < 6; ++e) {
-    const bool mine = mesh.walk_ring(
-        c, e, [&](CellHandle other, VertexHandle, VertexHandle) { return !(other < c && list.has(other)); });
-    if (mine) visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)));
-  }
+  for (int e = 0; e < 6; ++e)
+    if (names_edge(mesh, list, c, e)) visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)));
+}
+/// The same from the longest edge on, until visit(seed) is true: a poor cell is most often mended by the
+/// removal of a long one, and has to be mended once.
+template <class Visit>
+void visit_edge_seeds_until(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+  const auto& v = mesh.cell(c).v;
+  std::array<double, 6> length2;
+  for (std::size_t e = 0; e < 6; ++e)
+    length2[e] = norm2(mesh.point(v[kEdgeCorners[e][1]]) - mesh.point(v[kEdgeCorners[e][0]]));
+  std::array<int, 6> order = {0, 1, 2, 3, 4, 5};
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return length2[static_cast<std::size_t>(a)] > length2[static_cast<std::size_t>(b)];
+  });
+  for (int e : order)
+    if (names_edge(mesh, list, c, e) && visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)))) return;
 }
 
 /// The same for inner faces: from the smaller listed half-face.

@@ -331,5 +331,38 @@ TEST(AdmissibleProperty, LinkConditionAgreesWithBruteForceInShuffledMeshes) {
   EXPECT_GT(outcomes[2], 200);
 }
 
+TEST(AdmissibleProperty, KnownConstraintsChangeNoAnswer) {
+  int refused = 0, allowed = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = shuffled_box(s);
+    Engine engine(s);
+    for (HalfFaceHandle h : all_faces(mesh)) {
+      const auto face = mesh.halfface_vertices(h);
+      if (s <= 2 && mesh.is_boundary(h)) mesh.labels().faces.set(face, 1 + static_cast<int>(engine() % 3));
+      if (s == 3 && engine() % 6 == 0) mesh.labels().faces.set(face, 4);
+      if (s == 4 && engine() % 6 == 0) mesh.labels().edges.set({face[0], face[1]}, 5);
+      if (s == 5 && engine() % 6 == 0) mesh.set_fixed(mesh.face_handle(h));
+      if (s == 6 && engine() % 50 == 0) mesh.set_fixed(face[0]);
+    }
+    const auto constrained = constrained_vertices(mesh);
+    const auto frozen = frozen_vertices(mesh);
+    const auto star_size = star_sizes(mesh);
+    const auto compare = [&](const Cavity& cavity) {
+      Star scratch;
+      const bool expected = admissible(mesh, cavity, false, scratch, {star_size});
+      EXPECT_EQ(admissible(mesh, cavity, false, scratch, {star_size, nullptr, constrained}), expected);
+      expected ? ++allowed : ++refused;
+    };
+    for (HalfFaceHandle h : all_faces(mesh))
+      if (!mesh.is_boundary(h)) compare(swap_of(mesh, h));
+    for (VertexHandle v : mesh.vertices()) {
+      if (frozen[v.idx()]) continue;
+      for (VertexHandle w : mesh.vertex_vertices(v)) compare(collapse_of(mesh, v, w));
+    }
+  }
+  EXPECT_GT(refused, 50);
+  EXPECT_GT(allowed, 500);
+}
+
 }  // namespace
 }  // namespace hfr::test

@@ -82,6 +82,39 @@ TEST_P(Seeds, EveryInnerEdgeOfAListedCellComesOnce) {
   for (const int threads : {2, 3, 7}) EXPECT_EQ(edge_seeds(listed.mesh, listed.list(), {threads, 1}), seeds);
 }
 
+TEST_P(Seeds, EdgesComeFromTheLongestOnUntilOneDoes) {
+  const Listed listed(GetParam(), 2);
+  const Worklist list = listed.list();
+  const auto length = [&](EdgeHandle e) {
+    const auto& v = listed.mesh.cell(C(e.idx() / 6)).v;
+    const auto& ends = kEdgeCorners[e.idx() % 6];
+    return norm2(listed.mesh.point(v[ends[0]]) - listed.mesh.point(v[ends[1]]));
+  };
+  std::set<EdgeHandle> all;
+  for (Index c : list.cells()) {
+    std::vector<EdgeHandle> one;
+    const auto visit_until = [&](std::size_t n) {
+      one.clear();
+      visit_edge_seeds_until(listed.mesh, list, C(c), [&](EdgeHandle e) {
+        one.push_back(e);
+        return one.size() == n;
+      });
+    };
+    visit_until(7);
+    const auto whole = one;
+    EXPECT_TRUE(std::is_sorted(one.begin(), one.end(),
+                               [&](EdgeHandle a, EdgeHandle b) { return length(a) > length(b); }));
+    all.insert(one.begin(), one.end());
+    for (std::size_t n = 1; n <= whole.size(); ++n) {
+      visit_until(n);
+      EXPECT_TRUE(
+          std::equal(one.begin(), one.end(), whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n)));
+    }
+  }
+  const auto seeds = edge_seeds(listed.mesh, list, {});
+  EXPECT_EQ(all, std::set<EdgeHandle>(seeds.begin(), seeds.end()));
+}
+
 TEST_P(Seeds, EveryInnerFaceOfAListedCellComesOnce) {
   const Listed listed(GetParam(), 3);
   std::set<HalfFaceHandle> expected;
