@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -16,6 +15,8 @@
 #include "Operators/Replace.hh"
 #include "Operators/VertexCollapse.hh"
 #include "Operators/VertexInsertion.hh"
+#include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Patch.hh"
 #include "Remesh/Polish.hh"
@@ -196,16 +197,23 @@ class PatchTries {
 
   /// Whether a try that helps, of an earlier kind or to all that is asked for, comes before it: then
   /// outcome() does not come to it.
-  bool is_idle(std::size_t t) const {
-    return t > enough_from_.load(std::memory_order_relaxed) ||
-           tries_[t].kind > helps_.load(std::memory_order_relaxed);
+  bool is_idle(std::size_t t) {
+    const auto value = [](auto& shared) {
+      par::before_shared_access();
+      return par::atomic(shared).load(std::memory_order_relaxed);
+    };
+    return t > value(enough_from_) || tries_[t].kind > value(helps_);
   }
   void note(std::size_t t) {
     const Attempt& one = attempts_[t];
     if (!one.mesh || !one.has_room) return;
-    const auto lower = [](auto& least, auto value) {
+    const auto lower = [](auto& shared, auto value) {
+      const auto least = par::atomic(shared);
+      par::before_shared_access();
       auto now = least.load(std::memory_order_relaxed);
-      while (value < now && !least.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+      while (value < now) {
+        par::before_shared_access();
+        if (least.compare_exchange_weak(now, value, std::memory_order_relaxed)) return;
       }
     };
     lower(helps_, static_cast<int>(tries_[t].kind));
@@ -236,8 +244,9 @@ class PatchTries {
   std::span<const Try> tries_;
   std::vector<Attempt> attempts_;
   double worst_, least_, enough_, worked_for_;  // decision values but for the last, which is an angle
-  std::atomic<int> helps_{Try::kRemoval + 1};   // the first kind of which one helps
-  std::atomic<std::size_t> enough_from_{kNoLimit};
+  // Lowered by tries at the same time:
+  int helps_ = Try::kRemoval + 1;       // the first kind of which one helps
+  std::size_t enough_from_ = kNoLimit;  // the first try that leaves enough
 };
 
 /// What the tries bring to each patch. Tries and patches share nothing, so all of them may run at once: the

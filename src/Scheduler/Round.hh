@@ -158,7 +158,8 @@ class Round : private detail::RoundCore {
         visit_seeds(i, [&](typename Op::Seed seed) {
           ++n;
           const std::optional<Plan> plan = op_->evaluate(mesh_, seed);
-          if (!plan || !may_be_committed(*plan, check, cavity, scratch)) return -HFR_INFINITY;
+          if (!plan || !may_be_committed(*plan, check, cavity, scratch))
+            return -std::numeric_limits<double>::infinity();
           mine.push_back(*plan);
           return plan->new_worst;
         });
