@@ -5,8 +5,6 @@
 // polytopal complexes", 2013.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -14,6 +12,7 @@
 #include "IO/Formats.hh"
 #include "IO/OvmProperties.hh"
 #include "IO/TextScanner.hh"
+#include "IO/Validate.hh"
 #include "IO/Words.hh"
 
 namespace hfr::io {
@@ -239,6 +238,7 @@ class OvmReader {
     } else if (entity == OvmEntity::kFace && is_element) {
       is_face_element_ = labels(field);
     } else if (entity == OvmEntity::kVertex && field.name == kOvmFixed && field.components == 1) {
+      mesh_.fixed_vertices.clear();  // of a property that the file has twice the last counts
       for (std::size_t i = 0; i < field.values.size(); ++i) {
         if (field.values[i] != 0.0) mesh_.fixed_vertices.push_back(static_cast<Index>(i));
       }
@@ -255,9 +255,7 @@ class OvmReader {
     std::vector<int> found;
     found.reserve(field.values.size());
     for (const double value : field.values) {
-      if (!(std::abs(value) <= std::numeric_limits<int>::max()) || value != std::trunc(value)) {
-        in_.fail("a value of property \"" + field.name + "\" is no integer of 32 bits");
-      }
+      if (!is_label(value)) in_.fail("a value of property \"" + field.name + "\" is no integer of 32 bits");
       found.push_back(static_cast<int>(value));
     }
     return found;

@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "HalfFace/Errors.hh"
 #include "IO/ReadSurface.hh"
 #include "IO/TextScanner.hh"
+#include "IO/Validate.hh"
 #include "IO/VtuData.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -103,7 +104,7 @@ void PlyReader::read_header() {
     } else if (keyword == "element") {
       Element element;
       element.name = in_.word();
-      element.n = in_.count(0, "number of " + element.name);
+      element.n = in_.count(0, "number of " + shown(element.name));
       elements_.push_back(std::move(element));
     } else if (keyword == "property") {
       if (elements_.empty()) in_.fail("a property stands before the first element");
@@ -184,8 +185,7 @@ void PlyReader::read_faces(const Element& element) {
         }
       } else if (property.name == "label" && !property.list_count) {
         const double number = value(property.type);
-        if (!(std::abs(number) <= std::numeric_limits<int>::max()))
-          fail("a label is larger than " + std::to_string(std::numeric_limits<int>::max()));
+        if (!is_label(number)) fail("a label is no integer of 32 bits");
         label = static_cast<int>(number);
       } else {
         skip(property);
@@ -201,7 +201,8 @@ MeshData PlyReader::read() {
   read_header();
   bool have_vertices = false;
   for (const Element& element : elements_) {
-    if (element.n > 0 && element.properties.empty()) fail("element " + element.name + " has no properties");
+    if (element.n > 0 && element.properties.empty())
+      fail("element " + shown(element.name) + " has no properties");
     if (element.name == "vertex") {
       read_vertices(element);
       have_vertices = true;

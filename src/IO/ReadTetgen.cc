@@ -11,6 +11,7 @@
 #include "IO/Formats.hh"
 #include "IO/Linearise.hh"
 #include "IO/TextScanner.hh"
+#include "IO/Validate.hh"
 
 namespace hfr::io {
 namespace {
@@ -147,9 +148,7 @@ class TetgenReader {
     const std::vector<double>& values = fields[0].values;
     const auto is_whole = [](double value) { return value == std::trunc(value); };
     if (!std::all_of(values.begin(), values.end(), is_whole)) return;
-    const auto beyond = std::find_if(values.begin(), values.end(), [](double value) {
-      return !(std::abs(value) <= std::numeric_limits<int>::max());
-    });
+    const auto beyond = std::find_if_not(values.begin(), values.end(), is_label);
     if (beyond != values.end()) {
       mesh_.notes.push_back("the first attribute of cell " + std::to_string(beyond - values.begin()) +
                             " is larger than a region's number can be: the attributes are kept as a field");

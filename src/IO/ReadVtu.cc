@@ -12,6 +12,7 @@
 #include "IO/Formats.hh"
 #include "IO/VtkGrid.hh"
 #include "IO/VtuData.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -79,8 +80,7 @@ void VtuReader::fail_at_line(int line, const std::string& message) const {
 
 void VtuReader::fail(const XMLElement& element, const std::string& message) const {
   const char* const array = element.Attribute("Name");
-  const std::string what =
-      std::string("<") + element.Name() + (array ? std::string(" Name=\"") + array + "\"" : "");
+  const std::string what = "<" + shown(element.Name()) + (array ? " Name=\"" + shown(array) + "\"" : "");
   fail_at_line(element.GetLineNum(), what + ">: " + message);
 }
 
@@ -90,7 +90,7 @@ std::size_t VtuReader::number(const XMLElement& element, const char* attribute_n
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || error != std::errc{} || stop != text.data() + text.size())
     fail(element,
-         std::string("attribute ") + attribute_name + " must be a number, not '" + std::string(text) + "'");
+         std::string("attribute ") + attribute_name + " must be a number, not '" + shown(text) + "'");
   return value;
 }
 
@@ -104,7 +104,7 @@ const XMLElement& VtuReader::named_array(const XMLElement& section, std::string_
   for (const XMLElement* e = section.FirstChildElement("DataArray"); e;
        e = e->NextSiblingElement("DataArray"))
     if (attribute(*e, "Name") == array_name) return *e;
-  fail(section, "there is no array '" + std::string(array_name) + "' in it");
+  fail(section, "there is no array '" + shown(array_name) + "' in it");
 }
 
 void VtuReader::parse() {
@@ -137,24 +137,23 @@ void VtuReader::parse() {
 void VtuReader::read_coding(const XMLElement& root) {
   const std::string_view type = attribute(root, "type");
   if (type != "UnstructuredGrid")
-    fail(root, "type \"" + std::string(type) + "\" is not supported: only UnstructuredGrid is");
+    fail(root, "type \"" + shown(type) + "\" is not supported: only UnstructuredGrid is");
   const std::string_view order = attribute(root, "byte_order");
   if (order != "LittleEndian" && order != "BigEndian" && !order.empty())
-    fail(root, "unknown byte_order \"" + std::string(order) + "\"");
+    fail(root, "unknown byte_order \"" + shown(order) + "\"");
   coding_.swap = (order == "BigEndian") != (std::endian::native == std::endian::big);
   const std::string_view header = attribute(root, "header_type");
   if (header != "UInt32" && header != "UInt64" && !header.empty())
-    fail(root, "unknown header_type \"" + std::string(header) + "\"");
+    fail(root, "unknown header_type \"" + shown(header) + "\"");
   coding_.wide_header = header == "UInt64";
   const std::string_view compressor = attribute(root, "compressor");
   if (compressor != "vtkZLibDataCompressor" && !compressor.empty())
-    fail(root,
-         "compressor \"" + std::string(compressor) + "\" is not supported: only vtkZLibDataCompressor is");
+    fail(root, "compressor \"" + shown(compressor) + "\" is not supported: only vtkZLibDataCompressor is");
   coding_.zlib = !compressor.empty();
   if (!appended_) return;
   const std::string_view encoding = attribute(child(root, "AppendedData"), "encoding");
   if (encoding != "raw" && encoding != "base64")
-    fail(root, "unknown encoding \"" + std::string(encoding) + "\" of the appended data");
+    fail(root, "unknown encoding \"" + shown(encoding) + "\" of the appended data");
   appended_base64_ = encoding == "base64";
 }
 
@@ -263,8 +262,7 @@ std::optional<Field> VtuReader::read_field(const XMLElement& element, std::size_
   const std::string_view array_name = attribute(element, "Name");
   const std::string_view type = attribute(element, "type");
   if (type == "String" || type == "Bit") {
-    grid_.notes.push_back("array '" + std::string(array_name) + "' of type " + std::string(type) +
-                          " dropped");
+    grid_.notes.push_back("array '" + shown(array_name) + "' of type " + shown(type) + " dropped");
     return std::nullopt;
   }
   Field field;
@@ -300,7 +298,7 @@ void VtuReader::merge_arrays(std::vector<Field>& all, std::vector<Field>&& more,
 NumberType VtuReader::number_type(const XMLElement& element) const {
   const std::string_view type = attribute(element, "type");
   const auto known = vtu_number_type(type);
-  if (!known) fail(element, "unknown type \"" + std::string(type) + "\"");
+  if (!known) fail(element, "unknown type \"" + shown(type) + "\"");
   return *known;
 }
 
@@ -323,7 +321,7 @@ std::vector<T> VtuReader::read_numbers(const XMLElement& element, std::size_t n)
   if (format == "ascii" || format.empty()) return read_text<T>(element, n);
   if (format == "binary") return read_block<T>(element, n, false);
   if (format == "appended") return read_block<T>(element, n, true);
-  fail(element, "unknown format \"" + std::string(format) + "\"");
+  fail(element, "unknown format \"" + shown(format) + "\"");
 }
 
 std::string_view text_of(const XMLElement& element) {
@@ -345,7 +343,7 @@ std::vector<T> VtuReader::read_text(const XMLElement& element, std::size_t n) co
   const std::string_view found = trimmed(text.substr(*bad)).substr(0, 20);
   const auto line = element.FirstChild()->GetLineNum() + std::count(before.begin(), before.end(), '\n');
   fail_at_line(static_cast<int>(line),
-               "array '" + std::string(attribute(element, "Name")) + "': " +
+               "array '" + shown(attribute(element, "Name")) + "': " +
                    (found.empty() ? std::to_string(n) + " numbers are needed, but there are fewer"
                                   : "expected " + std::to_string(n) + " numbers and no more, found '" +
                                         std::string(found.substr(0, found.find_first_of(" \t\r\n"))) + "'"));
@@ -373,7 +371,7 @@ std::vector<T> VtuReader::read_block(const XMLElement& element, std::size_t n, b
   const auto fail_here = [&](const std::string& message) {
     if (!appended) fail(element, message);
     throw InvalidInput(name_ + ": at byte " + std::to_string(data.data() - bytes_.data()) + ": array '" +
-                       std::string(attribute(element, "Name")) + "': " + message);
+                       shown(attribute(element, "Name")) + "': " + message);
   };
   if (n == 0 && data.empty()) return {};
   const VtuBlock block = decode_block(data, !appended || appended_base64_, coding_, fail_here);

@@ -2,6 +2,7 @@
 #include "IO/Validate.hh"
 
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "HalfFace/Errors.hh"
@@ -44,6 +45,11 @@ void check_fields(const std::vector<Field>& fields, std::size_t n_items, const s
 }
 
 }  // namespace
+
+bool is_label(double number) {
+  return number >= std::numeric_limits<int>::min() && number <= std::numeric_limits<int>::max() &&
+         number == std::trunc(number);
+}
 
 void validate(const MeshData& mesh, const std::string& name) {
   const std::size_t n_points = mesh.points.size();

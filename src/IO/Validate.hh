@@ -14,6 +14,9 @@ namespace hfr::io {
 /// empty). Items are counted from 0. ResourceLimit when there are more points than an Index can count.
 void validate(const MeshData& mesh, const std::string& name);
 
+/// A number of a file is a label: an integer of 32 bits, the lowest and the highest included.
+bool is_label(double number);
+
 }  // namespace hfr::io
 
 #endif

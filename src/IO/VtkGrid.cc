@@ -14,6 +14,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/Linearise.hh"
+#include "IO/Validate.hh"
 #include "IO/Words.hh"
 
 namespace hfr::io {
@@ -96,8 +97,6 @@ std::string counted(std::size_t n, const std::string& what) {
 
 constexpr double kLowestLabel = std::numeric_limits<int>::min();
 constexpr double kHighestLabel = std::numeric_limits<int>::max();
-
-bool is_label(double v) { return v >= kLowestLabel && v <= kHighestLabel && v == std::trunc(v); }
 
 /// Takes the array with the best of the known names out of `fields`. Integers that no label can hold would
 /// leave the regions of a mesh unknown, so they are refused; real numbers may well mean something else.

@@ -2,12 +2,11 @@
 // See ReadOvm.cc for the format.
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include "IO/Formats.hh"
 #include "IO/OutputFile.hh"
 #include "IO/OvmProperties.hh"
+#include "IO/Validate.hh"
 
 namespace hfr::io {
 namespace {
@@ -151,10 +150,17 @@ void write_cells(OutputFile& out, const MeshData& mesh, const Skeleton& skeleton
 }
 
 void begin_property(OutputFile& out, std::string_view entity, std::string_view type, std::string_view name) {
-  out.text(entity).text(" ").text(type).text(" \"");
-  // A quote or a line's end would end the name.
-  for (const char c : name) out.text(c == '"' || c == '\n' || c == '\r' ? "_" : std::string_view(&c, 1));
-  out.text("\"\n");
+  out.text(entity).text(" ").text(type).text(" \"").text(name).text("\"\n");
+}
+
+/// A quote or a line's end would end the name.
+std::string name_in_file(const Field& field, Notes& notes) {
+  std::string name = field.name;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == '"' || c == '\n' || c == '\r'; }, '_');
+  if (name != field.name)
+    notes.push_back("OpenVolumeMesh holds no quotes in names: '" + name + "' is written");
+  return name;
 }
 
 void write_labels(OutputFile& out, std::string_view entity, std::string_view name,
@@ -178,9 +184,7 @@ void write_element_labels(OutputFile& out, std::string_view entity, std::size_t 
 }
 
 bool fits_int(const Field& field) {
-  return field.integer && std::all_of(field.values.begin(), field.values.end(), [](double value) {
-           return std::abs(value) <= std::numeric_limits<int>::max() && value == std::trunc(value);
-         });
+  return field.integer && std::all_of(field.values.begin(), field.values.end(), is_label);
 }
 
 void write_fields(OutputFile& out, std::string_view entity, const std::vector<Field>& fields, Notes& notes) {
@@ -191,7 +195,7 @@ void write_fields(OutputFile& out, std::string_view entity, const std::vector<Fi
                       std::to_string(field.components) + " components");
       continue;
     }
-    begin_property(out, entity, type->name, field.name);
+    begin_property(out, entity, type->name, name_in_file(field, notes));
     const auto n = static_cast<std::size_t>(field.components);
     for (std::size_t i = 0; i < field.values.size(); ++i) {
       type->integer ? out.number(static_cast<std::int64_t>(field.values[i])) : out.number(field.values[i]);

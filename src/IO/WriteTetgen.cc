@@ -12,8 +12,10 @@ namespace {
 void put(OutputFile& out, std::int64_t value) { out.text(" ").number(value); }
 void put(OutputFile& out, double value) { out.text(" ").number(value); }
 
-std::int64_t width_of(const std::vector<Field>& fields) {
+/// Without items there are no attributes either: a reader takes their number for more than the file can hold.
+std::int64_t width_of(const std::vector<Field>& fields, std::size_t n_items) {
   std::int64_t width = 0;
+  if (n_items == 0) return width;
   for (const Field& field : fields) width += field.components;
   return width;
 }
@@ -28,7 +30,7 @@ void put_values(OutputFile& out, const std::vector<Field>& fields, std::size_t i
 void write_nodes(OutputFile& out, const MeshData& mesh) {
   const bool has_labels = !mesh.vertex_labels.empty();
   out.number(static_cast<std::int64_t>(mesh.points.size())).text(" 3");
-  put(out, width_of(mesh.point_fields));
+  put(out, width_of(mesh.point_fields, mesh.points.size()));
   out.text(has_labels ? " 1\n" : " 0\n");
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     out.number(static_cast<std::int64_t>(i + 1));
@@ -44,9 +46,9 @@ void write_nodes(OutputFile& out, const MeshData& mesh) {
 
 void write_cells(OutputFile& out, const MeshData& mesh) {
   // The first attribute is the region: it must be there when others follow.
-  const bool has_regions = !mesh.regions.empty() || !mesh.cell_fields.empty();
+  const bool has_regions = !mesh.cells.empty() && (!mesh.regions.empty() || !mesh.cell_fields.empty());
   out.number(static_cast<std::int64_t>(mesh.cells.size())).text(" 4");
-  put(out, width_of(mesh.cell_fields) + (has_regions ? 1 : 0));
+  put(out, width_of(mesh.cell_fields, mesh.cells.size()) + (has_regions ? 1 : 0));
   out.text("\n");
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
     out.number(static_cast<std::int64_t>(i + 1));

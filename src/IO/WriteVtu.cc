@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // VTK XML unstructured grids. The default is raw appended data: arrays are copied to the file as they lie in
 // memory. Header words have 64 bits, so arrays may be of any size.
+#include <algorithm>
 #include <bit>
 #include <deque>
 #include <limits>
@@ -18,14 +19,14 @@ namespace {
 
 enum class Variant { kAscii, kBase64, kAppended, kZlib };
 
-Variant variant_of(const std::filesystem::path& path, const std::string& name) {
-  if (name.empty() || name == "appended") return Variant::kAppended;
+/// write_mesh() has refused other names.
+Variant variant_of(const std::string& name) {
   if (name == "ascii") return Variant::kAscii;
   if (name == "base64") return Variant::kBase64;
-  if (name == "zlib") return Variant::kZlib;
-  throw InvalidInput(path.string() + ": unknown variant '" + name +
-                     "' of .vtu; known are ascii base64 appended zlib");
+  return name == "zlib" ? Variant::kZlib : Variant::kAppended;
 }
+
+bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
 
 std::string escaped(std::string_view text) {
   std::string result;
@@ -44,7 +45,7 @@ std::string escaped(std::string_view text) {
         result += "&quot;";
         break;
       default:
-        result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+        result += is_control(c) ? ' ' : c;
     }
   }
   return result.empty() ? "unnamed" : result;
@@ -324,13 +325,18 @@ Notes VtuWriter::write() {
   put_appended();
   out_.text("</VTKFile>\n");
   out_.commit();
-  return {};
+  Notes notes;
+  for (const auto* const fields : {&mesh_.point_fields, &mesh_.cell_fields})
+    for (const Field& field : *fields)
+      if (std::any_of(field.name.begin(), field.name.end(), is_control))
+        notes.push_back("control characters in the name of a field are written as blanks");
+  return notes;
 }
 
 }  // namespace
 
 Notes write_vtu(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options) {
-  return VtuWriter(path, mesh, variant_of(path, options.variant)).write();
+  return VtuWriter(path, mesh, variant_of(options.variant)).write();
 }
 
 }  // namespace hfr::io

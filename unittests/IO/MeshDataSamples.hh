@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -114,7 +117,24 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
+/// With HFR_KEEP_SAMPLES=FOLDER in the environment, what tests write for readers is kept there once more:
+/// FOLDER/read-EXTENSION, small files only, named by their content; of more than 60 of an extension, which
+/// are those of loops over every byte, one in 32. libFuzzer begins with them.
+inline void keep_sample(const std::filesystem::path& path, const std::string& bytes) {
+  constexpr std::size_t kMost = 4096;  // bytes
+  constexpr std::size_t kAll = 60, kOneIn = 32;
+  const char* const folder = std::getenv("HFR_KEEP_SAMPLES");
+  if (!folder || bytes.size() > kMost || path.extension().empty()) return;
+  static std::map<std::string, std::size_t> n_seen;
+  const std::string extension = path.extension().string();
+  if (const std::size_t n = n_seen[extension]++; n > kAll && n % kOneIn != 0) return;
+  const auto into = std::filesystem::path(folder) / ("read-" + extension.substr(1));
+  std::filesystem::create_directories(into);
+  std::ofstream(into / std::to_string(std::hash<std::string>()(bytes)), std::ios::binary) << bytes;
+}
+
 inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  keep_sample(path, bytes);
   std::filesystem::remove(path);  // some file systems wait for the disk when a file is cut to nothing
   std::ofstream(path, std::ios::binary) << bytes;
 }

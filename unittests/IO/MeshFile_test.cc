@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <iterator>
+#include <limits>
 
 #include "HalfFace/Errors.hh"
 #include "IO/MeshDataSamples.hh"
@@ -50,6 +51,39 @@ TEST_P(EveryFormat, PointsAndCellsSurviveBitForBit) {
   const MeshData back = round_trip(mesh);
   EXPECT_TRUE(samples::same_bits(back.points, mesh.points));
   EXPECT_EQ(back.cells, mesh.cells);
+}
+
+TEST_P(EveryFormat, TheLowestAndTheHighestLabelSurvive) {
+  constexpr int kLowest = std::numeric_limits<int>::min(), kHighest = std::numeric_limits<int>::max();
+  MeshData mesh = samples::two_cells();
+  mesh.regions = {kLowest, kHighest};
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
+  mesh.triangle_labels = {kLowest, kHighest};
+  mesh.edges = {{0, 1}, {1, 2}};
+  mesh.edge_labels = {kLowest, kHighest};
+  mesh.vertex_labels = {kLowest, kHighest, 0, 0, 1};
+  const MeshData back = round_trip(mesh);
+  EXPECT_EQ(back.regions, mesh.regions);
+  EXPECT_EQ(back.triangle_labels, mesh.triangle_labels);
+  EXPECT_EQ(back.edge_labels, mesh.edge_labels);
+  EXPECT_EQ(back.vertex_labels, mesh.vertex_labels);
+}
+
+TEST_P(EveryFormat, FieldsOfNoCellsCanBeRead) {
+  MeshData mesh = samples::two_cells();
+  mesh.cells.clear();
+  mesh.cell_fields = {{"wide", 9, false, {}}, {"wider", 12, false, {}}};
+  EXPECT_EQ(round_trip(mesh).points.size(), mesh.points.size());
+}
+
+TEST_P(EveryFormat, NamesOfFieldsComeBackOrANoteSaysWhy) {
+  MeshData mesh = samples::two_cells();
+  mesh.point_fields = {{"6\" pipe", 1, false, {1, 2, 3, 4, 5}}, {"two\nlines", 1, false, {5, 4, 3, 2, 1}}};
+  const MeshData back = round_trip(mesh);
+  for (const Field& field : mesh.point_fields) {
+    EXPECT_TRUE(has_name(back.point_fields, field) || !notes_.empty()) << field.name;
+    EXPECT_TRUE(has_field(back.point_fields, field)) << field.name;
+  }
 }
 
 TEST_P(EveryFormat, RandomBitPatternsSurvive) {

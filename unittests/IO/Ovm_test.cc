@@ -56,6 +56,13 @@ TEST(Ovm, PropertiesBecomeFieldsRegionsAndLabels) {
   EXPECT_TRUE(mentions(mesh.notes, "MProp int \"version\""));
 }
 
+TEST(Ovm, OfAPropertyGivenTwiceTheLastFixesVertices) {
+  const MeshData mesh = read_text("a.ovm", file_of("Polyhedra\n1\n4 0 2 4 6\n"
+                                                   "VProp bool \"hfremesh:fixed\"\n1\n1\n0\n0\n"
+                                                   "VProp bool \"hfremesh:fixed\"\n0\n1\n0\n0\n"));
+  EXPECT_THAT(mesh.fixed_vertices, ElementsAre(1U));
+}
+
 TEST(Ovm, TheFileWrittenIsACompleteHalfFaceMesh) {
   const TemporaryFolder folder;
   write_mesh(folder / "a.ovm", samples::two_cells());

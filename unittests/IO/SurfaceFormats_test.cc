@@ -189,6 +189,16 @@ TEST(SurfaceFormats, PlyWithOtherElementsAndPropertiesIsRead) {
   EXPECT_EQ(mesh.triangles, (std::vector<std::array<Index, 3>>{{0, 1, 2}}));
 }
 
+TEST(SurfaceFormats, PlyMessagesAreShortWhateverTheFileSays) {
+  const TemporaryFolder folder;
+  const std::string long_word(3000, 'x');
+  for (const std::string& rest : {std::string(" -1\nend_header\n"), std::string(" 2\nend_header\n1 2\n")})
+    EXPECT_LT(
+        samples::message_of_reading(folder, "a.ply", "ply\nformat ascii 1.0\nelement " + long_word + rest)
+            .size(),
+        200U);
+}
+
 TEST(SurfaceFormats, BigEndianPlyIsRead) {
   std::string text =
       "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
+#include <cstring>
+
 #include "IO/VtkSamples.hh"
 
 namespace hfr::io {
@@ -309,6 +313,65 @@ TEST(Vtk, ARealMeshSurvivesEveryVariant) {
     write_mesh(folder / "a.vtk", mesh, options);
     expect_same(read_mesh(folder / "a.vtk"), mesh);
   }
+}
+
+/// A number as binary legacy files have it: the highest byte first.
+template <class T>
+std::string big_endian(std::initializer_list<T> values) {
+  std::string bytes;
+  for (const T value : values) {
+    std::array<char, sizeof(T)> raw;
+    std::memcpy(raw.data(), &value, sizeof(T));
+    if constexpr (std::endian::native == std::endian::little) std::reverse(raw.begin(), raw.end());
+    bytes.append(raw.data(), raw.size());
+  }
+  return bytes;
+}
+
+std::string binary_cell() {
+  return "# vtk DataFile Version 4.2\nq\nBINARY\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n" +
+         big_endian<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}) + "\nCELLS 1 5\n" +
+         big_endian<std::int32_t>({4, 0, 1, 2, 3}) + "\nCELL_TYPES 1\n" + big_endian<std::int32_t>({10}) +
+         "\nPOINT_DATA 4\n";
+}
+
+template <class T>
+std::string binary_array(const std::string& type) {
+  return "a_" + type + " 1 4 " + type + "\n" + big_endian<T>({0, 1, 2, 100}) + "\n";
+}
+
+TEST(Vtk, BinaryArraysOfEveryTypeAreRead) {
+  const TemporaryFolder folder;
+  const MeshData mesh = read_text(
+      folder, binary_cell() + "FIELD FieldData 10\n" + binary_array<std::int8_t>("char") +
+                  binary_array<std::uint8_t>("unsigned_char") + binary_array<std::int16_t>("short") +
+                  binary_array<std::uint16_t>("unsigned_short") + binary_array<std::int32_t>("int") +
+                  binary_array<std::uint32_t>("unsigned_int") + binary_array<std::int64_t>("vtktypeint64") +
+                  binary_array<float>("float") + binary_array<double>("double") + "flags 1 4 bit\n\xb0\n");
+  ASSERT_EQ(mesh.point_fields.size(), 10U);
+  for (std::size_t i = 0; i < 9; ++i)
+    EXPECT_EQ(mesh.point_fields[i].values, (std::vector<double>{0, 1, 2, 100})) << mesh.point_fields[i].name;
+  EXPECT_EQ(mesh.point_fields[9].values, (std::vector<double>{1, 0, 1, 1}))
+      << "a bit each, the highest first";
+}
+
+TEST(Vtk, BinaryStringsAndColoursArePassedOver) {
+  const TemporaryFolder folder;
+  // A length of one byte begins with the bits 11, one of two bytes with 10.
+  const std::string strings = "comment 1 4 string\n\xc3one\xc0\xc1x" + std::string("\x80\x03two") + "\n";
+  const std::string colours = "COLOR_SCALARS paint 3\n" + std::string(12, '\x7f') + "\n";
+  const std::string after = "FIELD FieldData 1\n" + binary_array<double>("double");
+  const MeshData mesh = read_text(folder, binary_cell() + colours + "FIELD FieldData 1\n" + strings + after);
+  ASSERT_EQ(mesh.point_fields.size(), 1U);
+  EXPECT_EQ(mesh.point_fields[0].values, (std::vector<double>{0, 1, 2, 100}));
+  EXPECT_TRUE(has_note(mesh, "strings 'comment' dropped"));
+  const std::string begin = binary_cell() + "FIELD FieldData 1\ncomment 1 4 string\n";
+  EXPECT_NE(
+      samples::short_message_for(folder / "a.vtk", begin + "\xff" + "four").find("longer than the rest"),
+      std::string::npos);
+  EXPECT_NE(
+      samples::short_message_for(folder / "a.vtk", begin + "\xc0\xc0\xc0\x80").find("expected a string"),
+      std::string::npos);
 }
 
 }  // namespace

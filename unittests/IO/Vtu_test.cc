@@ -322,6 +322,18 @@ TEST(Vtu, WhatIsBrokenIsNamedWithItsLine) {
             ":16: <DataArray Name=\"offsets\">: there are no appended data");
 }
 
+TEST(Vtu, MessagesAreShortWhateverTheFileSays) {
+  const TemporaryFolder folder;
+  const std::string long_word(3000, 'x');
+  const std::string text = kText;
+  for (const std::string& broken :
+       {replaced(text, "version=\"1.0\">", "version=\"1.0\" compressor=\"" + long_word + "\">"),
+        replaced(text, "type=\"Float64\"", "type=\"" + long_word + "\""),
+        replaced(text, "NumberOfPoints=\"4\"", "NumberOfPoints=\"" + long_word + "\""),
+        replaced(text, "type=\"UnstructuredGrid\"", "type=\"" + long_word + "\"")})
+    EXPECT_LT(samples::short_message_for(folder / "a.vtu", broken).size(), 200U);
+}
+
 TEST(Vtu, AnOffsetBehindTheAppendedDataIsRefused) {
   const TemporaryFolder folder;
   Foreign foreign{.appended = true, .coded = false};
