@@ -79,6 +79,9 @@ CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, 
     HFR_REQUIRE(!opposite_halfface(m).is_valid(), "add_cell: the face of vertices" + numbers(face) +
                                                       " has two cells already, one of them cell " +
                                                       std::to_string(cell_of(m).idx()));
+    HFR_REQUIRE(halfface_opposite_vertex(m) != created.v[k],
+                "add_cell: cell " + std::to_string(cell_of(m).idx()) + " has the same four vertices" +
+                    numbers(created.v));
     HFR_REQUIRE(CyclicOrder::key(halfface_vertices(m)) != CyclicOrder::key(face),
                 "add_cell: vertices" + numbers(created.v) +
                     " lie the wrong way round for their neighbour, cell " + std::to_string(cell_of(m).idx()) +

@@ -394,9 +394,9 @@ class TetMesh : public PropertyAccess<TetMesh> {
 
   // --- by hand, one at a time ---
   VertexHandle add_vertex(Vec3 p);
-  /// Appends a cell and links it with its neighbours. The first call after building or other writing makes a
-  /// table of all faces: O(n). Throws InvalidInput, leaving the mesh as it was, when a vertex does not exist
-  /// or comes twice, when a face has two cells already, or when the order contradicts a neighbour.
+  /// Appends a cell, linked with its neighbours. The first call after building or other writing makes a table
+  /// of all faces: O(n). Throws InvalidInput, leaving the mesh as it was, when a vertex does not exist or
+  /// comes twice, a face has two cells, a cell has these vertices, or the order contradicts a neighbour.
   CellHandle add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, VertexHandle v3);
   /// Deleted things keep their handles until collect_garbage(); labels of edges and faces that vanish go at
   /// once. O(1), but for

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <vector>
 
 #include "HalfFace/Vec3.hh"
@@ -16,8 +17,17 @@ namespace hfr::fuzz {
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
+  /// What the bytes say, two of them for each number, lower byte first: unit() grows with the two, and a byte
+  /// that is changed changes one number. After them follows the sequence of seed 0. `bytes` has to outlive
+  /// the sequence and its copies.
+  explicit Random(std::span<const std::uint8_t> bytes) : state_(0), bytes_(bytes) {}
 
   std::uint64_t next() {
+    if (bytes_.size() >= 2) {
+      const auto two = static_cast<std::uint64_t>(bytes_[0] | bytes_[1] << 8);
+      bytes_ = bytes_.subspan(2);
+      return two * 0x0001000100010001ULL;
+    }
     std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9ULL;
     z = (z ^ z >> 27) * 0x94d049bb133111ebULL;
@@ -54,6 +64,7 @@ class Random {
 
  private:
   std::uint64_t state_;
+  std::span<const std::uint8_t> bytes_;
 };
 
 }  // namespace hfr::fuzz

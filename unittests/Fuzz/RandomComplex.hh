@@ -52,7 +52,7 @@ namespace detail {
 /// Puts together one complex, in the order of random_complex().
 class Maker {
  public:
-  explicit Maker(std::uint64_t number) : random_(number * 0x9e3779b97f4a7c15ULL ^ 0x68667266757a7aULL) {}
+  explicit Maker(const Random& random) : random_(random) {}
 
   Complex run() {
     take(part(most_cells()));
@@ -342,7 +342,11 @@ class Maker {
 }  // namespace detail
 
 /// The complex of that number: 1 to 40 cells, some to a few hundred, up to 1,300 with stars of more than 256.
-inline Complex random_complex(std::uint64_t number) { return detail::Maker(number).run(); }
+inline Complex random_complex(std::uint64_t number) {
+  return detail::Maker(Random(number * 0x9e3779b97f4a7c15ULL ^ 0x68667266757a7aULL)).run();
+}
+/// What the numbers that come next make.
+inline Complex random_complex(const Random& random) { return detail::Maker(random).run(); }
 
 }  // namespace hfr::fuzz
 

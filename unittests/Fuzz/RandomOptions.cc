@@ -74,7 +74,10 @@ const char* name_of(Smoother smoother) {
 }  // namespace
 
 RandomOptions random_options(std::uint64_t number, const Complex& complex) {
-  Random random(number * 0xd1342543de82ef95ULL ^ 0x6f7074696f6e73ULL);
+  return random_options(Random(number * 0xd1342543de82ef95ULL ^ 0x6f7074696f6e73ULL), complex);
+}
+
+RandomOptions random_options(Random random, const Complex& complex) {
   RandomOptions options;
   options.improve.policy = {1, 1};
   options.threads = random.chance(0.8) ? 3 : random.pick({2, 4, 5, 7});

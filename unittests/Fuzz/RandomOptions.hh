@@ -21,6 +21,8 @@ struct RandomOptions {
 
 /// The options of that number for that complex.
 RandomOptions random_options(std::uint64_t number, const Complex& complex);
+/// What the numbers that come next make.
+RandomOptions random_options(Random random, const Complex& complex);
 
 }  // namespace hfr::fuzz
 

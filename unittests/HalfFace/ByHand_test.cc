@@ -78,6 +78,15 @@ TEST(AddCell, RefusesAndLeavesTheMeshAlone) {
   EXPECT_THROW(mesh.add_cell(V(0), V(1), V(2), far), InvalidInput);
 }
 
+TEST(AddCell, RefusesTheVerticesOfACellInAnyOrder) {
+  TetMesh mesh = test::single_cell();
+  for (const Corners& c : {Corners{0, 1, 2, 3}, Corners{0, 2, 1, 3}, Corners{1, 2, 3, 0}})
+    EXPECT_THAT(message_of([&] { mesh.add_cell(V(c[0]), V(c[1]), V(c[2]), V(c[3])); }),
+                testing::HasSubstr("cell 0 has the same four vertices"));
+  EXPECT_EQ(mesh.n_cells(), 1U);
+  EXPECT_EQ(mesh.boundary_faces().count(), 4U);
+}
+
 TEST(AddCell, AfterLowLevelWritingFindsItsNeighbours) {
   TetMesh mesh = test::single_cell();
   const V top = mesh.add_vertex({1, 1, 1});
