@@ -11,8 +11,9 @@
 #   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr;
 #            gfortran, for the tests of the Fortran module, and chromium, for that of the page of --report, which are
 #            skipped without
-#   --packaging  the default, and what makes and checks packages, manual and completions: lintian for scripts/deb.sh,
-#            abigail-tools for scripts/abi.sh, doxygen for scripts/site.sh, zsh, fish and mandoc for their tests
+#   --packaging  the default, and what makes and checks packages, manual and completions: lintian and debhelper for
+#            scripts/deb.sh, abigail-tools for scripts/abi.sh, doxygen for scripts/site.sh; zsh, fish and mandoc for
+#            their tests
 # oclgrind comes with the tests where it can be had; where not, the search for faults of kernels is skipped.
 set -euo pipefail
 
@@ -28,8 +29,8 @@ for option in "$@"; do
     --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
     --libcxx) extra+=(clang libc++-dev libc++abi-dev) ;;
     --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr gfortran chromium) ;;
-    --packaging) extra+=(dpkg-dev lintian abigail-tools doxygen zsh fish mandoc) ;;
-    *) sed -n '3,18s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    --packaging) extra+=(dpkg-dev debhelper lintian abigail-tools doxygen zsh fish mandoc) ;;
+    *) sed -n '3,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")
