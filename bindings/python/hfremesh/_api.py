@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 
 if TYPE_CHECKING:
+    import pyvista
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
@@ -220,6 +221,17 @@ class Result:
         if self.after.cells == 0 < self.mesh.n_cells:
             raise ValueError("plot() needs statistics=True")
         return _show.plot(self._before, self.mesh, [self.before, self.after])
+
+    def view(self, *, below: float = 15.0, axis: str = "x", at: float = 0.5, **options: Any) -> pyvista.Plotter:
+        """The meshes before and after side by side, cameras linked, as a plotter of PyVista, which has to be there: the
+        surface, the cells whose centre lies before a plane across the axis 'x', 'y' or 'z' at a share of the extent
+        (0 to 1), and, wherever they are, the cells with an angle below so many degrees, coloured by it, and the inverted
+        and flat ones in red. `options` go to pyvista.Plotter, such as off_screen=True; .show() opens the window,
+        .screenshot(path) writes a picture. ValueError for another axis or a share out of range."""
+        from . import _show
+        if axis not in ("x", "y", "z") or not 0 <= at <= 1:
+            raise ValueError(f"axis is x, y or z and at 0 to 1, not {axis!r} and {at}")
+        return _show.view(self._before, self.mesh, below, "xyz".index(axis), at, options)
 
     def __repr__(self) -> str:
         return (f"<hfremesh.Result: {self.mesh.n_cells} cells, {len(self.invalid_cells)} invalid, "

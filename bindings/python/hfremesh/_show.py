@@ -14,6 +14,7 @@ import numpy as np
 from . import _api, _core, _files
 
 if TYPE_CHECKING:
+    import pyvista
     from matplotlib.figure import Figure
 
     Path_ = Union[str, os.PathLike[str]]
@@ -56,3 +57,35 @@ def plot(before: _core.Mesh, after: _core.Mesh, figures: List[_core.Statistics])
         axes.set_ylabel("%")
         axes.legend()
     return figure
+
+
+def view(before: _core.Mesh, after: _core.Mesh, below: float, axis: int, at: float, options: Any) -> pyvista.Plotter:
+    """Both meshes side by side, cut by a plane across an axis, with their poor cells."""
+    import pyvista
+
+    plotter = pyvista.Plotter(shape=(1, 2), **options)
+    for column, (name, mesh) in enumerate((("before", before), ("after", after))):
+        plotter.subplot(0, column)
+        points, cells = np.array(mesh.points), np.array(mesh.cells, dtype=np.int64)
+        grid = pyvista.UnstructuredGrid({10: cells}, points)  # 10: VTK's tetrahedron
+        degrees = np.asarray(_api.min_dihedral(mesh))
+        grid.cell_data["smallest angle"] = degrees
+        low, high = points[:, axis].min(), points[:, axis].max()
+        behind = points[cells, axis].mean(axis=1) <= low + at * (high - low)
+        poor, invalid = (degrees > 0) & (degrees < below), degrees <= 0
+        faces = np.asarray(mesh.boundary_faces, dtype=np.int64)
+        surface = pyvista.PolyData(points, np.column_stack([np.full(len(faces), 3), faces]).ravel())
+        plotter.add_mesh(surface, color="grey", opacity=0.08, name=f"surface {name}")
+        for what, chosen, style in (
+            ("cut", behind & ~poor & ~invalid, {"color": "white", "show_edges": True}),
+            ("poor", poor, {"scalars": "smallest angle", "clim": (0.0, below), "cmap": "plasma", "show_edges": True,
+                            "scalar_bar_args": {"title": f"smallest angle, {name}"}}),
+            ("invalid", invalid, {"color": "red", "show_edges": True}),
+        ):
+            if chosen.any():
+                plotter.add_mesh(grid.extract_cells(np.flatnonzero(chosen)), name=f"{what} {name}", **style)
+        plotter.add_text(f"{name}: {len(cells)} cells, {poor.sum()} below {below:g} degrees, "
+                         f"{invalid.sum()} inverted or flat", font_size=8)
+    plotter.link_views()
+    plotter.reset_camera()
+    return plotter
