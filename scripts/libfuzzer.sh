@@ -52,7 +52,7 @@ for target in "${targets[@]}"; do
   [ ! -d "$kept" ] || arguments+=("$kept")
   log=$build/$target.log
   code=0
-  "$program" "$corpus" "$seeds/$target" -max_total_time="$seconds" -max_len=4096 -timeout=60 -rss_limit_mb=3000 \
+  "$program" "$corpus" "$seeds/$target" -max_total_time="$seconds" -max_len=4096 -timeout=300 -rss_limit_mb=3000 \
     -malloc_limit_mb=1000 -print_final_stats=1 -artifact_prefix="$findings/" "${arguments[@]}" > "$log" 2>&1 || code=$?
   awk -v target="$target" -v code="$code" '
     /^stat::number_of_executed_units/ { runs = $2 }
