@@ -14,6 +14,7 @@
 #include "Parallel/Atomic.hh"
 #include "Parallel/Interleave.hh"
 #include "Scheduler/Rank.hh"
+#include "Scheduler/RoundPlace.hh"
 #include "Scheduler/Select.hh"
 #ifdef HFR_PARANOID
 #include "Scheduler/Paranoid.hh"
@@ -58,6 +59,7 @@ class RoundCore::State {
     VertexHandle new_vertex, removed_vertex;
     std::size_t first_slot = 0;
     std::span<OuterFace> notes;
+    std::vector<std::uint64_t> fresh;  // slots, where the mesh is a part of one
   };
 
   State(RoundCore& round, bool ranks_by_gain)
@@ -81,17 +83,22 @@ class RoundCore::State {
     counts.seconds_evaluate = since(start);
     start = Clock::now();
     rank_all();
-    counts.sub_rounds = select();
-    const std::size_t n_selected = winners_.size();
-    keep_number_of_cells();
-    counts.winners = winners_.size();
-    counts.held_back = n_selected - winners_.size();
+    if (options_.place) {
+      select_among_parts(counts);
+    } else {
+      counts.sub_rounds = select();
+      const std::size_t n_selected = winners_.size();
+      keep_number_of_cells();
+      counts.winners = winners_.size();
+      counts.held_back = n_selected - winners_.size();
+    }
     counts.seconds_select = since(start);
     start = Clock::now();
     ++work_.clock;
     if (!winners_.empty()) commit();
+    if (options_.place) finish_among_parts();
     counts.seconds_commit = since(start);
-    return counts;
+    return options_.place ? options_.place->total(counts) : counts;
   }
 
   const std::vector<Winner>& winners() const { return winners_; }
@@ -146,8 +153,17 @@ class RoundCore::State {
 
   std::uint64_t key(const PlanBase& plan, const Tet& identity) const {
     const std::uint64_t salt = options_.seed + work_.clock;
-    return ranks_by_gain_ ? priority_by_gain(plan.old_worst, plan.new_worst, identity, salt)
-                          : priority(plan.old_worst, identity, salt);
+    const SeedName name = name_in_whole(identity);
+    return ranks_by_gain_ ? priority_by_gain(plan.old_worst, plan.new_worst, name, salt)
+                          : priority(plan.old_worst, name, salt);
+  }
+
+  SeedName name_in_whole(const Tet& identity) const {
+    if (!options_.place) return name_of(identity);
+    SeedName name{};
+    for (std::size_t i = 0; i < name.size(); ++i)
+      name[i] = identity[i].is_valid() ? options_.place->number(identity[i]) : kNoVertex;
+    return name;
   }
 
   void rank_all() {
@@ -184,8 +200,52 @@ class RoundCore::State {
       ranks = hfr::select(options_.policy, scopes_, work_.claim, &sub_rounds);
     }
     winners_.clear();
-    for (std::uint32_t r : ranks) winners_.push_back({keys_[r].index, r, {}, {}, 0, {}});
+    for (std::uint32_t r : ranks) winners_.push_back({keys_[r].index, r, {}, {}, 0, {}, {}});
     return sub_rounds;
+  }
+
+  /// The same where the mesh is a part of one, bounds on cells included: winners are those that are committed
+  /// here, among them candidates of other parts.
+  void select_among_parts(RoundCounts& counts) {
+    HFR_REQUIRE(!options_.check_links && work_.pinched.empty() && !options_.worst_first,
+                "a round over parts of a mesh checks no links and does not rank by the exact worst cell");
+    scopes_ = ScopeList(options_.policy, keys_.size(), [&](std::size_t i, Scope& out) {
+      const PlanBase& plan = round_.candidate(keys_[i].index);
+      round_.scope(plan, out);
+      require_sizes(plan, out.size());
+    });
+    std::vector<RoundPlace::Candidate> candidates(keys_.size());
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      const PlanBase& plan = round_.candidate(keys_[i].index);
+      candidates[i] = {keys_[i].key, name_in_whole(identities_[keys_[i].index]), round_.address(plan), &plan,
+                       scopes_[i]};
+    }
+    RoundPlace::Selected selected = options_.place->select(candidates, options_.may_lose, options_.may_gain);
+    counts.held_back = selected.held_back;
+    winners_.clear();
+    for (RoundPlace::Winner& one : selected.winners) {
+      const bool is_own = one.candidate != RoundPlace::Winner::kOfOthers;
+      if (is_own) ++counts.winners;
+      const std::size_t number = is_own ? keys_[one.candidate].index : round_.add_candidate(one.seed);
+      winners_.push_back({static_cast<std::uint32_t>(number),
+                          static_cast<std::uint32_t>(winners_.size()),
+                          {},
+                          {},
+                          0,
+                          {},
+                          std::move(one.fresh)});
+    }
+    scopes_ = ScopeList(options_.policy, winners_.size(),
+                        [&](std::size_t w, Scope& out) { round_.scope(plan_of(winners_[w]), out); });
+    for (std::size_t w = 0; w < winners_.size(); ++w)
+      for (CellHandle c : scopes_[w]) work_.claim[c.idx()] = static_cast<std::uint32_t>(w);
+  }
+
+  void finish_among_parts() {
+    std::vector<RoundPlace::Commit> commits(winners_.size());
+    for (std::size_t w = 0; w < winners_.size(); ++w)
+      commits[w] = {scopes_[w], slots_of(w), winners_[w].removed_vertex};
+    options_.place->finish(commits);
   }
 
   /// Slots are handed out by the plan and written by scope and cavity: in every build, and before anything is
@@ -340,12 +400,15 @@ class RoundCore::State {
       const auto scope = scopes_[winner.rank];
       winner.first_slot = slots_.size();
       if (plan.n_removed == 0) continue;
+      std::size_t n_fresh = 0;
       for (const CavityPart& p :
            parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first)) {
         for (std::size_t i = 0; i < p.n_removed; ++i)
           (i < p.n_created ? slots_ : freed_).push_back(scope[p.first_removed + i]);
         for (std::size_t i = p.n_removed; i < p.n_created; ++i) {
-          if (free.empty()) {
+          if (options_.place) {
+            slots_.push_back(options_.place->slot(winner.fresh[n_fresh++]));
+          } else if (free.empty()) {
             slots_.push_back(CellHandle(n_cells++));
           } else {
             slots_.push_back(free.back());
@@ -360,9 +423,10 @@ class RoundCore::State {
         mesh_.copy_vertex_data(nearest_vertex(mesh_, cavity), winner.new_vertex);
       }
     }
-    writer_.resize_cells(n_cells);
+    writer_.resize_cells(std::max(n_cells, mesh_.n_cells()));
     work_.grow(mesh_);
     for (const auto& [from, to] : fresh) mesh_.copy_cell_data(from, to);
+    if (options_.place) return;  // which hands out the slots of the whole
     for (std::size_t i = freed_.size(); i-- > 0;) free.push_back(freed_[i]);
   }
 
@@ -416,11 +480,17 @@ class RoundCore::State {
       if (winner.removed_vertex.is_valid()) writer_.mark_deleted(winner.removed_vertex);
   }
 
+  /// In the order of the whole mesh.
+  bool is_before(CellHandle a, CellHandle b) const {
+    if (!options_.place || !b.is_valid()) return a < b;
+    return options_.place->number(a) < options_.place->number(b);
+  }
+
   void lower_incident_cell(VertexHandle v, CellHandle c) {
     const auto incident_cell = par::atomic(writer_.incident_cell(v));
     par::before_shared_access();
     CellHandle now = incident_cell.load(std::memory_order_relaxed);
-    while (c < now) {
+    while (is_before(c, now)) {
       par::before_shared_access();
       if (incident_cell.compare_exchange_weak(now, c, std::memory_order_relaxed)) return;
     }

@@ -14,9 +14,12 @@
 #include "hfremesh/Operators/Operator.hh"
 #include "hfremesh/Parallel/Parallel.hh"
 #include "hfremesh/Scheduler/ChunkedArray.hh"
+#include "hfremesh/Scheduler/SeedAddress.hh"
 #include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr {
+
+class RoundPlace;
 
 struct RoundOptions {
   par::Policy policy;
@@ -33,6 +36,9 @@ struct RoundOptions {
   /// is given up, the last in rank order first.
   std::size_t may_lose = std::numeric_limits<std::size_t>::max();
   std::size_t may_gain = std::numeric_limits<std::size_t>::max();
+  /// Where the mesh is a part of a larger one; null: it is all there is. Then no links may have to be
+  /// checked, no vertex may be pinched, and operators add none (docs/distributed.md).
+  RoundPlace* place = nullptr;
 };
 
 namespace detail {
@@ -56,6 +62,10 @@ class RoundCore {
   virtual void measure(std::span<const CellHandle> cells) const = 0;
   /// Fills the candidates in the order of the seeds; returns how many seeds there were.
   virtual std::size_t evaluate() = 0;
+  /// Of the seed of a candidate.
+  virtual SeedAddress address(const PlanBase& plan) const = 0;
+  /// Evaluates the seed there, which improves its cluster, into one more candidate; returns its number.
+  virtual std::size_t add_candidate(const SeedAddress& at) = 0;
 
   RoundCounts run();
   /// Whether candidates have to pass may_be_committed(); before the first is asked about.
@@ -133,6 +143,22 @@ class Round : private detail::RoundCore {
     }
   }
   std::size_t evaluate() override { return evaluate_.call(evaluate_.context); }
+  SeedAddress address(const PlanBase& plan) const override {
+    if constexpr (HasAddress<typename Op::Seed>)
+      return address_of(own(plan).seed);
+    else
+      throw InternalError("seeds of this operator have no address, so no round over parts of a mesh");
+  }
+  std::size_t add_candidate(const SeedAddress& at) override {
+    if constexpr (HasAddress<typename Op::Seed>) {
+      const std::optional<Plan> plan = op_->evaluate(mesh_, seed_at<typename Op::Seed>(at));
+      if (!plan) throw InternalError("parts of a mesh differ: a winner of one improves nothing in another");
+      candidates_.push_back(*plan);
+    } else {
+      static_cast<void>(at);
+    }
+    return candidates_.size() - 1;
+  }
 
   template <class VisitSeeds>
   std::size_t evaluate(std::size_t n_sources, VisitSeeds&& visit_seeds) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -47,23 +48,27 @@ class Worklist {
   std::vector<std::uint8_t> listed_;
 };
 
-/// Whether the edge of listed cell c, an inner one, is c's to name: c is the smallest listed cell of the
-/// ring.
-inline bool names_edge(const TetMesh& mesh, const Worklist& list, CellHandle c, int edge) {
-  return mesh.walk_ring(
-      c, edge, [&](CellHandle other, VertexHandle, VertexHandle) { return !(other < c && list.has(other)); });
+/// Whether the edge of listed cell c, an inner one, is c's to name: c is the smallest listed cell of the ring.
+/// `before(a, b)`: the order of cells, where it is not that of their handles.
+template <class Before = std::less<CellHandle>>
+bool names_edge(const TetMesh& mesh, const Worklist& list, CellHandle c, int edge, Before&& before = {}) {
+  return mesh.walk_ring(c, edge, [&](CellHandle other, VertexHandle, VertexHandle) {
+    return !(before(other, c) && list.has(other));
+  });
 }
 /// Calls visit(seed) for the edges that are c's to name. Over all listed cells, each inner edge of theirs is
 /// visited once.
-template <class Visit>
-void visit_edge_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+template <class Visit, class Before = std::less<CellHandle>>
+void visit_edge_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit,
+                      Before&& before = {}) {
   for (int e = 0; e < 6; ++e)
-    if (names_edge(mesh, list, c, e)) visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)));
+    if (names_edge(mesh, list, c, e, before)) visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)));
 }
 /// The same from the longest edge on, until visit(seed) is true: a poor cell is most often mended by the
 /// removal of a long one, and has to be mended once.
-template <class Visit>
-void visit_edge_seeds_until(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+template <class Visit, class Before = std::less<CellHandle>>
+void visit_edge_seeds_until(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit,
+                            Before&& before = {}) {
   const auto& v = mesh.cell(c).v;
   std::array<double, 6> length2;
   for (std::size_t e = 0; e < 6; ++e)
@@ -73,16 +78,18 @@ void visit_edge_seeds_until(const TetMesh& mesh, const Worklist& list, CellHandl
     return length2[static_cast<std::size_t>(a)] > length2[static_cast<std::size_t>(b)];
   });
   for (int e : order)
-    if (names_edge(mesh, list, c, e) && visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e)))) return;
+    if (names_edge(mesh, list, c, e, before) && visit(EdgeHandle(6 * c.idx() + static_cast<Index>(e))))
+      return;
 }
 
 /// The same for inner faces: from the smaller listed half-face.
-template <class Visit>
-void visit_face_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+template <class Visit, class Before = std::less<CellHandle>>
+void visit_face_seeds(const TetMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit,
+                      Before&& before = {}) {
   for (int k = 0; k < 4; ++k) {
     const HalfFaceHandle h = halfface_of(c, k);
     const HalfFaceHandle m = mesh.opposite_halfface(h);
-    if (m.is_valid() && (h < m || !list.has(cell_of(m)))) visit(h);
+    if (m.is_valid() && (before(c, cell_of(m)) || !list.has(cell_of(m)))) visit(h);
   }
 }
 

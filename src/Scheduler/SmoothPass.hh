@@ -46,6 +46,22 @@ bool worsens_damage(const TetMesh& mesh, const Workspace& work, const Metric& me
   return more > 0 || (work.holds_damage && !before.may_become(after, work.floor));
 }
 
+/// Puts v at x, and notes what that changes in the cells of its link.
+template <class Metric>
+void move_vertex(TetMesh& mesh, Workspace& work, const Metric& metric, VertexHandle v,
+                 std::span<const HalfFaceHandle> link, Vec3 x) {
+  mesh.set_point(v, x);
+  for (HalfFaceHandle h : link) {
+    const CellHandle c = cell_of(h);
+    work.quality[c.idx()] = quality_with(mesh, c, v, x, metric);
+    work.pending[c.idx()] = 0xff;
+    for (VertexHandle u : mesh.cell(c).v) {  // neighbours may share u: all write the same value
+      par::before_shared_access();
+      par::atomic(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
+    }
+  }
+}
+
 /// Smooths the vertices once, colour by colour. Vertices of one colour share no cell, so each evaluates and
 /// moves by itself; a later colour sees the moves of the earlier ones.
 template <class Search, class Metric>
@@ -81,17 +97,8 @@ RoundCounts smooth_pass(TetMesh& mesh, Workspace& work, const Search& search, co
       const std::optional<Move> move = search(mesh, v, link, metric, std::span<const double>(work.quality));
       if (!move) return;
       if (!(move->old_worst > 0) && worsens_damage(mesh, work, metric, v, link, move->target)) return;
-      mesh.set_point(v, move->target);
+      move_vertex(mesh, work, metric, v, link, move->target);
       moved[i] = 1;
-      for (HalfFaceHandle h : link) {
-        const CellHandle c = cell_of(h);
-        work.quality[c.idx()] = quality_with(mesh, c, v, move->target, metric);
-        work.pending[c.idx()] = 0xff;
-        for (VertexHandle u : mesh.cell(c).v) {  // neighbours may share u: all write the same value
-          par::before_shared_access();
-          par::atomic(work.changed[u.idx()]).store(work.clock, std::memory_order_relaxed);
-        }
-      }
     });
   }
   counts.winners = static_cast<std::size_t>(std::count(moved.begin(), moved.end(), std::uint8_t{1}));

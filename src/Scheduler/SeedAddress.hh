@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_SCHEDULER_SEED_ADDRESS_HH
+#define HFR_SCHEDULER_SEED_ADDRESS_HH
+
+#include <cstdint>
+#include <type_traits>
+
+#include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+
+namespace hfr {
+
+/// Where a seed is: a vertex, or a place within a cell. Seeds are made of handles, which mean something in
+/// one mesh only; two parts of a mesh that hold the same cell can tell each other where a seed is by the
+/// number of the cell or vertex.
+struct SeedAddress {
+  CellHandle cell;      ///< invalid for a vertex
+  VertexHandle vertex;  ///< invalid for the others
+  std::uint32_t place = 0;
+};
+
+inline SeedAddress address_of(VertexHandle v) { return {{}, v, 0}; }
+inline SeedAddress address_of(EdgeHandle e) {
+  return {CellHandle(e.idx() / 6), {}, static_cast<std::uint32_t>(e.idx() % 6)};
+}
+inline SeedAddress address_of(HalfFaceHandle h) {
+  return {cell_of(h), {}, static_cast<std::uint32_t>(corner_of(h))};
+}
+/// Seeds that grow from a half-face, as those of MultiFaceRemoval: evaluated again, they grow as before.
+template <class Seed>
+requires requires(const Seed& seed) { seed.halfface; }
+SeedAddress address_of(const Seed& seed) { return address_of(seed.halfface); }
+
+template <class Seed>
+concept HasAddress = requires(const Seed& seed) {
+  { address_of(seed) } -> std::same_as<SeedAddress>;
+};
+
+/// The seed at an address.
+template <class Seed>
+Seed seed_at(const SeedAddress& at) {
+  if constexpr (std::is_same_v<Seed, VertexHandle>)
+    return at.vertex;
+  else if constexpr (std::is_same_v<Seed, EdgeHandle>)
+    return EdgeHandle(6 * at.cell.idx() + static_cast<Index>(at.place));
+  else if constexpr (std::is_same_v<Seed, HalfFaceHandle>)
+    return halfface_of(at.cell, static_cast<int>(at.place));
+  else
+    return Seed(halfface_of(at.cell, static_cast<int>(at.place)));
+}
+
+}  // namespace hfr
+
+#endif
