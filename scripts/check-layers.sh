@@ -14,7 +14,7 @@ set -euo pipefail
 root=${1:-$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)}
 cd "$root"
 
-order=(Parallel HalfFace Quality IO Transfer Operators Surface Scheduler Device Remesh)
+order=(Parallel HalfFace Quality IO Transfer Operators Surface Scheduler Device Remesh Distributed)
 any_layer=$(IFS='|'; echo "${order[*]}")
 faults=$(mktemp)
 trap 'rm -f "$faults"' EXIT

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian or Ubuntu packages that hfremesh needs and that are missing. Does nothing, and asks for
 # no rights, when all are there.
-# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--dev] [--packaging]
+# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--dev] [--packaging] [--mpi]
 #   (none)   to build the library, the tool and the tests
 #   --tool   to build the library and the tool only
 #   --bench  the default, and the benchmarks
@@ -11,6 +11,7 @@
 #   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr;
 #            gfortran, for the tests of the Fortran module, and chromium, for that of the page of --report, which are
 #            skipped without
+#   --mpi    the default, and what several ranks take (HFR_MPI): Open MPI and PT-Scotch, for scripts/mpi.sh
 #   --packaging  the default, and what makes and checks packages, manual and completions: lintian and debhelper for
 #            scripts/deb.sh, abigail-tools for scripts/abi.sh, doxygen for scripts/site.sh; zsh, fish and mandoc for
 #            their tests
@@ -29,8 +30,9 @@ for option in "$@"; do
     --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
     --libcxx) extra+=(clang libc++-dev libc++abi-dev) ;;
     --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr gfortran chromium) ;;
+    --mpi) extra+=(libopenmpi-dev openmpi-bin libptscotch-dev) ;;
     --packaging) extra+=(dpkg-dev debhelper lintian abigail-tools doxygen zsh fish mandoc) ;;
-    *) sed -n '3,17s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    *) sed -n '3,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

@@ -38,7 +38,7 @@ Result improve_with_progress(TetMesh& mesh, ImproveOptions options, const Improv
       presentation.note(progress);
     };
   options.cancel = [&signals] { return signals.cancelled(); };
-  return improve(mesh, options);
+  return common.improve(mesh, options);
 }
 
 /// Everything that stands in the way of a run, and what the user should know of the input.

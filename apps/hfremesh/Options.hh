@@ -2,13 +2,18 @@
 #ifndef HFR_APPS_OPTIONS_HH
 #define HFR_APPS_OPTIONS_HH
 
+#include <functional>
 #include <string>
 
 #include "Parser.hh"
 #include "hfremesh/IO/MeshFile.hh"
 #include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Remesh/Improve.hh"
 
 namespace hfr::app {
+
+/// What does a run: hfr::improve(), or the same on several ranks.
+using ImproveFunction = std::function<Result(TetMesh&, const ImproveOptions&)>;
 
 /// What every subcommand takes.
 struct CommonOptions {
@@ -19,6 +24,10 @@ struct CommonOptions {
   bool quiet = false;
   bool verbose = false;
   bool split_nonmanifold = false;  ///< vertices whose cells do not connect come apart while a mesh is read
+
+  ImproveFunction improve = [](TetMesh& mesh, const ImproveOptions& options) {
+    return hfr::improve(mesh, options);
+  };
 
   par::Policy policy() const;
   /// Tables for humans go to stdout unless they are unwanted or something else goes there.

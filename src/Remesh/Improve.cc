@@ -102,6 +102,7 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& su
   // Elsewhere no new edge or face can come twice while all cells are positive, and there is no copy to make.
   if (findings.is_folded || !work.pinched.empty()) run.keep(valid);
   run.surface = surface.get();
+  run.ranks = memory.ranks;
   bool met = run_twice_if_worse(run);
   const bool stays = settle(run, met);
   met = stays && met;

@@ -66,6 +66,8 @@ PassRunner<Metric>::PassRunner(const Run& run, Metric metric, std::string stage,
       surface_(*this, metric) {
   if constexpr (std::is_same_v<Metric, VolumeLength>)
     device_.emplace(*this, [this](PassKind kind, const Turn& turn) { (this->*row(kind).run)(turn); });
+  if constexpr (std::is_same_v<Metric, MinSine2>) ranks_.emplace(*this, hfr::Metric::kMinSine);
+  if constexpr (std::is_same_v<Metric, MinDihedral>) ranks_.emplace(*this, hfr::Metric::kMinDihedral);
   if (run.checkpoint && may_lower_angles()) run.keep(n_invalid() == 0);
 }
 
@@ -113,12 +115,15 @@ std::size_t PassRunner<Metric>::pass(PassKind kind, const Turn& turn) {
   if (!has(effort().ops, row.ops)) return 0;
   if (device_)
     if (const auto changes = device_->run(kind, row.name, row.pending_bit, turn)) return *changes;
+  if (ranks_)
+    if (const auto changes = ranks_->run(kind, row.name, turn)) return *changes;
   return (this->*row.run)(turn);
 }
 
 template <class Metric>
 std::size_t PassRunner<Metric>::insert(const Turn& turn, double gain) {
   if (!has(effort().ops, Ops::kInsert)) return 0;
+  this->to_host();
   if (gain != insert_gain_) {  // what has been refused may now do
     insert_gain_ = gain;
     look_again_for(PassKind::kInsert);

@@ -9,6 +9,7 @@
 #include "Operators/Metrics.hh"
 #include "Remesh/DevicePasses.hh"
 #include "Remesh/PassState.hh"
+#include "Remesh/RankPasses.hh"
 #include "Remesh/SurfacePasses.hh"
 
 namespace hfr {
@@ -89,6 +90,7 @@ class PassRunner : public PassState {
   double insert_gain_ = 0;      // of the last insert_pass()
   SurfacePasses<Metric> surface_;
   std::optional<DevicePasses> device_;  // in volume-length
+  std::optional<RankPasses> ranks_;     // in the polish
 };
 
 }  // namespace hfr

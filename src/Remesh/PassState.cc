@@ -7,6 +7,7 @@
 #include "HalfFace/Errors.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/DevicePasses.hh"
+#include "Remesh/RankPasses.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
@@ -54,6 +55,10 @@ Worklist PassState::changed_since(std::uint32_t since, const Focus& focus) {
   };
   if (focus.everything()) return Worklist(mesh, run_.policy(), has_changed);
   return Worklist(mesh, run_.policy(), poor(focus.below), has_changed);
+}
+
+std::size_t PassState::n_below(double value) {
+  return ranks_ && ranks_->is_resident() ? ranks_->n_below(value) : poor(value).size();
 }
 
 std::span<const Index> PassState::poor(double value) {
@@ -133,6 +138,7 @@ void PassState::report(const char* op, const Turn& turn, const RoundCounts& coun
 
 void PassState::to_host() {
   if (device_) device_->bring_back();
+  if (ranks_) ranks_->bring_back();
 }
 
 }  // namespace hfr

@@ -17,6 +17,7 @@
 namespace hfr {
 
 class DevicePasses;
+class RankPasses;
 
 /// Which cells a pass works on.
 struct Focus {
@@ -67,7 +68,7 @@ class PassState {
   std::size_t n_invalid() const { return n_invalid_; }
   /// Smallest decision value of the mesh.
   double worst() const { return worst_; }
-  std::size_t n_below(double value) { return poor(value).size(); }
+  std::size_t n_below(double value);
 
   /// Forgets what was looked at, so that passes with a wider focus or other operators see every cell again.
   void look_again();
@@ -85,18 +86,20 @@ class PassState {
   void count(const Focus& focus);
   /// A line in the report, and to the caller that listens.
   void report(const char* op, const Turn& turn, const RoundCounts& counts, double seconds);
-  /// Brings the mesh back from the device, where passes may have left it.
+  /// Brings the mesh back from the device or other ranks, where passes may have left it.
   void to_host();
 
   const Run& run() const { return run_; }
 
  private:
   friend class DevicePasses;
+  friend class RankPasses;
   static constexpr auto kKinds = static_cast<std::size_t>(PassKind::kCount);
 
   Run run_;
   std::string stage_;
   DevicePasses* device_ = nullptr;  // set by itself
+  RankPasses* ranks_ = nullptr;     // the same
   std::size_t n_invalid_ = 0;
   double worst_ = 0;
   std::vector<Index> poor_;  // below poor_below_, but for what the workspace has as touched

@@ -11,6 +11,7 @@
 
 namespace hfr {
 
+class Ranks;
 class SurfaceMesh;
 
 /// What a run finds out on its way.
@@ -48,6 +49,7 @@ struct Run {
   CellBounds bounds = {};
   /// Whether a new vertex may leave as many poor cells as it takes.
   bool may_add_poor_cells = false;
+  Ranks* ranks = nullptr;  ///< that may do passes, too; null: all is done here
 
   par::Policy policy() const { return strategy.pass.policy; }
   /// The same run within other bounds on cells.
@@ -59,7 +61,8 @@ struct Run {
   /// The same run by another strategy.
   Run with(const Strategy& other) const {
     return {mesh,   work,    other,      control,      findings,
-            device, surface, checkpoint, other.bounds, may_add_poor_cells};
+            device, surface, checkpoint, other.bounds, may_add_poor_cells,
+            ranks};
   }
   /// Before something that may leave the mesh worse; see Checkpoint::keep().
   void keep(bool valid) const {

@@ -11,6 +11,8 @@
 
 namespace hfr {
 
+class Ranks;
+
 /// What one run leaves for the next one over the same mesh, whose vertices have moved between them. Whoever
 /// keeps it takes back what does not hold any more. Results have the same bits with it as without.
 struct RunMemory {
@@ -24,6 +26,8 @@ struct RunMemory {
   std::optional<Survey> found;
   /// A copy of the mesh as it is before the next run, for its maps; for that run only.
   const TetMesh* before = nullptr;
+  /// Other processes that may do passes of the run; null: none.
+  Ranks* ranks = nullptr;
 };
 
 /// improve() with a memory.

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_BUFFER_HH
+#define HFR_DISTRIBUTED_BUFFER_HH
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "hfremesh/HalfFace/Errors.hh"
+
+namespace hfr::mpi {
+
+/// A message while it is written: values one after the other, as they are in memory. All ranks run one
+/// program on machines of one kind.
+class Packer {
+ public:
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void put(const T& value) {
+    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
+  }
+  /// How many there are, then the values.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void put_all(std::span<const T> values) {
+    put(static_cast<std::uint64_t>(values.size()));
+    const auto* bytes = reinterpret_cast<const std::byte*>(values.data());
+    bytes_.insert(bytes_.end(), bytes, bytes + values.size_bytes());
+  }
+  template <class T>
+  void put_all(const std::vector<T>& values) {
+    put_all(std::span<const T>(values));
+  }
+
+  bool empty() const { return bytes_.empty(); }
+  std::vector<std::byte>& bytes() { return bytes_; }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// A message while it is read. Throws InternalError beyond its end.
+class Unpacker {
+ public:
+  explicit Unpacker(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  T get() {
+    T value;
+    take(&value, sizeof(T));
+    return value;
+  }
+  template <class T>
+  std::vector<T> get_all() {
+    const auto n = static_cast<std::size_t>(get<std::uint64_t>());
+    if (n > bytes_.size() / sizeof(T)) throw InternalError("a message between ranks is too short");
+    std::vector<T> values(n);
+    take(values.data(), n * sizeof(T));
+    return values;
+  }
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  void take(void* to, std::size_t n) {
+    if (n > bytes_.size()) throw InternalError("a message between ranks is too short");
+    if (n > 0) std::memcpy(to, bytes_.data(), n);
+    bytes_ = bytes_.subspan(n);
+  }
+
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace hfr::mpi
+
+#endif

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_COMM_HH
+#define HFR_DISTRIBUTED_COMM_HH
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "hfremesh/Distributed/Buffer.hh"
+
+namespace hfr::mpi {
+
+/// Another rank has failed; thrown on every other one by the next call that all take part in.
+class RankFailed : public std::runtime_error {
+ public:
+  RankFailed(int rank, int code, const std::string& message)
+      : std::runtime_error("rank " + std::to_string(rank) + ": " + message), rank_(rank), code_(code) {}
+  int rank() const { return rank_; }
+  int code() const { return code_; }  ///< exit code, as that rank has it
+
+ private:
+  int rank_, code_;
+};
+
+/// What a rank has sent to others since the beginning.
+struct Traffic {
+  std::uint64_t messages = 0;     ///< between two ranks
+  std::uint64_t bytes = 0;        ///< in them
+  std::uint64_t exchanges = 0;    ///< times that all ranks took part in
+  std::uint64_t collectives = 0;  ///< sums, minima and gatherings over all ranks
+  std::uint64_t collective_bytes = 0;
+};
+
+/// What the ranks of a communicator say to each other. All functions but rank(), size() and traffic() are
+/// called by all ranks in the same order. Each begins with the question whether a rank has failed: so none
+/// waits for one that has left. Throws RankFailed then, and hfr::Error for faults of MPI.
+class Comm {
+ public:
+  /// Works on a copy of `comm`, whose messages meet no others'. MPI is initialised, with
+  /// MPI_THREAD_FUNNELED at least where loops run on several threads.
+  explicit Comm(MPI_Comm comm);
+  ~Comm();
+  Comm(const Comm&) = delete;
+  Comm& operator=(const Comm&) = delete;
+
+  int rank() const { return rank_; }
+  int size() const { return size_; }
+  std::size_t n_ranks() const { return static_cast<std::size_t>(size_); }
+  const Traffic& traffic() const { return traffic_; }
+  MPI_Comm handle() const { return comm_; }
+
+  struct Message {
+    int from = 0;
+    std::vector<std::byte> bytes;
+  };
+  /// Sends to[r] to rank r unless it is empty; nobody needs to know who sends to whom. Returns what came, by
+  /// ascending rank; a message to oneself among them.
+  std::vector<Message> exchange(std::vector<Packer>& to);
+  /// The values of all ranks, in the order of ranks.
+  template <class T>
+  std::vector<T> all_gather(std::span<const T> mine) {
+    const std::vector<std::byte> all = all_gather_bytes(std::as_bytes(mine));
+    std::vector<T> values(all.size() / sizeof(T));
+    if (!all.empty()) std::memcpy(values.data(), all.data(), all.size());
+    return values;
+  }
+  std::uint64_t sum(std::uint64_t mine);
+  void sum(std::span<std::uint64_t> values);
+  double min(double mine);
+  /// The bytes of rank 0. While rank 0 works, the others sleep here.
+  std::vector<std::byte> from_first(std::vector<std::byte> bytes);
+
+  /// Instead of the next call: this rank has failed. Returns what the others are told: of the smallest rank
+  /// that has. `code`: 1 … 255.
+  RankFailed fail(int code, const std::string& message);
+  /// For tests of that: the call number `n`, from 1, of this rank throws ResourceLimit.
+  void fail_at_call(std::uint64_t n) { fail_at_ = n; }
+  std::uint64_t n_calls() const { return n_calls_; }
+
+ private:
+  std::vector<std::byte> all_gather_bytes(std::span<const std::byte> mine);
+  std::optional<RankFailed> ask(int code, const std::string& message);
+  void agree();
+  static void require(int result);
+  void wait(MPI_Request& request);
+
+  MPI_Comm comm_ = MPI_COMM_NULL;
+  int rank_ = 0, size_ = 1;
+  int tag_ = 0;
+  std::uint64_t n_calls_ = 0, fail_at_ = 0;
+  Traffic traffic_;
+};
+
+}  // namespace hfr::mpi
+
+#endif

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_DISTRIBUTED_MESH_HH
+#define HFR_DISTRIBUTED_DISTRIBUTED_MESH_HH
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "Distributed/Comm.hh"
+#include "Distributed/Partition.hh"
+#include "Distributed/RankSets.hh"
+#include "HalfFace/TetMesh.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr::mpi {
+
+inline constexpr std::uint64_t kNoNumber = std::numeric_limits<std::uint64_t>::max();
+
+/// A mesh that is cut among the ranks. Each vertex has an owner, for good; a cell belongs to the owner of its
+/// vertex with the smallest number. A rank holds the cells with a vertex of its own and two layers of cells
+/// round them: all that have a vertex within two edges of its own ones. That is what it takes to evaluate
+/// any seed of its own cells, and to commit what others have decided next to them.
+///
+/// Numbers, of 64 bits, are those of the whole mesh: its vertices, and its cell slots. In a part, vertices
+/// stand in the order of their numbers; cells in any order, each slot for one number as long as the part
+/// lives. Nothing of it depends on who owns what but who does the work.
+///
+/// What has to be equal on all parts that hold it is: cells, their qualities and pending bits, points, and
+/// within two edges of own vertices change stamps, star sizes and incident cells.
+class DistributedMesh {
+ public:
+  explicit DistributedMesh(Comm& comm) : comm_(comm) {}
+  DistributedMesh(const DistributedMesh&) = delete;
+  DistributedMesh& operator=(const DistributedMesh&) = delete;
+
+  /// Why a mesh cannot be cut yet; empty where it can. Labels and locks, cell properties and bits, pinched
+  /// vertices.
+  static std::string reason_against(const TetMesh& mesh, const Workspace& work);
+
+  /// Hands out the mesh and the workspace of rank 0, attached to it and with its qualities; `owner`: of each
+  /// vertex, see partition(). What other ranks pass is not looked at. All take part.
+  void scatter(const TetMesh* mesh, const Workspace* work, std::span<const int> owner);
+
+  /// What gather() brings.
+  enum class Gather : std::uint8_t {
+    kChanged,    ///< what has changed since scatter(), into the mesh that was handed out
+    kEverything  ///< all cells and points, whatever stands there
+  };
+  /// Brings the parts together in the mesh and workspace of rank 0, which have the vertices, labels and
+  /// properties that were handed out. The mesh is then what the same passes make of it in shared memory:
+  /// points, slots, mates, incident cells, free list. All take part; the parts stay as they are.
+  void gather(TetMesh* mesh, Workspace* work, Gather what);
+
+  Comm& comm() const { return comm_; }
+  TetMesh& part() { return mesh_; }
+  const TetMesh& part() const { return mesh_; }
+  Workspace& work() { return work_; }
+  const Workspace& work() const { return work_; }
+
+  std::uint64_t number(VertexHandle v) const { return vertex_number_[v.idx()]; }
+  std::uint64_t number(CellHandle c) const { return cell_number_[c.idx()]; }
+  int owner(VertexHandle v) const { return owner_[v.idx()]; }
+  bool is_own(VertexHandle v) const { return owner_[v.idx()] == comm_.rank(); }
+  bool is_own(CellHandle c) const {
+    const auto& v = mesh_.cell(c).v;
+    return is_own(std::min(std::min(v[0], v[1]), std::min(v[2], v[3])));
+  }
+  /// Invalid where this rank holds none of that number; a cell may be a deleted one.
+  VertexHandle vertex_at(std::uint64_t number) const;
+  CellHandle cell_at(std::uint64_t number) const;
+  /// Slots and cells of the whole mesh.
+  std::uint64_t n_slots() const { return n_slots_; }
+  std::uint64_t n_cells() const { return n_slots_ - free_.size(); }
+
+  // --- for rounds and passes ---
+  /// Owners within one edge of v: exact for vertices within two edges of own ones.
+  std::span<const std::uint64_t> near(VertexHandle v) const { return near1_[v.idx()]; }
+  /// Within two edges: exact within one edge.
+  std::span<const std::uint64_t> within_two(VertexHandle v) const { return near2_[v.idx()]; }
+  const RankSets& within_two() const { return near2_; }
+  /// within_two() as it was when other ranks were last told of all cells round v.
+  std::span<const std::uint64_t> told(VertexHandle v) const { return told_[v.idx()]; }
+  void note_told() { told_ = near2_; }
+  /// True where no vertex within two edges is another rank's.
+  bool is_inside(VertexHandle v) const { return near2_.is_only(v.idx(), comm_.rank()); }
+  /// Slots that hold, or held, a cell with a vertex that is not inside.
+  std::span<const Index> zone() const { return zone_; }
+  /// A cell has come that may be in the zone.
+  void note_created(CellHandle c);
+  /// Free slots of the whole, in the order of TetMesh::free_cells(): the same on all ranks.
+  std::vector<std::uint64_t>& free_slots() { return free_; }
+  std::uint64_t& n_slots() { return n_slots_; }
+  /// The slot of that number, a new deleted one if need be.
+  CellHandle slot_of(std::uint64_t number);
+  /// After cells of zone() have changed: near() and within_two(), and zone() without what is not in it.
+  void update_zone();
+  /// Takes out the cells without a vertex within two edges of own ones.
+  void prune();
+  /// Takes a cell out of this part; what was behind its faces has nothing there.
+  void detach(CellHandle c);
+
+  /// What one rank tells another of a vertex, and of a cell.
+  struct VertexRecord {
+    std::uint64_t number = 0, incident = kNoNumber;
+    Vec3 point;
+    std::int32_t owner = 0;
+    std::uint32_t star_size = 0, changed = 0;
+    std::uint8_t frozen = 0, of_owner = 0, deleted = 0;
+  };
+  struct CellRecord {
+    std::uint64_t number = 0;
+    std::array<std::uint64_t, 4> v{}, mate{};  ///< mates as 4·cell + corner
+    double quality = 0;
+    std::int32_t region = 0;
+    std::uint8_t pending = 0;
+  };
+  VertexRecord record(VertexHandle v) const;
+  CellRecord record(CellHandle c) const;
+  /// Writes what came. Records of owners count where there are several of a vertex; of a cell all are equal,
+  /// but for mates, which a rank may have as they were before. So what they do not tell is found by vertices:
+  /// faces of the cells that are written, and those that detach() has opened since the last call.
+  void apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells);
+
+ private:
+  void build_part(std::span<const std::byte> bytes);
+  void insert_vertices(std::span<const VertexRecord> fresh);
+  void write_cells(std::span<const CellRecord> cells);
+  void link(std::span<const CellRecord> cells);
+  void match_open_faces();
+  bool see_each_other(HalfFaceHandle h, HalfFaceHandle g) const;
+  void start_zone();
+
+  Comm& comm_;
+  TetMesh mesh_;
+  Workspace work_;
+  std::vector<std::uint64_t> vertex_number_;  // ascending
+  std::vector<int> owner_;
+  std::vector<std::uint64_t> cell_number_;  // by slot; the first n_sorted_ ascend
+  std::size_t n_sorted_ = 0;
+  std::unordered_map<std::uint64_t, Index> later_;  // slots from n_sorted_ on
+  RankSets near1_, near2_, told_;
+  std::vector<HalfFaceHandle> open_;  // faces behind which something may come
+  std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
+  std::uint64_t n_slots_ = 0;
+  std::vector<std::uint64_t> free_;
+  std::uint32_t clock_at_scatter_ = 0;
+};
+
+}  // namespace hfr::mpi
+
+#endif

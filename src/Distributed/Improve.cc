@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/Improve.hh"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Distributed/PartRound.hh"
+#include "Distributed/PartSeeds.hh"
+#include "Distributed/PartSmoothing.hh"
+#include "Operators/EdgeRemoval.hh"
+#include "Operators/FaceSwap.hh"
+#include "Operators/MultiFaceRemoval.hh"
+#include "Operators/SmoothMaxMin.hh"
+#include "Operators/VertexCollapse.hh"
+#include "Remesh/PassState.hh"
+#include "Remesh/Ranks.hh"
+#include "Remesh/RunMemory.hh"
+
+namespace hfr::mpi {
+namespace {
+
+enum class Task : std::uint8_t { kTake, kPass, kTally, kBringBack, kDismiss };
+
+/// What rank 0 asks all ranks for.
+struct Order {
+  Task task{};
+  Partition partition{};
+  Ranks::Look look;
+  double below = 0;
+  int code = 0;
+};
+
+/// One rank of a run: does the orders that all ranks have at the same time.
+class Worker {
+ public:
+  explicit Worker(Comm& comm) : comm_(comm) {}
+
+  /// `mesh` and `work`: on rank 0 those of the run.
+  void take(Partition how, const TetMesh* mesh, const Workspace* work) {
+    parts_ = std::make_unique<DistributedMesh>(comm_);
+    const std::vector<int> owner = partition(comm_, mesh, how);
+    parts_->scatter(mesh, work, owner);
+  }
+
+  void bring_back(TetMesh* mesh, Workspace* work) {
+    parts_->gather(mesh, work, DistributedMesh::Gather::kChanged);
+    parts_.reset();
+  }
+
+  Ranks::Tally tally(double below) {
+    std::array<std::uint64_t, 2> sums = {0, 0};
+    double worst = std::numeric_limits<double>::infinity();
+    const TetMesh& part = parts_->part();
+    for (std::size_t i = 0; i < part.n_cells(); ++i) {
+      const double q = parts_->work().quality[i];
+      // Deleted ones and most others are nowhere near.
+      if (q > 0 && !(q < below) && !(q < worst)) continue;
+      const CellHandle c(i);
+      if (part.is_deleted(c) || !parts_->is_own(c)) continue;
+      sums[0] += q > 0 ? 0 : 1;
+      sums[1] += q < below ? 1 : 0;
+      worst = std::min(worst, q);
+    }
+    comm_.sum(sums);
+    return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), comm_.min(worst)};
+  }
+
+  RoundCounts pass(const Ranks::Look& look) {
+    return look.metric == Metric::kMinSine ? pass(look, MinSine2{}) : pass(look, MinDihedral{});
+  }
+
+  std::size_t n_cells() const { return static_cast<std::size_t>(parts_->n_cells()); }
+
+ private:
+  template <class M>
+  RoundCounts pass(const Ranks::Look& look, const M& metric) {
+    const TetMesh& part = parts_->part();
+    Workspace& work = parts_->work();
+    const par::Policy policy{look.threads};
+    const Worklist list(part, policy, [&](CellHandle c) {
+      if (!(work.quality[c.idx()] < look.below)) return false;
+      const auto& v = part.cell(c).v;
+      return std::any_of(v.begin(), v.end(),
+                         [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
+    });
+    if (comm_.sum(list.cells().size()) == 0) return {};
+    switch (look.kind) {
+      case PassKind::kEdge:
+        return round<EdgeRemoval<M>>(look, {metric, work.quality}, list);
+      case PassKind::kFace:
+        return round<FaceSwap<M>>(look, {metric, work.quality}, list);
+      case PassKind::kMultiFace:
+        return round<MultiFaceRemoval<M>>(look, {metric, work.quality}, list);
+      case PassKind::kNode: {
+        using Op = VertexCollapse<M>;
+        PartRound place(*parts_);
+        Round<Op> round(parts_->part(), work, options(look, place));
+        return round.run(Op{metric, work.quality, work.frozen}, removable_seeds(*parts_, list, policy));
+      }
+      default: {
+        const auto vertices = vertex_seeds(part, list, work.frozen, policy);
+        const auto n_own = std::count_if(vertices.begin(), vertices.end(),
+                                         [&](VertexHandle v) { return parts_->is_own(v); });
+        if (comm_.sum(static_cast<std::uint64_t>(n_own)) == 0) return {};
+        return smooth_parts(*parts_, MaxMinSearch{}, metric, vertices, policy);
+      }
+    }
+  }
+
+  static RoundOptions options(const Ranks::Look& look, PartRound& place) {
+    RoundOptions options{par::Policy{look.threads}, /*check_links=*/false, look.seed};
+    options.may_lose = static_cast<std::size_t>(look.may_lose);
+    options.may_gain = static_cast<std::size_t>(look.may_gain);
+    return place.options(options);
+  }
+
+  template <class Op>
+  RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list) {
+    PartRound place(*parts_);
+    Round<Op> round(parts_->part(), parts_->work(), options(look, place));
+    return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+      const CellHandle c(list.cells()[i]);
+      if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
+        visit_edge_seeds(*parts_, list, c, visit);
+      else
+        visit_face_seeds(*parts_, list, c, [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+    });
+  }
+
+  Comm& comm_;
+  std::unique_ptr<DistributedMesh> parts_;
+};
+
+void tell(Comm& comm, const Order& order) {
+  Packer out;
+  out.put(order);
+  comm.from_first(std::move(out.bytes()));
+}
+
+/// Rank 0: tells the others, and does its own share.
+class Conductor : public Ranks {
+ public:
+  Conductor(Comm& comm, const Sharing& sharing) : comm_(comm), sharing_(sharing), worker_(comm) {}
+
+  bool can_do(PassKind kind, Metric metric) const override {
+    return (metric == Metric::kMinSine || metric == Metric::kMinDihedral) &&
+           (kind == PassKind::kEdge || kind == PassKind::kFace || kind == PassKind::kMultiFace ||
+            kind == PassKind::kNode || kind == PassKind::kSmooth);
+  }
+  bool can_take(const TetMesh& mesh, const Workspace& work) const override {
+    return DistributedMesh::reason_against(mesh, work).empty();
+  }
+  std::size_t least_cells() const override { return sharing_.least_cells; }
+  void take(const TetMesh& mesh, const Workspace& work) override {
+    tell(comm_, {Task::kTake, sharing_.partition, {}, 0, 0});
+    worker_.take(sharing_.partition, &mesh, &work);
+  }
+  RoundCounts pass(const Look& look) override {
+    tell(comm_, {Task::kPass, {}, look, 0, 0});
+    return worker_.pass(look);
+  }
+  Tally tally(double below) override {
+    tell(comm_, {Task::kTally, {}, {}, below, 0});
+    return worker_.tally(below);
+  }
+  std::size_t n_cells() const override { return worker_.n_cells(); }
+  void bring_back(TetMesh& mesh, Workspace& work) override {
+    tell(comm_, {Task::kBringBack, {}, {}, 0, 0});
+    worker_.bring_back(&mesh, &work);
+  }
+
+ private:
+  Comm& comm_;
+  Sharing sharing_;
+  Worker worker_;
+};
+
+}  // namespace
+
+Result improve(TetMesh& mesh, const ImproveOptions& options, Comm& comm, const Sharing& sharing) {
+  HFR_REQUIRE(comm.rank() == 0, "hfr::mpi::improve() is called by rank 0; the others call serve()");
+  RunMemory memory;
+  Conductor conductor(comm, sharing);
+  if (comm.size() > 1) memory.ranks = &conductor;
+  return hfr::improve(mesh, options, memory);
+}
+
+int serve(Comm& comm) {
+  HFR_REQUIRE(comm.rank() != 0, "hfr::mpi::serve() is for all ranks but 0");
+  Worker worker(comm);
+  while (true) {
+    const std::vector<std::byte> bytes = comm.from_first({});
+    const Order order = Unpacker(bytes).get<Order>();
+    switch (order.task) {
+      case Task::kTake:
+        worker.take(order.partition, nullptr, nullptr);
+        break;
+      case Task::kPass:
+        worker.pass(order.look);
+        break;
+      case Task::kTally:
+        worker.tally(order.below);
+        break;
+      case Task::kBringBack:
+        worker.bring_back(nullptr, nullptr);
+        break;
+      case Task::kDismiss:
+        return order.code;
+    }
+  }
+}
+
+void dismiss(Comm& comm, int code) { tell(comm, {Task::kDismiss, {}, {}, 0, code}); }
+
+}  // namespace hfr::mpi

@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/PartRound.hh"
+
+#include <algorithm>
+#include <tuple>
+
+#include "HalfFace/Writer.hh"
+
+namespace hfr::mpi {
+namespace {
+
+template <class T>
+void sort_and_unite(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+std::vector<VertexHandle> vertices_of(const TetMesh& mesh, std::span<const CellHandle> cells) {
+  std::vector<VertexHandle> vertices;
+  for (CellHandle c : cells)
+    for (VertexHandle v : mesh.cell(c).v) vertices.push_back(v);
+  sort_and_unite(vertices);
+  return vertices;
+}
+
+/// A candidate as it is told to other ranks; the numbers of its scope's cells follow.
+struct Announcement {
+  std::uint64_t key = 0;
+  SeedName name{};
+  std::uint64_t seed_cell = kNoNumber, seed_vertex = kNoNumber;
+  std::uint32_t seed_place = 0, number = 0, n_cells = 0;
+};
+
+struct Decision {
+  std::uint32_t number = 0;
+  std::uint32_t has_won = 0;
+};
+
+}  // namespace
+
+auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain)
+    -> Selected {
+  announce(candidates);
+  decide(candidates);
+  Selected selected;
+  for (std::size_t e = 0; e < entries_.size(); ++e)
+    if (entries_[e].state == State::kWon) selected.winners.push_back({entries_[e].own, entries_[e].seed, {}});
+  selected.held_back = hand_out_slots(candidates, may_lose, may_gain, selected.winners);
+  pending_.clear();
+  for (const Entry& entry : entries_)
+    if (entry.state == State::kWon) note_pending(candidates, entry);
+  return selected;
+}
+
+/// Tells each rank of the candidates that have a vertex within one edge of its own ones: those are all that
+/// share a cell with a candidate of that rank, and all that it has to commit.
+void PartRound::announce(std::span<const Candidate> candidates) {
+  const TetMesh& part = mesh_.part();
+  std::vector<Packer> to(comm_.n_ranks());
+  entries_.clear();
+  entries_.resize(candidates.size());
+  const std::size_t words = mesh_.within_two().words();
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    Entry& entry = entries_[i];
+    entry.key = candidate.key;
+    entry.name = candidate.name;
+    entry.own = i;
+    entry.home = comm_.rank();
+    entry.seed = candidate.seed;
+    entry.told = RankSet(words);
+    for (CellHandle c : candidate.scope)
+      for (VertexHandle v : part.cell(c).v) entry.told.add(mesh_.near(v));
+    entry.told.remove(comm_.rank());
+    if (entry.told.empty()) continue;
+    Announcement a{candidate.key,
+                   candidate.name,
+                   kNoNumber,
+                   kNoNumber,
+                   candidate.seed.place,
+                   static_cast<std::uint32_t>(i),
+                   static_cast<std::uint32_t>(candidate.scope.size())};
+    if (candidate.seed.cell.is_valid()) a.seed_cell = mesh_.number(candidate.seed.cell);
+    if (candidate.seed.vertex.is_valid()) a.seed_vertex = mesh_.number(candidate.seed.vertex);
+    for_ranks(entry.told.bits(), [&](int r) {
+      Packer& out = to[static_cast<std::size_t>(r)];
+      out.put(a);
+      for (CellHandle c : candidate.scope) out.put(mesh_.number(c));
+    });
+  }
+  for (const Comm::Message& message : comm_.exchange(to)) hear(message);
+  const auto by_rank = [](const Entry& a, const Entry& b) {
+    return std::tie(a.key, a.name) < std::tie(b.key, b.name);
+  };
+  const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates.size());
+  std::sort(middle, entries_.end(), by_rank);
+  std::inplace_merge(entries_.begin(), middle, entries_.end(), by_rank);
+}
+
+void PartRound::hear(const Comm::Message& message) {
+  Unpacker in(message.bytes);
+  while (!in.at_end()) {
+    const auto a = in.get<Announcement>();
+    Entry entry;
+    entry.key = a.key;
+    entry.name = a.name;
+    entry.home = message.from;
+    entry.number_at_home = a.number;
+    entry.seed.place = a.seed_place;
+    if (a.seed_cell != kNoNumber) entry.seed.cell = mesh_.cell_at(a.seed_cell);
+    if (a.seed_vertex != kNoNumber) entry.seed.vertex = mesh_.vertex_at(a.seed_vertex);
+    for (std::uint32_t i = 0; i < a.n_cells; ++i) {
+      const CellHandle c = mesh_.cell_at(in.get<std::uint64_t>());
+      if (!c.is_valid() || mesh_.part().is_deleted(c))
+        throw InternalError(
+            "parts of a mesh differ: a candidate next to this part has a cell that is not here");
+      entry.scope.push_back(c);
+    }
+    entries_.push_back(std::move(entry));
+  }
+}
+
+/// Until all ranks know of all their candidates: decides what the decisions of others allow, and tells those
+/// who wait for it. The first undecided candidate of the whole is decided each time.
+void PartRound::decide(std::span<const Candidate> candidates) {
+  undecided_.resize(entries_.size());
+  for (std::size_t e = 0; e < entries_.size(); ++e) undecided_[e] = e;
+  sub_rounds_ = 0;
+  for (bool is_done = false; !is_done;) {
+    ++sub_rounds_;
+    sweep(candidates);
+    std::uint64_t n_left = 0;
+    for (std::size_t e : undecided_)
+      if (entries_[e].own != Winner::kOfOthers && entries_[e].state == State::kUndecided) ++n_left;
+    is_done = comm_.sum(n_left) == 0;
+    tell_decisions();
+    for (std::size_t e : undecided_)
+      if (entries_[e].own == Winner::kOfOthers && entries_[e].state == State::kWon)
+        for (CellHandle c : entries_[e].scope) mesh_.work().claim[c.idx()] = static_cast<std::uint32_t>(e);
+    std::erase_if(undecided_, [&](std::size_t e) { return entries_[e].state != State::kUndecided; });
+  }
+  if (!undecided_.empty()) throw InternalError("a selection among ranks has ended without a decision");
+  for (std::size_t e = 0; e < entries_.size(); ++e)
+    if (entries_[e].state == State::kWon)
+      for (CellHandle c : scope_of(entries_[e], candidates)) mesh_.work().claim[c.idx()] = kUnclaimed;
+}
+
+/// In rank order: a candidate has lost when a winner has one of its cells, and waits while one that is
+/// undecided has. Claims of winners stay.
+void PartRound::sweep(std::span<const Candidate> candidates) {
+  auto& claim = mesh_.work().claim;
+  for (std::size_t e : undecided_) {
+    Entry& entry = entries_[e];
+    const auto scope = scope_of(entry, candidates);
+    bool is_free = true, has_lost = false;
+    for (CellHandle c : scope) {
+      const std::uint32_t holder = claim[c.idx()];
+      if (holder == kUnclaimed) continue;
+      is_free = false;
+      has_lost = has_lost || entries_[holder].state == State::kWon;
+    }
+    if (has_lost) {
+      if (entry.own != Winner::kOfOthers) entry.state = State::kLost;
+      continue;
+    }
+    if (is_free && entry.own != Winner::kOfOthers) entry.state = State::kWon;
+    for (CellHandle c : scope)
+      if (claim[c.idx()] == kUnclaimed) claim[c.idx()] = static_cast<std::uint32_t>(e);
+  }
+  for (std::size_t e : undecided_)
+    if (entries_[e].state == State::kUndecided)
+      for (CellHandle c : scope_of(entries_[e], candidates))
+        if (claim[c.idx()] == e) claim[c.idx()] = kUnclaimed;
+}
+
+void PartRound::tell_decisions() {
+  std::vector<Packer> to(comm_.n_ranks());
+  for (std::size_t e : undecided_) {
+    const Entry& entry = entries_[e];
+    if (entry.own == Winner::kOfOthers || entry.state == State::kUndecided) continue;
+    const Decision decision{static_cast<std::uint32_t>(entry.own), entry.state == State::kWon ? 1U : 0U};
+    for_ranks(entry.told.bits(), [&](int r) { to[static_cast<std::size_t>(r)].put(decision); });
+  }
+  // Of others' candidates, those that are undecided, by rank and number.
+  std::vector<std::tuple<int, std::uint32_t, std::size_t>> waiting;
+  for (std::size_t e : undecided_)
+    if (entries_[e].own == Winner::kOfOthers)
+      waiting.emplace_back(entries_[e].home, entries_[e].number_at_home, e);
+  std::sort(waiting.begin(), waiting.end());
+  for (const Comm::Message& message : comm_.exchange(to)) {
+    Unpacker in(message.bytes);
+    while (!in.at_end()) {
+      const auto decision = in.get<Decision>();
+      const auto at = std::lower_bound(waiting.begin(), waiting.end(),
+                                       std::tuple(message.from, decision.number, std::size_t{0}));
+      if (at == waiting.end() || std::get<0>(*at) != message.from || std::get<1>(*at) != decision.number)
+        throw InternalError("a decision among ranks is about a candidate that nobody has told of");
+      entries_[std::get<2>(*at)].state = decision.has_won ? State::kWon : State::kLost;
+    }
+  }
+}
+
+/// Slots as the round in shared memory has them: in rank order, from the back of the free list, then new
+/// ones; what is freed goes to its back. Every rank goes through the winners of all that take or leave a
+/// slot. Returns the number of winners that are given up, because the whole would lose or gain too many
+/// cells.
+std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std::size_t may_lose,
+                                      std::size_t may_gain, std::vector<Winner>& winners) {
+  std::vector<SlotUse> mine;
+  std::vector<std::uint64_t> my_freed;
+  for (const Entry& entry : entries_) {
+    if (entry.state != State::kWon || entry.own == Winner::kOfOthers) continue;
+    const PlanBase& plan = *candidates[entry.own].plan;
+    SlotUse use{entry.key, entry.name};
+    for (const CavityPart& p :
+         parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first)) {
+      for (std::size_t i = p.n_created; i < p.n_removed; ++i, ++use.n_freed)
+        my_freed.push_back(mesh_.number(candidates[entry.own].scope[p.first_removed + i]));
+      if (p.n_created > p.n_removed) use.n_fresh += static_cast<std::uint32_t>(p.n_created - p.n_removed);
+    }
+    if (plan.removes_vertex && plan.n_removed > plan.n_created) use.loss = plan.n_removed - plan.n_created;
+    if (plan.adds_vertex && plan.n_created > plan.n_removed) use.gain = plan.n_created - plan.n_removed;
+    if (use.n_fresh + use.n_freed + use.loss + use.gain > 0) mine.push_back(use);
+  }
+  std::vector<SlotUse> uses = comm_.all_gather(std::span<const SlotUse>(mine));
+  const std::vector<std::uint64_t> freed = comm_.all_gather(std::span<const std::uint64_t>(my_freed));
+  std::vector<std::size_t> order(uses.size()), first_freed(uses.size());
+  std::size_t n_freed = 0, lost = 0, gained = 0;
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    order[i] = i;
+    first_freed[i] = n_freed;
+    n_freed += uses[i].n_freed;
+    lost += uses[i].loss;
+    gained += uses[i].gain;
+  }
+  const auto rank_of = [](const auto& use) { return std::tie(use.key, use.name); };
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return rank_of(uses[a]) < rank_of(uses[b]); });
+  const bool all_stay = lost <= may_lose && gained <= may_gain;
+  std::vector<std::uint64_t> back;  // to the free list
+  std::size_t n_given_up = 0, w = 0, e = 0;
+  std::vector<std::size_t> given_up;
+  const auto skip = [&] {  // to the next winner that is committed here
+    while (e < entries_.size() && entries_[e].state != State::kWon) ++e;
+  };
+  for (std::size_t i : order) {
+    SlotUse& use = uses[i];
+    for (skip(); e < entries_.size() && rank_of(entries_[e]) < rank_of(use); skip()) ++e, ++w;
+    const bool is_here = e < entries_.size() && rank_of(entries_[e]) == rank_of(use);
+    if (!all_stay && (use.loss > may_lose || use.gain > may_gain)) {
+      ++n_given_up;
+      if (is_here) given_up.push_back(w), dropped_.push_back(e);
+      continue;
+    }
+    if (!all_stay) may_lose -= use.loss, may_gain -= use.gain;
+    for (std::uint32_t k = 0; k < use.n_fresh; ++k) {
+      std::uint64_t slot = mesh_.n_slots();
+      if (mesh_.free_slots().empty()) {
+        ++mesh_.n_slots();
+      } else {
+        slot = mesh_.free_slots().back();
+        mesh_.free_slots().pop_back();
+      }
+      if (is_here) winners[w].fresh.push_back(slot);
+    }
+    for (std::uint32_t k = 0; k < use.n_freed; ++k) back.push_back(freed[first_freed[i] + k]);
+  }
+  mesh_.free_slots().insert(mesh_.free_slots().end(), back.rbegin(), back.rend());
+  for (std::uint64_t gone : dropped_) entries_[gone].state = State::kLost;
+  dropped_.clear();
+  for (std::size_t i = given_up.size(); i-- > 0;)
+    winners.erase(winners.begin() + static_cast<std::ptrdiff_t>(given_up[i]));
+  return n_given_up;
+}
+
+/// Before the commit: whose cells the winner takes away. A rank answers for the cells round its own vertices.
+void PartRound::note_pending(std::span<const Candidate> candidates, const Entry& entry) {
+  Pending pending;
+  pending.vertices = vertices_of(mesh_.part(), scope_of(entry, candidates));
+  pending.receivers = RankSet(mesh_.within_two().words());
+  for (VertexHandle v : pending.vertices) {
+    pending.in_zone = pending.in_zone || !mesh_.is_inside(v);
+    if (mesh_.is_own(v)) pending.receivers.add(mesh_.within_two(v));
+  }
+  pending.receivers.remove(comm_.rank());
+  pending_.push_back(std::move(pending));
+}
+
+void PartRound::finish(std::span<const Commit> commits) {
+  bool is_touched = false;
+  for (std::size_t w = 0; w < commits.size(); ++w) {
+    if (!pending_[w].in_zone) continue;
+    is_touched = true;
+    for (CellHandle c : commits[w].created) mesh_.note_created(c);
+  }
+  // First what has changed, to whoever held it: then each rank knows all cells round the vertices that were
+  // within two edges of its own. An edge that came may have brought vertices nearer, but only such; so it
+  // knows whom its own are near to now.
+  is_touched = exchange(changed_cells(commits), commits) || is_touched;
+  if (is_touched) mesh_.update_zone();
+  const bool has_come = exchange(is_touched ? new_cells() : std::vector<Push>(comm_.n_ranks()), commits);
+  if (has_come) mesh_.update_zone();
+  if (!is_touched && !has_come) return;
+  mesh_.prune();
+  mesh_.note_told();
+}
+
+/// For each rank that held what has changed round own vertices: the slots that went, the cells that came, and
+/// the vertices.
+auto PartRound::changed_cells(std::span<const Commit> commits) const -> std::vector<Push> {
+  const TetMesh& part = mesh_.part();
+  std::vector<Push> pushes(comm_.n_ranks());
+  RankSet set(mesh_.within_two().words());
+  for (std::size_t w = 0; w < commits.size(); ++w) {
+    if (!pending_[w].in_zone) continue;
+    for_others(pending_[w].receivers.bits(), pushes, [&](Push& push) {
+      for (CellHandle c : commits[w].removed) push.removed.push_back(mesh_.number(c));
+    });
+    for (CellHandle c : commits[w].created) {
+      set.clear();
+      for (VertexHandle v : part.cell(c).v)
+        if (mesh_.is_own(v)) set.add(mesh_.told(v));
+      for_others(set.bits(), pushes, [&](Push& push) { push.cells.push_back(c); });
+    }
+    for (VertexHandle v : pending_[w].vertices)
+      if (mesh_.is_own(v) && !part.is_deleted(v))
+        for_others(mesh_.told(v), pushes, [&](Push& push) { push.vertices.push_back(v); });
+  }
+  return pushes;
+}
+
+/// For each rank: all cells round own vertices that have come within two edges of its own.
+auto PartRound::new_cells() const -> std::vector<Push> {
+  const TetMesh& part = mesh_.part();
+  std::vector<Push> pushes(comm_.n_ranks());
+  RankSet set(mesh_.within_two().words()), now = set;
+  for (Index i : mesh_.zone()) {
+    set.clear();
+    for (VertexHandle v : part.cell(CellHandle(i)).v) {
+      if (!mesh_.is_own(v)) continue;
+      now.clear();
+      now.add(mesh_.within_two(v));
+      now.remove(mesh_.told(v));
+      set.add(now.bits());
+    }
+    for_others(set.bits(), pushes, [&](Push& push) { push.cells.push_back(CellHandle(i)); });
+  }
+  return pushes;
+}
+
+/// Sends these and writes what comes; false when nothing does.
+bool PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> commits) {
+  using VertexRecord = DistributedMesh::VertexRecord;
+  using CellRecord = DistributedMesh::CellRecord;
+  std::vector<Packer> to(comm_.n_ranks());
+  for (std::size_t r = 0; r < pushes.size(); ++r) {
+    Push& push = pushes[r];
+    sort_and_unite(push.cells);
+    for (CellHandle c : push.cells)
+      for (VertexHandle v : mesh_.part().cell(c).v) push.vertices.push_back(v);
+    sort_and_unite(push.vertices);
+    if (push.removed.empty() && push.vertices.empty()) continue;
+    std::vector<VertexRecord> vertices;
+    for (VertexHandle v : push.vertices) vertices.push_back(mesh_.record(v));
+    std::vector<CellRecord> cells;
+    for (CellHandle c : push.cells) cells.push_back(mesh_.record(c));
+    to[r].put_all(push.removed);
+    to[r].put_all(vertices);
+    to[r].put_all(cells);
+  }
+  const auto came = comm_.exchange(to);
+  if (came.empty()) return false;
+  std::unordered_set<std::uint64_t> done;  // removed by what was committed here
+  for (const Commit& commit : commits)
+    for (CellHandle c : commit.removed) done.insert(mesh_.number(c));
+  std::vector<VertexRecord> vertices;
+  std::vector<CellRecord> cells;
+  for (const Comm::Message& message : came) {
+    Unpacker in(message.bytes);
+    for (std::uint64_t number : in.get_all<std::uint64_t>()) {
+      if (!done.insert(number).second) continue;
+      const CellHandle c = mesh_.cell_at(number);
+      if (c.is_valid() && !mesh_.part().is_deleted(c)) mesh_.detach(c);
+    }
+    const auto v = in.get_all<VertexRecord>();
+    vertices.insert(vertices.end(), v.begin(), v.end());
+    const auto c = in.get_all<CellRecord>();
+    cells.insert(cells.end(), c.begin(), c.end());
+  }
+  mesh_.apply(vertices, cells);
+  return true;
+}
+
+RoundCounts PartRound::total(RoundCounts mine) {
+  std::array<std::uint64_t, 3> sums = {mine.seeds, mine.candidates, mine.winners};
+  comm_.sum(sums);
+  mine.seeds = static_cast<std::size_t>(sums[0]);
+  mine.candidates = static_cast<std::size_t>(sums[1]);
+  mine.winners = static_cast<std::size_t>(sums[2]);
+  mine.sub_rounds = sub_rounds_;
+  return mine;
+}
+
+}  // namespace hfr::mpi

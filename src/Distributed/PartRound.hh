@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_PART_ROUND_HH
+#define HFR_DISTRIBUTED_PART_ROUND_HH
+
+#include <unordered_set>
+#include <vector>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Scheduler/Round.hh"
+#include "Scheduler/RoundPlace.hh"
+
+namespace hfr::mpi {
+
+/// The place of a round on one part of a mesh. All ranks run the same round at the same time:
+///   PartRound place(mesh);
+///   Round<Op> round(mesh.part(), mesh.work(), place.options({...}));
+///   round.run(op, seeds of own cells, or own vertices);
+/// Each seed of the whole is to be looked at by one rank: an edge by the owner of the smallest listed cell of
+/// its ring, a face by that of its smaller listed cell, a vertex by its owner. Commits, slots and ties are
+/// those of the round in shared memory, whatever the number of ranks.
+///
+/// What ranks say to each other: candidates that reach within one edge of a vertex of another rank, then
+/// whether they have won, until all have; the winners that take or leave slots, to all ranks; what has
+/// changed within two edges of another rank's vertices.
+class PartRound : public RoundPlace {
+ public:
+  explicit PartRound(DistributedMesh& mesh) : mesh_(mesh), comm_(mesh.comm()) {}
+  RoundOptions options(RoundOptions options) {
+    options.place = this;
+    return options;
+  }
+
+  std::uint64_t number(VertexHandle v) const override { return mesh_.number(v); }
+  std::uint64_t number(CellHandle c) const override { return mesh_.number(c); }
+  CellHandle slot(std::uint64_t number) override { return mesh_.slot_of(number); }
+  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain) override;
+  void finish(std::span<const Commit> commits) override;
+  RoundCounts total(RoundCounts mine) override;
+
+ private:
+  enum class State : std::uint8_t { kUndecided, kWon, kLost };
+  /// A candidate as selection sees it: own ones and those that others have told of.
+  struct Entry {
+    std::uint64_t key = 0;
+    SeedName name{};
+    std::size_t own = Winner::kOfOthers;  // number among the candidates
+    int home = 0;
+    std::uint32_t number_at_home = 0;
+    SeedAddress seed;
+    std::vector<CellHandle> scope;  // of others': what this rank holds of it
+    State state = State::kUndecided;
+    RankSet told{0};  // of own ones: ranks that know of it
+  };
+  /// What a winner does to the slots of the whole.
+  struct SlotUse {
+    std::uint64_t key = 0;
+    SeedName name{};
+    std::uint32_t n_fresh = 0, n_freed = 0, loss = 0, gain = 0;
+  };
+  /// A winner that is committed here, before it is.
+  struct Pending {
+    std::vector<VertexHandle> vertices;  // of its scope
+    RankSet receivers{0};                // ranks that hold cells of it, as far as this rank answers for it
+    bool in_zone = false;
+  };
+
+  void announce(std::span<const Candidate> candidates);
+  void hear(const Comm::Message& message);
+  void decide(std::span<const Candidate> candidates);
+  void sweep(std::span<const Candidate> candidates);
+  std::span<const CellHandle> scope_of(const Entry& entry, std::span<const Candidate> candidates) const {
+    return entry.own == Winner::kOfOthers ? std::span<const CellHandle>(entry.scope)
+                                          : candidates[entry.own].scope;
+  }
+  void tell_decisions();
+  std::size_t hand_out_slots(std::span<const Candidate> candidates, std::size_t may_lose,
+                             std::size_t may_gain, std::vector<Winner>& winners);
+  void note_pending(std::span<const Candidate> candidates, const Entry& entry);
+  /// What one rank tells another of cells.
+  struct Push {
+    std::vector<std::uint64_t> removed;
+    std::vector<CellHandle> cells;
+    std::vector<VertexHandle> vertices;
+  };
+  /// body(push) for each other rank in the set.
+  template <class Body>
+  void for_others(std::span<const std::uint64_t> set, std::vector<Push>& pushes, Body&& body) const {
+    for_ranks(set, [&](int r) {
+      if (r != comm_.rank()) body(pushes[static_cast<std::size_t>(r)]);
+    });
+  }
+  std::vector<Push> changed_cells(std::span<const Commit> commits) const;
+  std::vector<Push> new_cells() const;
+  bool exchange(std::vector<Push>&& pushes, std::span<const Commit> commits);
+
+  DistributedMesh& mesh_;
+  Comm& comm_;
+  std::vector<Entry> entries_;  // by key, then name
+  std::vector<std::size_t> undecided_;
+  std::vector<Pending> pending_;
+  std::vector<std::uint64_t> dropped_;  // entries given up for the number of cells
+  std::size_t sub_rounds_ = 0;
+};
+
+}  // namespace hfr::mpi
+
+#endif

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/RankPasses.hh"
+
+#include <exception>
+#include <utility>
+
+namespace hfr {
+
+RankPasses::RankPasses(PassState& state, Metric metric)
+    : state_(state), metric_(metric), n_exceptions_(std::uncaught_exceptions()) {
+  state_.ranks_ = this;
+}
+
+RankPasses::~RankPasses() noexcept(false) {
+  if (std::uncaught_exceptions() == n_exceptions_) bring_back();
+}
+
+bool RankPasses::takes(PassKind kind, const Turn& turn) {
+  // Counts decide, never a clock: the same passes run there each time.
+  const Run& run = state_.run_;
+  if (!run.ranks || !run.ranks->can_do(kind, metric_)) return false;
+  if (run.surface || turn.focus.everything() || !turn.focus.around.empty()) return false;
+  if (state_.n_invalid() > 0 || run.findings.is_folded || run.strategy.pass.ranks_exactly) return false;
+  if (kind == PassKind::kSmooth && run.strategy.pass.smoother != Smoother::kNewton) return false;
+  if (is_resident_) return true;
+  return state_.n_below(turn.focus.below) >= run.ranks->least_cells() &&
+         run.ranks->can_take(run.mesh, run.work);
+}
+
+std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, const Turn& turn) {
+  Run& run = state_.run_;
+  if (!takes(kind, turn)) {
+    bring_back();
+    return std::nullopt;
+  }
+  const double start = run.control.seconds();
+  if (kind == PassKind::kSmooth && run.control.stopped()) return 0;
+  if (!is_resident_) run.ranks->take(run.mesh, run.work);
+  is_resident_ = true;
+  const PassEffort& effort = run.strategy.pass;
+  Ranks::Look look{kind, metric_, turn.focus.below, 0, effort.seed, 0, 0, run.policy().threads};
+  RoundCounts total;
+  std::size_t first = 0;
+  const int most = kind == PassKind::kSmooth ? 1 : effort.rounds;
+  for (int r = 0; r < most && (kind == PassKind::kSmooth || !run.control.stopped()); ++r) {
+    look.since = std::exchange(state_.looked_[static_cast<std::size_t>(kind)], run.work.clock);
+    look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
+    look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
+    const RoundCounts counts = run.ranks->pass(look);
+    if (counts.rounds == 0) break;
+    ++run.work.clock;
+    if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
+    total += counts;
+    if (r == 0) first = counts.winners;
+    if (counts.winners * effort.little <= first) break;
+  }
+  const Ranks::Tally tally = run.ranks->tally(turn.focus.below);
+  state_.n_invalid_ = tally.n_invalid;
+  state_.worst_ = tally.worst;
+  state_.report(name, turn, total, run.control.seconds() - start);
+  return total.winners;
+}
+
+void RankPasses::bring_back() {
+  if (!std::exchange(is_resident_, false)) return;
+  Run& run = state_.run_;
+  const double start = run.control.seconds();
+  run.ranks->bring_back(run.mesh, run.work);
+  PassReport pass;
+  pass.stage = state_.stage_;
+  pass.op = "gather";
+  pass.n_inverted = state_.n_invalid_;
+  pass.worst = state_.worst_;
+  pass.seconds = run.control.seconds() - start;
+  run.control.add(std::move(pass));
+}
+
+}  // namespace hfr

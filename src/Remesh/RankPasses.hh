@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_RANK_PASSES_HH
+#define HFR_REMESH_RANK_PASSES_HH
+
+#include <optional>
+
+#include "Remesh/PassState.hh"
+#include "Remesh/Ranks.hh"
+
+namespace hfr {
+
+/// The passes of a stage on several ranks. The mesh stays there from one pass to the next, and comes back
+/// when a pass that runs here asks for it, or at the end of the stage: each hand-over is a line "gather" in
+/// the report. Only stages whose passes have a focus and no invalid cell: docs/distributed.md says which.
+class RankPasses {
+ public:
+  /// `metric`: that of the passes. Nothing is done unless the run has ranks.
+  RankPasses(PassState& state, Metric metric);
+  ~RankPasses() noexcept(false);
+  RankPasses(const RankPasses&) = delete;
+  RankPasses& operator=(const RankPasses&) = delete;
+
+  /// Changes that a pass has committed; nothing where it does not run there: then the mesh is here.
+  std::optional<std::size_t> run(PassKind kind, const char* name, const Turn& turn);
+  bool is_resident() const { return is_resident_; }
+  void bring_back();
+  std::size_t n_below(double value) { return state_.run_.ranks->tally(value).n_below; }
+
+ private:
+  bool takes(PassKind kind, const Turn& turn);
+
+  PassState& state_;
+  Metric metric_;
+  bool is_resident_ = false;
+  int n_exceptions_;  // when this was made
+};
+
+}  // namespace hfr
+
+#endif

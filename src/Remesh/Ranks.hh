@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_RANKS_HH
+#define HFR_REMESH_RANKS_HH
+
+#include <cstddef>
+#include <cstdint>
+
+#include "HalfFace/TetMesh.hh"
+#include "Parallel/Parallel.hh"
+#include "Quality/Metric.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr {
+
+enum class PassKind : std::uint8_t;
+
+/// Other processes that can do some of the passes of a run, with the same bits: what Distributed/ has for
+/// whoever runs stages. While they have the mesh, that of the run is an older one.
+class Ranks {
+ public:
+  /// One round, or one smoothing pass, over the cells below `below` of which a vertex has changed after the
+  /// clock stood at `since`.
+  struct Look {
+    PassKind kind{};
+    Metric metric = Metric::kMinSine;
+    double below = 0;
+    std::uint32_t since = 0;
+    std::uint64_t seed = 1;
+    std::uint64_t may_lose = 0, may_gain = 0;
+    int threads = 1;
+  };
+  struct Tally {
+    std::size_t n_invalid = 0, n_below = 0;
+    double worst = 0;
+  };
+
+  virtual ~Ranks() = default;
+  /// Whether they can do passes of this kind in this metric, over a mesh like this one.
+  virtual bool can_do(PassKind kind, Metric metric) const = 0;
+  virtual bool can_take(const TetMesh& mesh, const Workspace& work) const = 0;
+  /// From how many cells in focus on it is worth their while.
+  virtual std::size_t least_cells() const = 0;
+  virtual void take(const TetMesh& mesh, const Workspace& work) = 0;
+  /// counts.rounds is 0 where there is nothing to look at.
+  virtual RoundCounts pass(const Look& look) = 0;
+  /// Of all cells.
+  virtual Tally tally(double below) = 0;
+  virtual std::size_t n_cells() const = 0;
+  /// What they have made of it, the workspace included.
+  virtual void bring_back(TetMesh& mesh, Workspace& work) = 0;
+};
+
+}  // namespace hfr
+
+#endif

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/Improve.hh"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "Distributed/Parts.hh"
+
+namespace hfr::test {
+namespace {
+
+/// On rank 0 the mesh after a run of all ranks, and its report; elsewhere nothing.
+struct Outcome {
+  TetMesh mesh;
+  Result result;
+};
+
+Outcome improve_on_all(const TetMesh& input, const ImproveOptions& options, mpi::Comm& comm,
+                       const mpi::Sharing& sharing) {
+  Outcome outcome;
+  if (comm.rank() != 0) {
+    EXPECT_EQ(mpi::serve(comm), 3);
+    return outcome;
+  }
+  outcome.mesh = input;
+  outcome.result = mpi::improve(outcome.mesh, options, comm, sharing);
+  mpi::dismiss(comm, 3);
+  return outcome;
+}
+
+std::size_t n_lines(const Result& result, std::string_view op) {
+  return static_cast<std::size_t>(std::count_if(result.passes.begin(), result.passes.end(),
+                                                [&](const PassReport& pass) { return pass.op == op; }));
+}
+
+/// A goal run without what takes long and is left to rank 0 anyway.
+ImproveOptions short_run(double goal) {
+  ImproveOptions options;
+  options.min_dihedral = goal;
+  options.ops = Ops::kEdge | Ops::kFace | Ops::kNode | Ops::kSmooth;
+  options.min_cells = 1;
+  return options;
+}
+
+void expect_that_of_shared_memory(const TetMesh& input, const ImproveOptions& options, bool is_shared,
+                                  std::vector<mpi::Partition> ways = {mpi::Partition::kGraph}) {
+  for (const mpi::Partition how : ways) {
+    mpi::Comm comm(MPI_COMM_WORLD);
+    const Outcome outcome = improve_on_all(input, options, comm, {how, 0});
+    if (comm.rank() != 0) continue;
+    TetMesh mesh = input;
+    const Result result = improve(mesh, options);
+    EXPECT_TRUE(result.changed);
+    EXPECT_TRUE(identical(mesh, outcome.mesh));
+    EXPECT_EQ(result.goal_reached, outcome.result.goal_reached);
+    EXPECT_EQ(n_lines(outcome.result, "gather") > 0, is_shared && comm.size() > 1);
+  }
+}
+
+TEST(MpiImprove, GoalRunsAreThoseOfSharedMemory) {
+  expect_that_of_shared_memory(valid_box(5, 0.45, 1), short_run(6), true,
+                               {mpi::Partition::kGraph, mpi::Partition::kNumbers});
+}
+
+TEST(MpiImprove, InsertionIsLeftToOneRank) {
+  ImproveOptions options;
+  options.min_dihedral = 8;
+  expect_that_of_shared_memory(valid_box(4, 0.4, 1), options, true);
+}
+
+/// Their polish mixes kinds, which is left to rank 0, and smooths, which is not.
+TEST(MpiImprove, DefaultRunsAreThoseOfSharedMemory) {
+  ImproveOptions options = short_run(8);
+  options.min_dihedral.reset();
+  expect_that_of_shared_memory(valid_box(3, 0.4, 1), options, true);
+}
+
+TEST(MpiImprove, LabelledMeshesAreLeftToOneRank) {
+  TetMesh mesh = valid_box(5, 0.45, 2);
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) mesh.labels().faces.set(mesh.halfface_vertices(h), 4);
+  expect_that_of_shared_memory(mesh, short_run(8), false);
+}
+
+/// Whatever a rank is doing when it fails, all ranks end, and all know why. Calls are counted in a run that
+/// goes well; then one of a rank fails in each run.
+TEST(MpiImprove, ARankThatFailsAnywhereEndsAll) {
+  const TetMesh input = valid_box(4, 0.45, 2);
+  const ImproveOptions options = short_run(6);
+  const auto run = [&](int bad, std::uint64_t call) -> std::uint64_t {
+    mpi::Comm comm(MPI_COMM_WORLD);
+    if (comm.rank() == bad) comm.fail_at_call(call);
+    try {
+      if (comm.rank() == 0) {
+        TetMesh mesh = input;
+        mpi::improve(mesh, options, comm, {mpi::Partition::kCoordinates, 0});
+        mpi::dismiss(comm);
+      } else {
+        mpi::serve(comm);
+      }
+      EXPECT_EQ(call, 0U);
+    } catch (const mpi::RankFailed& failed) {
+      EXPECT_EQ(failed.rank(), bad);
+      EXPECT_EQ(failed.code(), 5);
+      EXPECT_NE(std::string(failed.what()).find("a fault that was asked for"), std::string::npos);
+    } catch (const ResourceLimit& error) {
+      EXPECT_EQ(comm.rank(), bad);
+      EXPECT_EQ(comm.fail(5, error.what()).rank(), bad);
+    }
+    return comm.n_calls();
+  };
+  const std::uint64_t n_calls = run(0, 0);
+  mpi::Comm comm(MPI_COMM_WORLD);
+  if (comm.size() == 1) return;
+  EXPECT_GT(n_calls, 30U);
+  for (const int bad : {0, comm.size() - 1})
+    for (std::uint64_t call = 1; call < n_calls; call += call < 12 ? 1 : n_calls / 5) run(bad, call);
+}
+
+}  // namespace
+}  // namespace hfr::test

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/PartRound.hh"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "Distributed/PartSeeds.hh"
+#include "Distributed/PartSmoothing.hh"
+#include "Distributed/Parts.hh"
+#include "HalfFace/Check.hh"
+#include "Operators/EdgeRemoval.hh"
+#include "Operators/FaceSwap.hh"
+#include "Operators/MultiFaceRemoval.hh"
+#include "Operators/SmoothCandidates.hh"
+#include "Operators/SmoothMaxMin.hh"
+#include "Operators/SmoothNewton.hh"
+#include "Operators/VertexCollapse.hh"
+
+namespace hfr::test {
+namespace {
+
+/// Cells that wait for an operator; they count as looked at.
+Worklist pending(const TetMesh& mesh, Workspace& work, std::uint8_t bit) {
+  return Worklist(mesh, {}, [&](CellHandle c) {
+    const bool is_pending = (work.pending[c.idx()] & bit) != 0;
+    work.pending[c.idx()] = static_cast<std::uint8_t>(work.pending[c.idx()] & ~bit);
+    return is_pending;
+  });
+}
+
+template <class Op, class Make>
+RoundCounts edge_round(Whole& w, std::uint8_t bit, Make&& make, RoundOptions options) {
+  const Worklist list = pending(w.mesh, w.work, bit);
+  Round<Op> round(w.mesh, w.work, options);
+  return round.run(make(w.work), list.cells().size(), [&](std::size_t i, auto&& visit) {
+    if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
+      visit_edge_seeds(w.mesh, list, C(list.cells()[i]), visit);
+    else
+      visit_face_seeds(w.mesh, list, C(list.cells()[i]),
+                       [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+  });
+}
+
+template <class Op, class Make>
+RoundCounts edge_round(mpi::DistributedMesh& m, std::uint8_t bit, Make&& make, RoundOptions options) {
+  const Worklist list = pending(m.part(), m.work(), bit);
+  mpi::PartRound place(m);
+  Round<Op> round(m.part(), m.work(), place.options(options));
+  return round.run(make(m.work()), list.cells().size(), [&](std::size_t i, auto&& visit) {
+    if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
+      mpi::visit_edge_seeds(m, list, C(list.cells()[i]), visit);
+    else
+      mpi::visit_face_seeds(m, list, C(list.cells()[i]),
+                            [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+  });
+}
+
+template <class Op, class Make>
+RoundCounts vertex_round(Whole& w, std::uint8_t bit, Make&& make, RoundOptions options) {
+  const Worklist list = pending(w.mesh, w.work, bit);
+  std::vector<VertexHandle> vertices = vertex_seeds(w.mesh, list, w.work.frozen, {});
+  drop_pinched(w.mesh, w.work.star_size, vertices, {});
+  return Round<Op>(w.mesh, w.work, options).run(make(w.work), vertices);
+}
+
+template <class Op, class Make>
+RoundCounts vertex_round(mpi::DistributedMesh& m, std::uint8_t bit, Make&& make, RoundOptions options) {
+  const Worklist list = pending(m.part(), m.work(), bit);
+  const auto vertices = mpi::removable_seeds(m, list, {});
+  mpi::PartRound place(m);
+  return Round<Op>(m.part(), m.work(), place.options(options)).run(make(m.work()), vertices);
+}
+
+template <class Search, class Metric>
+RoundCounts smooth(Whole& w, std::uint8_t bit, const Search& search, const Metric& metric) {
+  const Worklist list = pending(w.mesh, w.work, bit);
+  return smooth_pass(w.mesh, w.work, search, metric, vertex_seeds(w.mesh, list, w.work.frozen, {}), {});
+}
+
+template <class Search, class Metric>
+RoundCounts smooth(mpi::DistributedMesh& m, std::uint8_t bit, const Search& search, const Metric& metric) {
+  const Worklist list = pending(m.part(), m.work(), bit);
+  return mpi::smooth_parts(m, search, metric, vertex_seeds(m.part(), list, m.work().frozen, {}), {});
+}
+
+RoundOptions options(std::uint64_t seed = 1) {
+  RoundOptions o;
+  o.check_links = false;
+  o.seed = seed;
+  return o;
+}
+
+/// The same passes on both, cut in every way; compares after each call of `passes`, which gives the counts of
+/// what it did.
+template <class Metric, class Passes>
+void expect_same_for_parts(const TetMesh& input, const Metric& metric, int repetitions, std::size_t at_least,
+                           Passes&& passes) {
+  for (const mpi::Partition how :
+       {mpi::Partition::kGraph, mpi::Partition::kCoordinates, mpi::Partition::kNumbers}) {
+    mpi::Comm comm(MPI_COMM_WORLD);
+    const bool first = comm.rank() == 0;
+    Whole whole(input, metric);
+    Whole cut = whole;
+    const auto owner = mpi::partition(comm, first ? &cut.mesh : nullptr, how);
+    mpi::DistributedMesh parts(comm);
+    parts.scatter(&cut.mesh, &cut.work, owner);
+    std::size_t n_changes = 0;
+    for (int i = 0; i < repetitions; ++i) {
+      const RoundCounts a = passes(whole);
+      const RoundCounts b = passes(parts);
+      n_changes += a.winners;
+      EXPECT_EQ(a.seeds, b.seeds);
+      EXPECT_EQ(a.candidates, b.candidates);
+      EXPECT_EQ(a.winners, b.winners);
+      EXPECT_EQ(a.held_back, b.held_back);
+      EXPECT_EQ(whole.mesh.n_logical_cells(), parts.n_cells());
+      expect_part_of(parts, whole);
+      Whole together = cut;
+      gather_from_nothing(parts, together);
+      if (first) {
+        expect_same(whole, together);
+        EXPECT_EQ(check(together.mesh), Ok);
+      }
+      if (comm.sum(testing::Test::HasFailure() ? 1 : 0) > 0) return;
+    }
+    parts.gather(&cut.mesh, &cut.work, mpi::DistributedMesh::Gather::kChanged);
+    if (first) expect_same(whole, cut, /*also_pending=*/false);
+    EXPECT_GE(n_changes, at_least) << "the passes no longer find anything to do";
+  }
+}
+
+TEST(PartRound, EdgeRemovalIsThatOfSharedMemory) {
+  using Op = EdgeRemoval<VolumeLength>;
+  for (const std::uint64_t seed : {1U, 2U})
+    expect_same_for_parts(valid_box(7, 0.45, seed), VolumeLength{}, 6, 100, [&](auto& mesh) {
+      return edge_round<Op>(
+          mesh, 1,
+          [](const Workspace& w) {
+            return Op{{}, w.quality};
+          },
+          options(seed));
+    });
+}
+
+TEST(PartRound, FaceSwapIsThatOfSharedMemory) {
+  using Op = FaceSwap<VolumeLength>;
+  for (const std::uint64_t seed : {1U, 2U})
+    expect_same_for_parts(valid_box(9, 0.48, seed), VolumeLength{}, 6, 40, [&](auto& mesh) {
+      return edge_round<Op>(
+          mesh, 2,
+          [](const Workspace& w) {
+            return Op{{}, w.quality};
+          },
+          options(seed));
+    });
+}
+
+TEST(PartRound, MultiFaceRemovalIsThatOfSharedMemory) {
+  using Op = MultiFaceRemoval<MinSine2>;
+  for (const std::uint64_t seed : {1U, 2U})
+    expect_same_for_parts(valid_box(7, 0.45, seed), MinSine2{}, 6, 100, [&](auto& mesh) {
+      return edge_round<Op>(
+          mesh, 2,
+          [](const Workspace& w) {
+            return Op{{}, w.quality};
+          },
+          options(seed));
+    });
+}
+
+TEST(PartRound, VertexCollapseIsThatOfSharedMemory) {
+  using Op = VertexCollapse<VolumeLength>;
+  for (const std::uint64_t seed : {1U, 2U})
+    expect_same_for_parts(valid_box(7, 0.45, seed), VolumeLength{}, 6, 20, [&](auto& mesh) {
+      return vertex_round<Op>(
+          mesh, 4,
+          [](const Workspace& w) {
+            return Op{{}, w.quality, w.frozen};
+          },
+          options(seed));
+    });
+}
+
+TEST(PartRound, SmoothingIsThatOfSharedMemory) {
+  expect_same_for_parts(valid_box(7, 0.45, 4), VolumeLength{}, 3, 100,
+                        [&](auto& mesh) { return smooth(mesh, 16, NewtonSearch{}, VolumeLength{}); });
+  expect_same_for_parts(valid_box(7, 0.45, 5), MinSine2{}, 3, 100,
+                        [&](auto& mesh) { return smooth(mesh, 16, MaxMinSearch{}, MinSine2{}); });
+}
+
+TEST(PartRound, AllKindsInTurnAreThoseOfSharedMemory) {
+  using Edge = EdgeRemoval<MinSine2>;
+  using Face = MultiFaceRemoval<MinSine2>;
+  using Node = VertexCollapse<MinSine2>;
+  for (const std::uint64_t seed : {1U, 2U})
+    expect_same_for_parts(valid_box(8, 0.48, seed), MinSine2{}, 3, 300, [&](auto& mesh) {
+      RoundCounts counts;
+      for (int r = 0; r < 3; ++r)
+        counts += edge_round<Edge>(
+            mesh, 1,
+            [](const Workspace& w) {
+              return Edge{{}, w.quality};
+            },
+            options(seed));
+      for (int r = 0; r < 2; ++r)
+        counts += edge_round<Face>(
+            mesh, 2,
+            [](const Workspace& w) {
+              return Face{{}, w.quality};
+            },
+            options(seed));
+      counts += vertex_round<Node>(
+          mesh, 4,
+          [](const Workspace& w) {
+            return Node{{}, w.quality, w.frozen};
+          },
+          options(seed));
+      counts += smooth(mesh, 16, MaxMinSearch{}, MinSine2{});
+      return counts;
+    });
+}
+
+TEST(PartRound, BoundsOnCellsHoldForTheWhole) {
+  using Op = VertexCollapse<VolumeLength>;
+  RoundOptions bounded = options();
+  bounded.may_lose = 30;
+  std::size_t n_held_back = 0;
+  expect_same_for_parts(valid_box(7, 0.45, 1), VolumeLength{}, 3, 3, [&](auto& mesh) {
+    const RoundCounts counts = vertex_round<Op>(
+        mesh, 4,
+        [](const Workspace& w) {
+          return Op{{}, w.quality, w.frozen};
+        },
+        bounded);
+    n_held_back += counts.held_back;
+    return counts;
+  });
+  EXPECT_GT(n_held_back, 0U) << "the bound is never met";
+}
+
+}  // namespace
+}  // namespace hfr::test

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes in parts, and the same passes in shared memory to compare with.
+#ifndef HFR_UNITTESTS_DISTRIBUTED_PARTS_HH
+#define HFR_UNITTESTS_DISTRIBUTED_PARTS_HH
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "Distributed/DistributedMesh.hh"
+#include "HalfFace/Writer.hh"
+#include "Operators/Clusters.hh"
+#include "Scheduler/Workspace.hh"
+
+namespace hfr::test {
+
+/// A mesh and what rounds keep of it.
+struct Whole {
+  TetMesh mesh;
+  Workspace work;
+
+  template <class Metric>
+  Whole(TetMesh input, const Metric& metric) : mesh(std::move(input)) {
+    work.attach(mesh, {});
+    work.set_qualities(mesh, metric, {});
+  }
+};
+
+/// A jittered box, all cells of which are positive: what is not is moved half the way back until it is.
+inline TetMesh valid_box(Index n, double jitter, std::uint64_t seed) {
+  const TetMesh regular = jittered(n, 0, seed);
+  TetMesh mesh = jittered(n, jitter, seed);
+  for (bool is_valid = false; !is_valid;) {
+    is_valid = true;
+    for (CellHandle c : mesh.cells()) {
+      const auto& v = mesh.cell(c).v;
+      if (VolumeLength{}(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])) > 0)
+        continue;
+      is_valid = false;
+      for (VertexHandle u : v) mesh.set_point(u, (mesh.point(u) + regular.point(u)) * 0.5);
+    }
+  }
+  return mesh;
+}
+
+/// The whole as the parts have it, from `whole` as it was cut, with all that gather() has to bring spoilt.
+inline void gather_from_nothing(mpi::DistributedMesh& parts, Whole& whole) {
+  if (parts.comm().rank() == 0) {
+    TetMesh::Writer writer(whole.mesh);
+    for (std::size_t c = 0; c < whole.mesh.n_cells(); ++c) writer.mark_deleted(CellHandle(c));
+    for (std::size_t v = 0; v < whole.mesh.n_vertices(); ++v) {
+      whole.mesh.set_point(V(v), {-1, -2, -3});
+      writer.set_incident_cell(V(v), CellHandle());
+    }
+    whole.work.quality.assign(whole.work.quality.size(), -1);
+    whole.work.pending.assign(whole.work.pending.size(), 0x55);
+    whole.work.star_size.assign(whole.work.star_size.size(), 0);
+    whole.work.changed.assign(whole.work.changed.size(), 0);
+  }
+  parts.gather(&whole.mesh, &whole.work, mpi::DistributedMesh::Gather::kEverything);
+}
+
+/// To the last bit, free list and incident cells included; workspaces where there are cells.
+inline void expect_same(const Whole& a, const Whole& b, bool also_pending = true) {
+  EXPECT_TRUE(identical(a.mesh, b.mesh));
+  ASSERT_EQ(a.mesh.n_cells(), b.mesh.n_cells());
+  std::size_t n_different = 0;
+  for (std::size_t c = 0; c < a.mesh.n_cells(); ++c)
+    if (!a.mesh.is_deleted(C(c)))
+      n_different += a.work.quality[c] == b.work.quality[c] &&
+                             (!also_pending || a.work.pending[c] == b.work.pending[c]) &&
+                             a.mesh.region(C(c)) == b.mesh.region(C(c))
+                         ? 0
+                         : 1;
+  EXPECT_EQ(n_different, 0U) << "qualities, pending bits or regions";
+  EXPECT_EQ(a.work.star_size, b.work.star_size);
+  EXPECT_EQ(a.work.changed, b.work.changed);
+  EXPECT_EQ(a.work.clock, b.work.clock);
+}
+
+/// This rank holds of the whole what it should, and no more: cells with a vertex within two edges of own
+/// ones, as the whole has them, mates among them included.
+inline void expect_part_of(const mpi::DistributedMesh& parts, const Whole& whole) {
+  const TetMesh& part = parts.part();
+  std::vector<int> distance(whole.mesh.n_vertices(), 3);
+  for (std::size_t i = 0; i < part.n_vertices(); ++i)
+    if (parts.is_own(V(i))) distance[parts.number(V(i))] = 0;
+  for (int step = 1; step <= 2; ++step)
+    for (CellHandle c : whole.mesh.cells())
+      for (VertexHandle u : whole.mesh.cell(c).v)
+        for (VertexHandle w : whole.mesh.cell(c).v)
+          if (distance[w.idx()] == step - 1 && distance[u.idx()] > step) distance[u.idx()] = step;
+  const auto should_hold = [&](CellHandle c) {
+    const auto& v = whole.mesh.cell(c).v;
+    return std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return distance[u.idx()] <= 2; });
+  };
+  std::size_t n_missing = 0, n_other_corners = 0, n_other_values = 0, n_other_mates = 0, n_held = 0;
+  for (CellHandle c : whole.mesh.cells()) {
+    if (!should_hold(c)) continue;
+    ++n_held;
+    const CellHandle here = parts.cell_at(c.idx());
+    if (!here.is_valid() || part.is_deleted(here)) {
+      ++n_missing;
+      continue;
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (parts.number(part.cell(here).v[k]) != whole.mesh.cell(c).v[k].idx()) ++n_other_corners;
+      if (part.point(part.cell(here).v[k]) != whole.mesh.point(whole.mesh.cell(c).v[k])) ++n_other_values;
+      const HalfFaceHandle m = whole.mesh.cell(c).mate[k], mine = part.cell(here).mate[k];
+      const bool is_open = !m.is_valid() || !should_hold(cell_of(m));
+      if (is_open ? mine.is_valid()
+                  : !mine.is_valid() || corner_of(mine) != corner_of(m) ||
+                        parts.number(cell_of(mine)) != cell_of(m).idx())
+        ++n_other_mates;
+    }
+    if (parts.work().quality[here.idx()] != whole.work.quality[c.idx()]) ++n_other_values;
+  }
+  for (std::size_t i = 0; i < part.n_vertices(); ++i) {
+    const auto v = parts.number(V(i));
+    if (distance[v] > 2 || whole.mesh.is_deleted(V(v))) continue;
+    const CellHandle mine = part.incident_cell(V(i)), theirs = whole.mesh.incident_cell(V(v));
+    if (parts.work().star_size[i] != whole.work.star_size[v] ||
+        parts.work().changed[i] != whole.work.changed[v] || parts.number(mine) != theirs.idx())
+      ++n_other_values;
+  }
+  std::size_t n_there = 0;
+  for (std::size_t c = 0; c < part.n_cells(); ++c) n_there += part.is_deleted(C(c)) ? 0 : 1;
+  EXPECT_EQ(n_missing, 0U);
+  EXPECT_EQ(n_other_corners, 0U);
+  EXPECT_EQ(n_other_mates, 0U);
+  EXPECT_EQ(n_other_values, 0U);
+  EXPECT_EQ(n_there, n_held);
+}
+
+}  // namespace hfr::test
+
+#endif
