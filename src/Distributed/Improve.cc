@@ -120,13 +120,22 @@ class Worker {
   RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list) {
     PartRound place(*parts_);
     Round<Op> round(parts_->part(), parts_->work(), options(look, place));
+    const bool first_does = n_own(list.cells()) > look.first_edge_beyond;
     return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
       const CellHandle c(list.cells()[i]);
-      if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
-        visit_edge_seeds(*parts_, list, c, visit);
-      else
+      if constexpr (!std::is_same_v<typename Op::Seed, EdgeHandle>)
         visit_face_seeds(*parts_, list, c, [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+      else if (first_does)
+        visit_edge_seeds_until(*parts_, list, c, [&](EdgeHandle e) { return visit(e) >= look.below; });
+      else
+        visit_edge_seeds(*parts_, list, c, visit);
     });
+  }
+
+  /// Of these cells of the part, how many are own ones, over all ranks.
+  std::uint64_t n_own(std::span<const Index> cells) {
+    return comm_.sum(static_cast<std::uint64_t>(
+        std::count_if(cells.begin(), cells.end(), [&](Index c) { return parts_->is_own(CellHandle(c)); })));
   }
 
   Comm& comm_;

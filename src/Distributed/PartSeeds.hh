@@ -18,6 +18,14 @@ void visit_edge_seeds(const DistributedMesh& mesh, const Worklist& list, CellHan
                           [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); });
 }
 
+/// Until visit(seed) is true, from the longest edge on.
+template <class Visit>
+void visit_edge_seeds_until(const DistributedMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
+  if (mesh.is_own(c))
+    hfr::visit_edge_seeds_until(mesh.part(), list, c, visit,
+                                [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); });
+}
+
 template <class Visit>
 void visit_face_seeds(const DistributedMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
   if (mesh.is_own(c))

@@ -39,6 +39,7 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
   is_resident_ = true;
   const PassEffort& effort = run.strategy.pass;
   Ranks::Look look{kind, metric_, turn.focus.below, 0, effort.seed, 0, 0, run.policy().threads};
+  if (effort.first_edge_does) look.first_edge_beyond = effort.few_seeds;
   RoundCounts total;
   std::size_t first = 0;
   const int most = kind == PassKind::kSmooth ? 1 : effort.rounds;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
@@ -28,6 +29,9 @@ class Ranks {
     std::uint64_t seed = 1;
     std::uint64_t may_lose = 0, may_gain = 0;
     int threads = 1;
+    /// Where more cells are listed over all, the first edge of each does that leaves it at `below`; see
+    /// PassEffort::first_edge_does.
+    std::uint64_t first_edge_beyond = std::numeric_limits<std::uint64_t>::max();
   };
   struct Tally {
     std::size_t n_invalid = 0, n_below = 0;

@@ -48,8 +48,8 @@ class Worklist {
   std::vector<std::uint8_t> listed_;
 };
 
-/// Whether the edge of listed cell c, an inner one, is c's to name: c is the smallest listed cell of the ring.
-/// `before(a, b)`: the order of cells, where it is not that of their handles.
+/// Whether the edge of listed cell c, an inner one, is c's to name: c is the smallest listed cell of the
+/// ring. `before(a, b)`: the order of cells, where it is not that of their handles.
 template <class Before = std::less<CellHandle>>
 bool names_edge(const TetMesh& mesh, const Worklist& list, CellHandle c, int edge, Before&& before = {}) {
   return mesh.walk_ring(c, edge, [&](CellHandle other, VertexHandle, VertexHandle) {
