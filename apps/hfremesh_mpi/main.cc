@@ -2,11 +2,15 @@
 // hfremesh on several ranks: rank 0 is the tool, the others do their share of its passes.
 #include <mpi.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <map>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "Tool.hh"
@@ -24,27 +28,37 @@ bool says_threads(int argc, char** argv) {
   });
 }
 
-/// Takes "--share-from N" and "--partition HOW", which the tool has not, out of the arguments.
-hfr::mpi::Sharing take_sharing(std::vector<char*>& args) {
+/// What the tool has no option for.
+struct OwnOptions {
   hfr::mpi::Sharing sharing;
-  for (std::size_t i = 1; i + 1 < args.size();) {
-    const std::string_view name = args[i], value = args[i + 1];
-    if (name == "--share-from")
-      sharing.least_cells = std::strtoull(args[i + 1], nullptr, 10);
-    else if (name == "--partition" && value == "graph")
-      sharing.partition = hfr::mpi::Partition::kGraph;
-    else if (name == "--partition" && value == "coordinates")
-      sharing.partition = hfr::mpi::Partition::kCoordinates;
-    else if (name == "--partition" && value == "numbers")
-      sharing.partition = hfr::mpi::Partition::kNumbers;
-    else {
-      ++i;
-      continue;
-    }
-    args.erase(args.begin() + static_cast<std::ptrdiff_t>(i),
-               args.begin() + static_cast<std::ptrdiff_t>(i) + 2);
-  }
-  return sharing;
+  bool shows_traffic = false;
+};
+
+/// Takes the own options out of the arguments and leaves the others as they are. Throws CLI::ParseError.
+OwnOptions take_own_options(std::vector<std::string>& args) {
+  using hfr::mpi::Partition;
+  const std::map<std::string, Partition> partitions = {{"coordinates", Partition::kCoordinates},
+                                                       {"graph", Partition::kGraph},
+                                                       {"numbers", Partition::kNumbers}};
+  OwnOptions own;
+  CLI::App app;
+  app.set_help_flag();
+  app.allow_extras();
+  app.add_option("--share-from", own.sharing.least_cells)->check([](const std::string& text) {
+    const bool is_number = !text.empty() && text.size() < 19 &&
+                           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    return is_number ? std::string() : "must be a whole number";
+  });
+  std::string partition = "coordinates";
+  app.add_option("--partition", partition)->check([&](const std::string& text) {
+    return partitions.contains(text) ? std::string() : "must be coordinates, graph or numbers";
+  });
+  app.add_flag("--traffic", own.shows_traffic);
+  std::vector<std::string> reversed(args.rbegin(), args.rend());  // as CLI11 takes them
+  app.parse(std::move(reversed));
+  args = app.remaining();
+  own.sharing.partition = partitions.at(partition);
+  return own;
 }
 
 /// What ranks have said to each other, for --traffic.
@@ -61,22 +75,24 @@ void print_traffic(const hfr::mpi::Comm& comm) {
 
 /// Rank 0. What another rank throws becomes an error of the tool, with the exit code that it has there.
 int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
-  std::vector<char*> args(argv, argv + argc);
-  const hfr::mpi::Sharing sharing = take_sharing(args);
-  const auto traffic =
-      std::find_if(args.begin(), args.end(), [](std::string_view arg) { return arg == "--traffic"; });
-  const bool shows_traffic = traffic != args.end();
-  if (shows_traffic) args.erase(traffic);
-  char option[] = "--threads", one[] = "1";
-  if (argc > 1 && !says_threads(argc, argv) && comm.size() > 1) {
-    args.push_back(option);
-    args.push_back(one);
+  std::vector<std::string> args(argv + 1, argv + argc);
+  OwnOptions own;
+  try {
+    own = take_own_options(args);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "hfremesh-mpi: %s\n", error.what());
+    const int code = static_cast<int>(ExitCode::kUsage);
+    hfr::mpi::dismiss(comm, code);
+    return code;
   }
-  args.push_back(nullptr);
+  if (argc > 1 && !says_threads(argc, argv) && comm.size() > 1) args.insert(args.end(), {"--threads", "1"});
+  std::vector<char*> pointers = {argv[0]};
+  for (std::string& arg : args) pointers.push_back(arg.data());
+  pointers.push_back(nullptr);
   bool are_gone = false, has_thrown = false;
   const auto improve = [&](hfr::TetMesh& mesh, const hfr::ImproveOptions& options) {
     try {
-      return hfr::mpi::improve(mesh, options, comm, sharing);
+      return hfr::mpi::improve(mesh, options, comm, own.sharing);
     } catch (const hfr::mpi::RankFailed& failed) {
       are_gone = true;
       throw hfr::app::Failure(static_cast<ExitCode>(failed.code()), failed.what());
@@ -86,8 +102,8 @@ int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
     }
   };
   const int code =
-      static_cast<int>(hfr::app::run_tool(static_cast<int>(args.size()) - 1, args.data(), improve));
-  if (shows_traffic) print_traffic(comm);
+      static_cast<int>(hfr::app::run_tool(static_cast<int>(pointers.size()) - 1, pointers.data(), improve));
+  if (own.shows_traffic) print_traffic(comm);
   if (are_gone) return code;
   if (has_thrown)
     comm.fail(code, "the tool has ended");
