@@ -120,7 +120,9 @@ class Worker {
   RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list) {
     PartRound place(*parts_);
     Round<Op> round(parts_->part(), parts_->work(), options(look, place));
-    const bool first_does = n_own(list.cells()) > look.first_edge_beyond;
+    constexpr auto kNever = std::numeric_limits<std::uint64_t>::max();
+    const bool first_does = std::is_same_v<typename Op::Seed, EdgeHandle> &&
+                            look.first_edge_beyond < kNever && n_own(list.cells()) > look.first_edge_beyond;
     return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
       const CellHandle c(list.cells()[i]);
       if constexpr (!std::is_same_v<typename Op::Seed, EdgeHandle>)

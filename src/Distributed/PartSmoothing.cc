@@ -6,7 +6,7 @@
 namespace hfr::mpi {
 namespace {
 
-constexpr std::uint8_t kNone = 63;      // not in the pass, as colour_vertices() has it
+constexpr std::uint8_t kNone = 63;      // as colour_vertices() has it: not in the pass, or alone
 constexpr std::uint8_t kWaiting = 255;  // not coloured yet
 
 struct Colour {
@@ -80,6 +80,7 @@ std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
   const TetMesh& part = mesh_.part();
   Comm& comm = mesh_.comm();
   std::vector<VertexHandle> left;
+  std::vector<std::uint64_t> alone;  // what would need a 64th colour has a group each, after the others
   for (VertexHandle v : own_)
     if (colour_[v.idx()] == kWaiting) left.push_back(v);
   std::uint64_t n_left = 0;
@@ -94,7 +95,7 @@ std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
           used |= std::uint64_t{1} << colour_[u.idx()];
         }
       const auto colour = static_cast<std::uint8_t>(std::countr_one(used & ~(std::uint64_t{1} << kNone)));
-      if (colour >= kNone) throw ResourceLimit("more than 62 colours of vertices on several ranks");
+      if (colour == kNone) alone.push_back(mesh_.number(v));
       colour_[v.idx()] = colour;
       for_ranks(mesh_.near(v), [&](int r) {
         if (r != comm.rank()) to[static_cast<std::size_t>(r)].put(Colour{mesh_.number(v), colour});
@@ -119,6 +120,13 @@ std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
     groups[colour].push_back(v);
   }
   groups.resize(static_cast<std::size_t>(-comm.min(-static_cast<double>(groups.size()))));
+  alone = comm.all_gather(std::span<const std::uint64_t>(alone));
+  std::sort(alone.begin(), alone.end());
+  for (std::uint64_t number : alone) {
+    const VertexHandle v = mesh_.vertex_at(number);
+    groups.emplace_back();
+    if (v.is_valid() && mesh_.is_own(v)) groups.back().push_back(v);
+  }
   return groups;
 }
 

@@ -16,8 +16,8 @@ class PartSmoothing {
   /// `vertices`: those of the pass that this part knows of, ascending: all within one edge of own vertices.
   PartSmoothing(DistributedMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy);
 
-  /// Own vertices of the pass by colour, as many groups on each rank: the first fit in the order of numbers,
-  /// as colour_vertices() has it. Throws ResourceLimit where that takes 63 colours or more.
+  /// Own vertices of the pass by colour, as many groups on each rank: those of colour_vertices(), which are
+  /// the first fit in the order of numbers, and one each for what would need a 64th colour.
   std::vector<std::vector<VertexHandle>> colour_groups();
   /// Half-faces opposite an own vertex of the pass, in the order of the numbers of their cells.
   std::span<const HalfFaceHandle> link(VertexHandle own) const;

@@ -83,8 +83,8 @@ struct PassEffort {
   std::size_t device_from = 50'000;
   bool device_only_smooths = false;
   /// Where more cells than few_seeds are poor, the edges of each are looked at from the longest on until the
-  /// removal of one mends it: towards a goal 3 of 4 need not be looked at. Otherwise, and for the last ones,
-  /// all of them, and the best for the cells round it wins.
+  /// removal of one mends it: towards a goal half to four fifths need not be looked at. Otherwise, and for
+  /// the last ones, all of them, and the best for the cells round it wins.
   bool first_edge_does = false;
   int rounds = 12;           ///< of one operator in one pass, at most
   std::size_t little = 200;  ///< a pass ends with a round that commits less than 1/little of its first one

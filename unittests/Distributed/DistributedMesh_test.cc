@@ -32,14 +32,7 @@ TEST(DistributedMesh, PartsAreTheOwnCellsAndTwoLayersAndNoMore) {
   const auto owner = mpi::partition(comm, comm.rank() == 0 ? &whole.mesh : nullptr, mpi::Partition::kGraph);
   mpi::DistributedMesh parts(comm);
   parts.scatter(&whole.mesh, &whole.work, owner);
-  std::vector<int> distance(whole.mesh.n_vertices(), 3);  // to an own vertex, in edges
-  for (std::size_t i = 0; i < parts.part().n_vertices(); ++i)
-    if (parts.is_own(V(i))) distance[parts.number(V(i))] = 0;
-  for (int step = 1; step <= 2; ++step)
-    for (CellHandle c : whole.mesh.cells())
-      for (VertexHandle u : whole.mesh.cell(c).v)
-        for (VertexHandle w : whole.mesh.cell(c).v)
-          if (distance[w.idx()] == step - 1 && distance[u.idx()] > step) distance[u.idx()] = step;
+  const std::vector<int> distance = edges_to_own(parts, whole);
   std::size_t n_held = 0;
   for (CellHandle c : whole.mesh.cells()) {
     const auto& v = whole.mesh.cell(c).v;

@@ -78,18 +78,24 @@ inline void expect_same(const Whole& a, const Whole& b, bool also_pending = true
   EXPECT_EQ(a.work.clock, b.work.clock);
 }
 
-/// This rank holds of the whole what it should, and no more: cells with a vertex within two edges of own
-/// ones, as the whole has them, mates among them included.
-inline void expect_part_of(const mpi::DistributedMesh& parts, const Whole& whole) {
-  const TetMesh& part = parts.part();
+/// Of each vertex of the whole, how many edges it is away from one of this rank's own; 3: three or more.
+inline std::vector<int> edges_to_own(const mpi::DistributedMesh& parts, const Whole& whole) {
   std::vector<int> distance(whole.mesh.n_vertices(), 3);
-  for (std::size_t i = 0; i < part.n_vertices(); ++i)
+  for (std::size_t i = 0; i < parts.part().n_vertices(); ++i)
     if (parts.is_own(V(i))) distance[parts.number(V(i))] = 0;
   for (int step = 1; step <= 2; ++step)
     for (CellHandle c : whole.mesh.cells())
       for (VertexHandle u : whole.mesh.cell(c).v)
         for (VertexHandle w : whole.mesh.cell(c).v)
           if (distance[w.idx()] == step - 1 && distance[u.idx()] > step) distance[u.idx()] = step;
+  return distance;
+}
+
+/// This rank holds of the whole what it should, and no more: cells with a vertex within two edges of own
+/// ones, as the whole has them, mates among them included.
+inline void expect_part_of(const mpi::DistributedMesh& parts, const Whole& whole) {
+  const TetMesh& part = parts.part();
+  const std::vector<int> distance = edges_to_own(parts, whole);
   const auto should_hold = [&](CellHandle c) {
     const auto& v = whole.mesh.cell(c).v;
     return std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return distance[u.idx()] <= 2; });

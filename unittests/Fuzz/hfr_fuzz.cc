@@ -27,6 +27,7 @@
 #include <thread>
 
 #include "Fuzz/Case.hh"
+#include "Fuzz/ScratchFolder.hh"
 #include "IO/MeshFile.hh"
 
 namespace hfr::fuzz {
@@ -60,25 +61,6 @@ struct Worker {
   std::atomic<double> since{0};      ///< when it began with it
   std::atomic<double> spent{0};      ///< processor seconds that it had taken then
   std::atomic<std::uint64_t> run{0}, refused{0}, changed{0}, invalid{0}, pinched{0}, findings{0}, large{0};
-};
-
-class Folder {
- public:
-  Folder() {
-    std::string name = std::filesystem::temp_directory_path() / "hfr_fuzz.XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
 };
 
 io::MeshData data_of(const Complex& complex) {
@@ -118,12 +100,12 @@ void write_case(const Case& c, const std::string& folder, const std::string& nam
 }
 
 int run_one(const CommandLine& line) {
-  const Folder scratch;
+  const ScratchFolder scratch;
   const Case wanted = make_case(line.number);
   say(fmt::format("case {}: {} cells: {} | {}\n", wanted.number, wanted.complex.cells.size(),
                   wanted.complex.made_of, wanted.options.command_line()));
   if (!line.write.empty()) write_case(wanted, line.write, fmt::format("case{}", line.number));
-  const Outcome outcome = run_case(wanted, scratch.path());
+  const Outcome outcome = run_case(wanted, scratch.path().string());
   say(fmt::format("  {} -> {} cells, {:.3f} s{}{}\n", outcome.cells_before, outcome.cells_after,
                   outcome.seconds, outcome.refused ? ", refused " + outcome.refusal : "",
                   outcome.changed ? ", changed" : ""));
@@ -131,9 +113,10 @@ int run_one(const CommandLine& line) {
   for (const Finding& finding : outcome.findings) {
     say(line_of(wanted, finding));
     if (!line.shrinks || !done.insert(finding.promise).second) continue;
-    const Case small = shrink(wanted, finding.promise, scratch.path());
+    const Case small = shrink(wanted, finding.promise, scratch.path().string());
     say(fmt::format("  shrunk to {} cells, {}\n", small.complex.cells.size(), small.options.command_line()));
-    for (const Finding& left : run_case(small, scratch.path()).findings) say("  " + line_of(small, left));
+    for (const Finding& left : run_case(small, scratch.path().string()).findings)
+      say("  " + line_of(small, left));
     std::string name = fmt::format("case{}-{}", line.number, finding.promise);
     std::replace(name.begin(), name.end(), ' ', '-');
     if (!line.write.empty()) write_case(small, line.write, name);
@@ -223,7 +206,7 @@ class Watch {
     pids_[i] = fork();
     if (pids_[i] < 0) throw std::system_error(errno, std::generic_category(), "fork");
     if (pids_[i] != 0) return;
-    const std::string folder = scratch_.path() + "/" + std::to_string(i);
+    const std::string folder = (scratch_.path() / std::to_string(i)).string();
     std::filesystem::create_directories(folder);
     work(line_, numbers_, workers_[i], folder, end_);
   }
@@ -289,7 +272,7 @@ class Watch {
   std::size_t n_;
   Worker* workers_ = nullptr;
   std::vector<pid_t> pids_;
-  Folder scratch_;
+  ScratchFolder scratch_;
 };
 
 CommandLine parse(int argc, char** argv) {
