@@ -9,8 +9,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=$root/build/asan
 cells=${1:-8}
 steps=${2:-1000}
+mkdir -p "$build"
 cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g" \
-  -DHFR_SANITIZE=address,undefined -DHFR_TOOL=OFF -DHFR_TESTS=ON > "$build.log"
+  -DHFR_SANITIZE=address,undefined -DHFR_TOOL=OFF -DHFR_TESTS=ON > "$build/configure.log"
 cmake --build "$build" --parallel "$("$root/scripts/jobs.sh")" --target example_turning_body
 # What is freed waits 8 MiB long before it is handed out again: the figures are those of the program.
 export ASAN_OPTIONS="quarantine_size_mb=8:detect_leaks=1:halt_on_error=1" UBSAN_OPTIONS="halt_on_error=1"

@@ -22,9 +22,10 @@ if ! command -v clang++ > /dev/null; then
   echo "libfuzzer: clang is missing; scripts/install-deps.sh --dev installs it" >&2
   exit 1
 fi
+mkdir -p "$build"
 cmake -S "$root" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-  -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" -DHFR_TESTS=ON -DHFR_FUZZERS=ON -DHFR_C_API=OFF > "$build.log" ||
-  { cat "$build.log" >&2; exit 1; }
+  -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" -DHFR_TESTS=ON -DHFR_FUZZERS=ON -DHFR_C_API=OFF > "$build/log" ||
+  { cat "$build/log" >&2; exit 1; }
 cmake --build "$build" --parallel "$("$root/scripts/jobs.sh")" --target hfr_fuzzers --target test_IO
 
 programs=$build/unittests/LibFuzzer
@@ -32,8 +33,8 @@ seeds=$build/seeds
 if [ ! -d "$seeds" ]; then
   "$programs/hfr_make_inputs" "$seeds.new"
   # The files of the readers' own tests; broken ones that are made by the thousand are libFuzzer's own work.
-  HFR_KEEP_SAMPLES=$seeds.new "$build/unittests/IO/test_IO" --gtest_filter='-*BrokenFiles*:*CutAtEvery*' > "$build.log" ||
-    { tail "$build.log" >&2; exit 1; }
+  HFR_KEEP_SAMPLES=$seeds.new "$build/unittests/IO/test_IO" --gtest_filter='-*BrokenFiles*:*CutAtEvery*' > "$build/log" ||
+    { tail "$build/log" >&2; exit 1; }
   mv "$seeds.new" "$seeds"
 fi
 
