@@ -7,8 +7,8 @@
 #include "Operators/MaxMinForm.hh"
 
 #include <cmath>
-#include <cstring>
 
+#include "Operators/ProximalStep.hh"
 #include "Quality/Lowest.hh"
 #include "Quality/Vectors.hh"
 
@@ -18,106 +18,17 @@ namespace {
 constexpr double kFirstReach = 0.5;      // u in squared mean edges
 constexpr double kSmallestReach = 1e-5;  // the ascent ends here
 constexpr double kEnough = 2e-4;         // share of the value that a further step must promise
-constexpr double kLevel = 0.1;           // of the promised gain: models this close to each other are level
+constexpr double kLevel = 0.01;          // of the promised gain: models this close to each other are level
 constexpr double kFarAbove = 2;  // functions above this many times the smallest do not hold a step back
 constexpr double kFarAboveFloor = 0.05;
-constexpr int kMaxExchanges = 32;  // between weights, for one step
 
 constexpr std::size_t kBlock = detail::MaxMinBlock::kSize;
 static_assert(kBlock == kLowestBlock);
 
-}  // namespace
-
-/// Values and gradients of the functions that hold a step back, in the order of the cells; of more than
-/// kCapacity, those of the first cells: whether a step is taken is asked of all cells. Up to the next
-/// multiple of kBlock, the values are infinite.
-struct detail::MaxMinSlopes {
-  static constexpr std::size_t kCapacity = 384;
-  static_assert(kCapacity % kBlock == 0);
-  using Array = RawArray<double, kCapacity>;
-
-  std::size_t padded() const { return (size + kBlock - 1) / kBlock * kBlock; }
-  HFR_FN hfr_real3 gradient(std::size_t i) const { return {x[i], y[i], z[i]}; }
-
-  std::size_t size = 0;
-  alignas(64) Array value;
-  Array x, y, z;
-};
-
-namespace {
-
 using Block = detail::MaxMinBlock;
 using Slopes = detail::MaxMinSlopes;
-
-HFR_FN hfr_real3 times(double s, hfr_real3 a) { return {s * a.x, s * a.y, s * a.z}; }
-HFR_FN hfr_real3 plus(hfr_real3 a, hfr_real3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
-/// A step, and the smallest value that the linear models promise after it.
-struct Step {
-  hfr_real3 d;
-  double promise;
-};
-
-/// Maximises min(f + g·d) - d²/2u. The dual weights live on the simplex; weight goes from the function whose
-/// model is largest to the one whose model is smallest until all that have weight are level (Mitchell,
-/// Demyanov & Malozemov, 1974).
-template <class V>
-HFR_FN void proximal_step(const Slopes* slopes, double u, Step* out) {
-  const Slopes& f = *slopes;
-  const std::size_t n = f.padded();
-  const Lowest least = lowest_in<V>(f.value.data(), n);
-  const double now = least.value;
-  // Those that have or had weight, in the order in which they got it.
-  std::size_t support[kMaxExchanges + 1];
-  double weight[kMaxExchanges + 1];
-  std::size_t n_support = 1;
-  support[0] = least.at;
-  weight[0] = 1;
-  hfr_real3 d = times(u, f.gradient(least.at));
-  alignas(64) double model[Slopes::kCapacity];
-  for (int k = 0;; ++k) {
-    LowestSearch<V> search;
-    search.begin();
-    for (std::size_t i = 0; i < n; i += search.kLanes) {
-      V v, x, y, z;
-      load(v, &f.value[i]);
-      load(x, &f.x[i]);
-      load(y, &f.y[i]);
-      load(z, &f.z[i]);
-      const V m = v + ((x * d.x + y * d.y) + z * d.z);  // as dot(), for the same bits
-      std::memcpy(&model[i], &m, sizeof(V));
-      search.take(m);
-    }
-    const Lowest low = search.get();
-    std::size_t high = 0;  // both are indices into `support`
-    std::size_t low_slot = n_support;
-    double high_value = low.value;
-    for (std::size_t s = 0; s < n_support; ++s) {
-      const double m = model[support[s]];
-      if (support[s] == low.at) low_slot = s;
-      if (weight[s] > 0 && m > high_value) {
-        high_value = m;
-        high = s;
-      }
-    }
-    const double gap = high_value - low.value;
-    const double gain = low.value - now;
-    if (k == kMaxExchanges || !(gap > kLevel * gain && gap > kLevel * kEnough * now)) {
-      *out = {d, low.value};
-      return;
-    }
-    const hfr_real3 across = hfr_sub3(f.gradient(low.at), f.gradient(support[high]));
-    const double curvature = u * hfr_dot3(across, across);
-    const double share = gap < curvature * weight[high] ? gap / curvature : weight[high];
-    if (low_slot == n_support) {
-      support[n_support] = low.at;
-      weight[n_support++] = 0;
-    }
-    weight[low_slot] += share;
-    weight[high] -= share;
-    d = plus(d, times(u * share, across));
-  }
-}
+using detail::plus;
+using detail::times;
 
 HFR_FN hfr_real3 corner(const Block& b, std::size_t k, std::size_t i) {
   return {b.px[k][i], b.py[k][i], b.pz[k][i]};
@@ -400,10 +311,10 @@ Vec3 MaxMinForm::ascend(Vec3 start, int iterations) {
   Slopes f;
   slopes(x, kFarAbove * now + kFarAboveFloor, f);
   for (int i = 0; i < iterations && u > kSmallestReach && f.size > 0; ++i) {
-    Step step;
+    detail::MaxMinStep step;
     const Slopes* const slopes_now = &f;
-    with_widest_lanes<proximal_step<Lanes<8>>, proximal_step<Lanes<4>>, proximal_step<Lanes<2>>>(slopes_now,
-                                                                                                 u, &step);
+    with_widest_lanes<detail::proximal_step<Lanes<8>>, detail::proximal_step<Lanes<4>>,
+                      detail::proximal_step<Lanes<2>>>(slopes_now, u, kLevel, kEnough * now, &step);
     const double promise = step.promise - now;
     const Vec3 next_x = x + Vec3{step.d.x, step.d.y, step.d.z};
     const double next = worst(next_x, now);

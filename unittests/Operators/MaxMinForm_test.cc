@@ -9,9 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "Operators/Clusters.hh"
+#include "Operators/ProximalStep.hh"
 
 namespace hfr::test {
 namespace {
@@ -85,7 +87,7 @@ class ScalarForm {
     double value;
     Vec3 gradient;
   };
-  static constexpr double kEnough = 2e-4;
+  static constexpr double kEnough = 2e-4, kLevel = 0.01;
 
   /// sin² at the edges of the triangle and at those to x, in turn, and half the relative gradients; infinite
   /// where the angle does not count.
@@ -146,38 +148,33 @@ class ScalarForm {
   }
 
   static std::pair<Vec3, double> step(const std::vector<Slope>& f, double u) {
+    auto slopes = std::make_unique<detail::MaxMinSlopes>();
+    slopes->size = f.size();
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      slopes->value[i] = f[i].value;
+      const Vec3 g = f[i].gradient;
+      slopes->x[i] = g.x, slopes->y[i] = g.y, slopes->z[i] = g.z;
+    }
     const auto by_value = [](const Slope& a, const Slope& b) { return a.value < b.value; };
-    const Slope& least = *std::min_element(f.begin(), f.end(), by_value);
-    std::vector<double> weight(f.size(), 0.0);
-    std::vector<std::size_t> support = {static_cast<std::size_t>(&least - f.data())};
-    weight[support[0]] = 1;
-    Vec3 d = u * least.gradient;
-    for (int k = 0;; ++k) {
-      const auto model = [&](std::size_t i) { return f[i].value + dot(f[i].gradient, d); };
+    const auto least = std::min_element(f.begin(), f.end(), by_value);
+    detail::StepWeights w;
+    w.size = 1;
+    w.at[0] = static_cast<std::size_t>(least - f.begin());
+    w.weight[0] = 1;
+    for (int turn = 0;; ++turn) {
+      const hfr_real3 d = w.step(*slopes, u);
       std::size_t low = 0;
       double low_value = kInfinity;
       for (std::size_t i = 0; i < f.size(); ++i) {
-        if (!(model(i) < low_value)) continue;
-        low_value = model(i);
+        if (!(slopes->model(i, d) < low_value)) continue;
+        low_value = slopes->model(i, d);
         low = i;
       }
-      std::size_t high = low;
-      double high_value = low_value;
-      for (std::size_t i : support) {
-        if (!(weight[i] > 0 && model(i) > high_value)) continue;
-        high_value = model(i);
-        high = i;
-      }
-      const double gap = high_value - low_value;
-      const bool level = !(gap > 0.1 * (low_value - least.value) && gap > 0.1 * kEnough * least.value);
-      if (k == 32 || level) return {d, low_value};
-      const Vec3 across = f[low].gradient - f[high].gradient;
-      const double curvature = u * norm2(across);
-      const double share = gap < curvature * weight[high] ? gap / curvature : weight[high];
-      if (std::find(support.begin(), support.end(), low) == support.end()) support.push_back(low);
-      weight[low] += share;
-      weight[high] -= share;
-      d = d + (u * share) * across;
+      const double gap = w.highest(*slopes, d, low_value) - low_value;
+      const bool level =
+          !(gap > kLevel * (low_value - least->value) && gap > kLevel * kEnough * least->value);
+      if (turn == detail::kMostStepTurns || level || !take_in(*slopes, u, low, w))
+        return {{d.x, d.y, d.z}, low_value};
     }
   }
 

@@ -288,7 +288,7 @@ TEST(SearchPatches, PutsAnApexOverEachNeedleOfABandAtOnce) {
   effort.vertices = 0;
   effort.removals = 0;
   int raised = 0;
-  for (const double height : {7.0, 8.0, 9.0, 10.0, 11.0, 12.0}) {
+  for (const double height : {7.0, 7.5, 8.0, 8.5, 9.0, 9.5, 10.0, 10.5, 11.0, 11.5, 12.0}) {
     // Round the side lie needles, their short sides up and down by turns.
     TetMesh first = built(generate::cylinder(4, 2, 1, height));
     ImproveOptions options = serial();

@@ -413,7 +413,7 @@ TEST(SurfaceRuns, RaisingTheWorstAtAnyCostLeavesCellsToWorkIn) {
 }
 
 TEST(SurfaceRuns, RaisingTheWorstAtAnyCostKeepsTheNumberOfCellsInBounds) {
-  const TetMesh first = built(generate::jittered_box({6, 3, 2}, 0.1, 2, {0, 0, 0}, {1, 1, 0.5}));
+  const TetMesh first = built(generate::jittered_box({6, 3, 2}, 0.1, 1, {0, 0, 0}, {1, 1, 0.5}));
   ImproveOptions options = with(SurfaceMode::kFlat);
   options.raise_min_dihedral = true;
   TetMesh bounded = first;
