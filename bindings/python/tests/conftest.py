@@ -1,8 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
+import signal
+
 import numpy as np
 import pytest
 
 import hfremesh as hf
+
+
+@pytest.fixture(autouse=True, scope="session")
+def interrupts_arrive():
+    """A shell that starts the tests in the background has interrupts ignored, and so would Python."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
