@@ -18,8 +18,26 @@ struct Points {
   bool is_mine(PetscInt p) const { return !is_other[static_cast<std::size_t>(p - first)]; }
 };
 
+/// Collective: ranks without cells have to hear of it, too.
+PetscErrorCode require_cells_of_type(DM dm, MPI_Comm comm) {
+  PetscInt begin = 0, end = 0;
+  int other = -1;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &begin, &end));
+  for (PetscInt c = begin; c < end; ++c) {
+    DMPolytopeType type = DM_POLYTOPE_UNKNOWN;
+    PetscCall(DMPlexGetCellType(dm, c, &type));
+    if (type != DM_POLYTOPE_TETRAHEDRON) other = type;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &other, 1, MPI_INT, MPI_MAX, comm));
+  PetscCheck(other < 0, comm, PETSC_ERR_SUP, "hfremesh adapts tetrahedra; there are cells of type %s",
+             DMPolytopeTypes[other]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode require_tetrahedra(DM dm) {
-  PetscInt dim = 0, coordinate_dim = 0, begin = 0, end = 0;
+  PetscInt dim = 0, coordinate_dim = 0;
   PetscBool is_plex = PETSC_FALSE, is_localized = PETSC_FALSE;
   DMPlexInterpolatedFlag interpolated = DMPLEX_INTERPOLATED_INVALID;
   MPI_Comm comm = MPI_COMM_NULL;
@@ -39,13 +57,7 @@ PetscErrorCode require_tetrahedra(DM dm) {
              "hfremesh needs faces and edges: call DMPlexInterpolate() before");
   PetscCall(DMGetCoordinatesLocalized(dm, &is_localized));
   PetscCheck(!is_localized, comm, PETSC_ERR_SUP, "hfremesh does not adapt periodic meshes");
-  PetscCall(DMPlexGetHeightStratum(dm, 0, &begin, &end));
-  for (PetscInt c = begin; c < end; ++c) {
-    DMPolytopeType type = DM_POLYTOPE_UNKNOWN;
-    PetscCall(DMPlexGetCellType(dm, c, &type));
-    PetscCheck(type == DM_POLYTOPE_TETRAHEDRON, PETSC_COMM_SELF, PETSC_ERR_SUP,
-               "hfremesh adapts tetrahedra; cell %" PetscInt_FMT " is of type %s", c, DMPolytopeTypes[type]);
-  }
+  PetscCall(require_cells_of_type(dm, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

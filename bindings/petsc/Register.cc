@@ -25,7 +25,8 @@ PetscErrorCode hfremesh_petsc_register(void) {
   if (is_registered) PetscFunctionReturn(PETSC_SUCCESS);
   // The package empties the list in the end.
   PetscCall(DMInitializePackage());
-  constexpr PetscInt kOnlyByName = -1;  // PETSc's own stand before it in the list, and it is no generator of any
+  constexpr PetscInt kOnlyByName =
+      -1;  // PETSc's own stand before it in the list, and it is no generator of any
   PetscCall(DMGenerateRegister("hfremesh", refuse_to_generate, nullptr, hfr::petsc::adapt, kOnlyByName));
   PetscCall(PetscRegisterFinalize(forget));
   is_registered = true;
