@@ -142,29 +142,29 @@ PetscErrorCode read_options(DM dm, ImproveOptions* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode adapt_to(const Request& request, DM* out) {
+PetscErrorCode adapt_by(DM dm, DMLabel marks, DM* out) {
   MPI_Comm comm = MPI_COMM_NULL;
   LocalPlex mine;
   ImproveOptions options;
 
   PetscFunctionBegin;
-  PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(request.dm), &comm));
-  PetscCall(read_options(request.dm, &options));
-  PetscCall(read_plex(request, &mine));
+  PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(dm), &comm));
+  PetscCall(read_options(dm, &options));
+  PetscCall(read_plex(dm, marks, &mine));
   const Outcome outcome = run(comm, mine, options);
   PetscCheck(outcome.code == 0, comm, static_cast<PetscErrorCode>(outcome.code), "hfremesh: %s",
              outcome.line.c_str());
   if (outcome.mesh)
-    PetscCall(PetscInfo(request.dm, "hfremesh: %zu cells before, %zu after, %zu of them inverted or flat\n",
+    PetscCall(PetscInfo(dm, "hfremesh: %zu cells before, %zu after, %zu of them inverted or flat\n",
                         outcome.n_cells_before, static_cast<std::size_t>(outcome.mesh->n_cells()),
                         outcome.n_invalid));
-  PetscCall(write_plex(request.dm, outcome.mesh ? &*outcome.mesh : nullptr, outcome.labelling, out));
+  PetscCall(write_plex(dm, outcome.mesh ? &*outcome.mesh : nullptr, outcome.labelling, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 }  // namespace
 
-PetscErrorCode adapt(DM dm, Vec metric, DMLabel label, DMLabel regions, DM* out) {
+PetscErrorCode adapt(DM dm, Vec metric, DMLabel marks, DMLabel, DM* out) {
   PetscFunctionBegin;
   PetscCheck(
       !metric, PetscObjectComm(reinterpret_cast<PetscObject>(dm)), PETSC_ERR_SUP,
@@ -172,7 +172,7 @@ PetscErrorCode adapt(DM dm, Vec metric, DMLabel label, DMLabel regions, DM* out)
   std::string wrong;
   PetscErrorCode code = PETSC_SUCCESS;
   try {  // callers are written in C
-    code = adapt_to({dm, label, nullptr, regions}, out);
+    code = adapt_by(dm, marks, out);
   } catch (const std::exception& error) {
     wrong = error.what();
   }

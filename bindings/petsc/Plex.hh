@@ -41,14 +41,8 @@ struct LocalPlex {
 };
 inline constexpr double kKeep = 0, kRefine = -1;
 
-/// What is asked for, with the labels that stand in no DM: DMAdaptMetric() names these two.
-struct Request {
-  DM dm = nullptr;
-  DMLabel adapt = nullptr;  ///< DM_ADAPT_REFINE and so on; not carried over
-  DMLabel boundary = nullptr;
-  DMLabel regions = nullptr;
-};
-PetscErrorCode read_plex(const Request& request, LocalPlex* out);
+/// `marks`: DM_ADAPT_REFINE and so on, not carried over; nullptr where the limits of the DM count.
+PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out);
 
 /// Labels of a DMPlex as one number a point: what a mesh keeps. A number stands for a set of labels with
 /// values.
@@ -86,8 +80,9 @@ void bisect(TetMesh& mesh, const std::vector<double>& largest);
 /// mesh, nullptr elsewhere; `labelling`: its labels, on every rank.
 PetscErrorCode write_plex(DM old, const TetMesh* mesh, const Labelling& labelling, DM* out);
 
-/// The adaptor: DMGenerateRegister() takes it.
-PetscErrorCode adapt(DM dm, Vec metric, DMLabel label, DMLabel regions, DM* out);
+/// The adaptor: DMGenerateRegister() takes it. `metric`: nullptr, or it is refused; with one the labels would
+/// be those that DMAdaptMetric() names.
+PetscErrorCode adapt(DM dm, Vec metric, DMLabel marks, DMLabel, DM* out);
 
 }  // namespace hfr::petsc
 

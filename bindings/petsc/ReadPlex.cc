@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <cstring>
 
 #include "Plex.hh"
@@ -124,8 +123,8 @@ PetscErrorCode read_vertices(const Points& points, LocalPlex* out) {
 }
 
 /// Whether the cell or a point of it is marked DM_ADAPT_REFINE.
-PetscErrorCode is_to_refine(const Points& points, DMLabel adapt, PetscInt c, bool* out) {
-  PetscInt size = 0;
+PetscErrorCode is_to_refine(const Points& points, DMLabel marks, PetscInt c, bool* out) {
+  PetscInt size = 0, unknown = DM_ADAPT_KEEP;
   PetscInt* closure = nullptr;
 
   PetscFunctionBegin;
@@ -133,14 +132,15 @@ PetscErrorCode is_to_refine(const Points& points, DMLabel adapt, PetscInt c, boo
   PetscCall(DMPlexGetTransitiveClosure(points.dm, c, PETSC_TRUE, &size, &closure));
   for (PetscInt i = 0; i < size; ++i) {
     PetscInt flag = 0;
-    PetscCall(DMLabelGetValue(adapt, closure[2 * i], &flag));
-    PetscCheck(flag >= DM_ADAPT_DETERMINE && flag <= DM_ADAPT_COARSEN, PETSC_COMM_SELF, PETSC_ERR_SUP,
-               "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; point %" PetscInt_FMT
-               " has flag %" PetscInt_FMT,
-               closure[2 * i], flag);
+    PetscCall(DMLabelGetValue(marks, closure[2 * i], &flag));
+    if (flag < DM_ADAPT_DETERMINE || flag > DM_ADAPT_COARSEN) unknown = flag;
     *out = *out || flag == DM_ADAPT_REFINE;
   }
   PetscCall(DMPlexRestoreTransitiveClosure(points.dm, c, PETSC_TRUE, &size, &closure));
+  PetscCheck(unknown == DM_ADAPT_KEEP, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; a point of cell %" PetscInt_FMT
+             " has flag %" PetscInt_FMT,
+             c, unknown);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,7 +160,7 @@ PetscErrorCode refinement_limit(const Points& points, PetscInt c, double* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode read_cells(const Points& points, DMLabel adapt, LocalPlex* out) {
+PetscErrorCode read_cells(const Points& points, DMLabel marks, LocalPlex* out) {
   PetscFunctionBegin;
   for (PetscInt c = points.begin[3]; c < points.end[3]; ++c) {
     std::array<std::int64_t, 4> v;
@@ -169,8 +169,8 @@ PetscErrorCode read_cells(const Points& points, DMLabel adapt, LocalPlex* out) {
     bool refines = false;
     if (!points.is_mine(c)) continue;
     PetscCall(vertices_of(points, c, &v, &n));
-    if (adapt) {
-      PetscCall(is_to_refine(points, adapt, c, &refines));
+    if (marks) {
+      PetscCall(is_to_refine(points, marks, c, &refines));
       if (refines) largest = kRefine;
     } else {
       PetscCall(refinement_limit(points, c, &largest));
@@ -222,8 +222,7 @@ bool is_of_points(const char* name) {
   return false;
 }
 
-PetscErrorCode read_labels(const Points& points, const Request& request, LocalPlex* out) {
-  std::vector<DMLabel> labels;
+PetscErrorCode read_labels(const Points& points, DMLabel marks, LocalPlex* out) {
   PetscInt n = 0;
 
   PetscFunctionBegin;
@@ -233,29 +232,23 @@ PetscErrorCode read_labels(const Points& points, const Request& request, LocalPl
     DMLabel label = nullptr;
     PetscCall(DMGetLabelName(points.dm, i, &name));
     PetscCall(DMGetLabelByNum(points.dm, i, &label));
-    if (!is_of_points(name) && label != request.adapt) labels.push_back(label);
+    if (!is_of_points(name) && label != marks) PetscCall(read_label(points, label, out));
   }
-  for (DMLabel label : {request.boundary, request.regions}) {
-    bool is_there = label == nullptr;
-    for (DMLabel other : labels) is_there = is_there || other == label;
-    if (!is_there) labels.push_back(label);
-  }
-  for (DMLabel label : labels) PetscCall(read_label(points, label, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 }  // namespace
 
-PetscErrorCode read_plex(const Request& request, LocalPlex* out) {
+PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out) {
   Points points;
 
   PetscFunctionBegin;
-  PetscCall(require_tetrahedra(request.dm));
-  PetscCall(DMGetCoordinatesLocalSetUp(request.dm));  // or asking for one point is collective
-  PetscCall(find_points(request.dm, &points));
+  PetscCall(require_tetrahedra(dm));
+  PetscCall(DMGetCoordinatesLocalSetUp(dm));  // or asking for one point is collective
+  PetscCall(find_points(dm, &points));
   PetscCall(read_vertices(points, out));
-  PetscCall(read_cells(points, request.adapt, out));
-  PetscCall(read_labels(points, request, out));
+  PetscCall(read_cells(points, marks, out));
+  PetscCall(read_labels(points, marks, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

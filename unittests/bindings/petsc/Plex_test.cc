@@ -379,6 +379,31 @@ TEST(PetscAdaptor, WhatItDoesNotAdaptIsRefusedInALine) {
   EXPECT_THAT(refusal.line, HasSubstr("hfremesh adapts tetrahedra; there are cells of type hexahedron"));
 }
 
+TEST(PetscAdaptor, MetricsAndGenerationAreRefused) {
+  const Plex box = cube(PETSC_COMM_WORLD, regular());
+  Plex out;
+  Vec metric = nullptr;
+  ok(DMPlexMetricCreateUniform(box.get(), 0, 4, &metric));
+  Refusal refusal = refusal_of([&] { return DMAdaptMetric(box.get(), metric, nullptr, nullptr, out.out()); });
+  EXPECT_EQ(refusal.code, PETSC_ERR_SUP);
+  EXPECT_THAT(refusal.line, HasSubstr("hfremesh has no adaptation to a metric"));
+  ok(VecDestroy(&metric));
+  refusal = refusal_of([&] { return DMPlexGenerate(box.get(), "hfremesh", PETSC_TRUE, out.out()); });
+  EXPECT_EQ(refusal.code, PETSC_ERR_SUP);
+  EXPECT_THAT(refusal.line, HasSubstr("makes none of a boundary"));
+}
+
+TEST(PetscAdaptor, FlagsThatPetscDoesNotNameAreRefused) {
+  const Plex box = cube(PETSC_COMM_SELF, regular());
+  Plex out;
+  const Refusal refusal = refusal_of([&] {
+    return adapt(
+        box.get(), [](const std::array<double, 3>&) { return PetscInt{7}; }, out);
+  });
+  EXPECT_EQ(refusal.code, PETSC_ERR_SUP);
+  EXPECT_THAT(refusal.line, HasSubstr("has flag 7"));
+}
+
 TEST(PetscAdaptor, OptionsAreThoseOfTheToolAndWrongOnesAreRefused) {
   const Plex before = cube(PETSC_COMM_WORLD, tangled());
   Plex after;
