@@ -84,21 +84,36 @@ PetscErrorCode find_points(DM dm, Points* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// The numbers of the vertices of a point, in the order in which PETSc has them.
-PetscErrorCode vertices_of(const Points& points, PetscInt p, std::array<std::int64_t, 4>* v, int* n) {
-  PetscInt size = 0;
+/// What there is to know of a point from its closure.
+struct Closure {
+  std::array<std::int64_t, 4> v = {};  ///< numbers of its vertices, in the order in which PETSc has them
+  int n = 0;                           ///< of them
+  bool is_to_refine = false;           ///< a point of it is marked DM_ADAPT_REFINE
+};
+
+/// `marks` may be nullptr.
+PetscErrorCode look_at(const Points& points, PetscInt p, DMLabel marks, Closure* out) {
+  PetscInt size = 0, unknown = DM_ADAPT_KEEP;
   PetscInt* closure = nullptr;
 
   PetscFunctionBegin;
-  *n = 0;
-  *v = {};
+  *out = {};
   PetscCall(DMPlexGetTransitiveClosure(points.dm, p, PETSC_TRUE, &size, &closure));
   for (PetscInt i = 0; i < size; ++i) {
     const PetscInt q = closure[2 * i];
-    if (q >= points.begin[0] && q < points.end[0] && *n < 4)
-      (*v)[static_cast<std::size_t>((*n)++)] = points.number[static_cast<std::size_t>(q - points.begin[0])];
+    PetscInt flag = DM_ADAPT_KEEP;
+    if (marks) PetscCall(DMLabelGetValue(marks, q, &flag));
+    if (flag < DM_ADAPT_DETERMINE || flag > DM_ADAPT_COARSEN) unknown = flag;
+    out->is_to_refine = out->is_to_refine || flag == DM_ADAPT_REFINE;
+    if (q >= points.begin[0] && q < points.end[0] && out->n < 4)
+      out->v[static_cast<std::size_t>(out->n++)] =
+          points.number[static_cast<std::size_t>(q - points.begin[0])];
   }
   PetscCall(DMPlexRestoreTransitiveClosure(points.dm, p, PETSC_TRUE, &size, &closure));
+  PetscCheck(unknown == DM_ADAPT_KEEP, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; a point of cell %" PetscInt_FMT
+             " has flag %" PetscInt_FMT,
+             p, unknown);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,28 +137,6 @@ PetscErrorCode read_vertices(const Points& points, LocalPlex* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Whether the cell or a point of it is marked DM_ADAPT_REFINE.
-PetscErrorCode is_to_refine(const Points& points, DMLabel marks, PetscInt c, bool* out) {
-  PetscInt size = 0, unknown = DM_ADAPT_KEEP;
-  PetscInt* closure = nullptr;
-
-  PetscFunctionBegin;
-  *out = false;
-  PetscCall(DMPlexGetTransitiveClosure(points.dm, c, PETSC_TRUE, &size, &closure));
-  for (PetscInt i = 0; i < size; ++i) {
-    PetscInt flag = 0;
-    PetscCall(DMLabelGetValue(marks, closure[2 * i], &flag));
-    if (flag < DM_ADAPT_DETERMINE || flag > DM_ADAPT_COARSEN) unknown = flag;
-    *out = *out || flag == DM_ADAPT_REFINE;
-  }
-  PetscCall(DMPlexRestoreTransitiveClosure(points.dm, c, PETSC_TRUE, &size, &closure));
-  PetscCheck(unknown == DM_ADAPT_KEEP, PETSC_COMM_SELF, PETSC_ERR_SUP,
-             "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; a point of cell %" PetscInt_FMT
-             " has flag %" PetscInt_FMT,
-             c, unknown);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /// What DMRefine() sets: a volume for all cells, or one by place.
 PetscErrorCode refinement_limit(const Points& points, PetscInt c, double* out) {
   PetscReal limit = 0, volume = 0, centroid[3] = {};
@@ -163,20 +156,13 @@ PetscErrorCode refinement_limit(const Points& points, PetscInt c, double* out) {
 PetscErrorCode read_cells(const Points& points, DMLabel marks, LocalPlex* out) {
   PetscFunctionBegin;
   for (PetscInt c = points.begin[3]; c < points.end[3]; ++c) {
-    std::array<std::int64_t, 4> v;
-    int n = 0;
+    Closure closure;
     double largest = kKeep;
-    bool refines = false;
     if (!points.is_mine(c)) continue;
-    PetscCall(vertices_of(points, c, &v, &n));
-    if (marks) {
-      PetscCall(is_to_refine(points, marks, c, &refines));
-      if (refines) largest = kRefine;
-    } else {
-      PetscCall(refinement_limit(points, c, &largest));
-    }
-    out->cells.push_back(v);
-    out->largest.push_back(largest);
+    PetscCall(look_at(points, c, marks, &closure));
+    if (!marks) PetscCall(refinement_limit(points, c, &largest));
+    out->cells.push_back(closure.v);
+    out->largest.push_back(closure.is_to_refine ? kRefine : largest);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -203,9 +189,10 @@ PetscErrorCode read_label(const Points& points, DMLabel label, LocalPlex* out) {
     PetscCall(ISGetIndices(stratum, &point));
     for (PetscInt j = 0; j < n_points; ++j) {
       if (!points.is_mine(point[j])) continue;
-      Mark mark{static_cast<int>(out->names.size()) - 1, static_cast<int>(value[i]), 0, {}};
-      PetscCall(vertices_of(points, point[j], &mark.v, &mark.n));
-      out->marks.push_back(mark);
+      Closure closure;
+      PetscCall(look_at(points, point[j], nullptr, &closure));
+      out->marks.push_back(
+          {static_cast<int>(out->names.size()) - 1, static_cast<int>(value[i]), closure.n, closure.v});
     }
     PetscCall(ISRestoreIndices(stratum, &point));
     PetscCall(ISDestroy(&stratum));
