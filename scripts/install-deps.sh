@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian or Ubuntu packages that hfremesh needs and that are missing. Does nothing, and asks for
 # no rights, when all are there.
-# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--dev] [--packaging] [--mpi]
+# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--dev] [--packaging] [--mpi] [--mpich]
+#                                [--petsc]
 #   (none)   to build the library, the tool and the tests
 #   --tool   to build the library and the tool only
 #   --bench  the default, and the benchmarks
@@ -12,6 +13,8 @@
 #            gfortran, for the tests of the Fortran module, and chromium, for that of the page of --report, which are
 #            skipped without
 #   --mpi    the default, and what several ranks take (HFR_MPI): Open MPI and PT-Scotch, for scripts/mpi.sh
+#   --mpich  the default, and MPICH instead of Open MPI, for scripts/mpi.sh --mpich: both may be there
+#   --petsc  those of --mpi, and PETSc for real numbers with petsc4py (HFR_PETSC), for scripts/petsc.sh
 #   --packaging  the default, and what makes and checks packages, manual and completions: lintian and debhelper for
 #            scripts/deb.sh, abigail-tools for scripts/abi.sh, doxygen for scripts/site.sh; zsh, fish and mandoc for
 #            their tests
@@ -31,8 +34,10 @@ for option in "$@"; do
     --libcxx) extra+=(clang libc++-dev libc++abi-dev) ;;
     --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr gfortran chromium) ;;
     --mpi) extra+=(libopenmpi-dev openmpi-bin libptscotch-dev) ;;
+    --mpich) extra+=(libmpich-dev mpich) ;;
+    --petsc) extra+=(libopenmpi-dev openmpi-bin libptscotch-dev libpetsc-real-dev python3-petsc4py-real) ;;
     --packaging) extra+=(dpkg-dev debhelper lintian abigail-tools doxygen zsh fish mandoc) ;;
-    *) sed -n '3,19s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    *) sed -n '3,22s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

@@ -2,63 +2,53 @@
 // hfremesh on several ranks: rank 0 is the tool, the others do their share of its passes.
 #include <mpi.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <map>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
+#include "Numbers.hh"
 #include "Tool.hh"
 #include "hfremesh/Distributed/Improve.hh"
+#include "hfremesh/Distributed/Partition.hh"
 
 namespace {
 
 using hfr::app::ExitCode;
 
-/// Ranks have one thread each unless the command line says how many. Whoever asks what there is has none.
-bool says_threads(int argc, char** argv) {
-  return std::any_of(argv + 1, argv + argc, [](std::string_view arg) {
-    return arg.starts_with("--threads") || arg.starts_with("-j") || arg == "--version" || arg == "--help" ||
-           arg == "-h" || arg == "manual";
-  });
-}
-
 /// What the tool has no option for.
 struct OwnOptions {
-  hfr::mpi::Sharing sharing;
+  unsigned long share_from = hfr::mpi::Sharing{}.least_cells;
+  std::string partition = "coordinates";
   bool shows_traffic = false;
+
+  hfr::mpi::Sharing sharing() const {
+    using hfr::mpi::Partition;
+    if (partition == "graph") return {Partition::kGraph, share_from};
+    return {partition == "numbers" ? Partition::kNumbers : Partition::kCoordinates, share_from};
+  }
 };
 
-/// Takes the own options out of the arguments and leaves the others as they are. Throws CLI::ParseError.
-OwnOptions take_own_options(std::vector<std::string>& args) {
-  using hfr::mpi::Partition;
-  const std::map<std::string, Partition> partitions = {{"coordinates", Partition::kCoordinates},
-                                                       {"graph", Partition::kGraph},
-                                                       {"numbers", Partition::kNumbers}};
-  OwnOptions own;
-  CLI::App app;
-  app.set_help_flag();
-  app.allow_extras();
-  app.add_option("--share-from", own.sharing.least_cells)->check([](const std::string& text) {
-    const bool is_number = !text.empty() && text.size() < 19 &&
-                           std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-    return is_number ? std::string() : "must be a whole number";
-  });
-  std::string partition = "coordinates";
-  app.add_option("--partition", partition)->check([&](const std::string& text) {
-    return partitions.contains(text) ? std::string() : "must be coordinates, graph or numbers";
-  });
-  app.add_flag("--traffic", own.shows_traffic);
-  std::vector<std::string> reversed(args.rbegin(), args.rend());  // as CLI11 takes them
-  app.parse(std::move(reversed));
-  args = app.remaining();
-  own.sharing.partition = partitions.at(partition);
-  return own;
+void add_own_options(hfr::app::Command command, OwnOptions& own) {
+  command.example("mpirun -n 4 hfremesh-mpi bad.mesh -o good.mesh --min-dihedral 15",
+                  "on four ranks, with the output of one");
+  command.group("Several ranks");
+  command
+      .option(
+          "--share-from", own.share_from,
+          "Passes with fewer cells to look at are done by one rank. The output is the same for each number")
+      .type_name("N")
+      .shows_default()
+      .check(hfr::app::whole_number());
+  command.option("--partition", own.partition, "How the mesh is cut; graph is PT-Scotch")
+      .type_name("HOW")
+      .shows_default()
+      .one_of({"coordinates", "graph", "numbers"})
+      .check([](const std::string& how) {
+        const bool lacks = how == "graph" && !hfr::mpi::has_graph_partition();
+        return lacks ? std::string("this build has no PT-Scotch; coordinates and numbers are there") : "";
+      });
+  command.flag("--traffic", own.shows_traffic, "Print what the first rank has sent to the others");
 }
 
 /// What ranks have said to each other, for --traffic.
@@ -75,24 +65,15 @@ void print_traffic(const hfr::mpi::Comm& comm) {
 
 /// Rank 0. What another rank throws becomes an error of the tool, with the exit code that it has there.
 int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
-  std::vector<std::string> args(argv + 1, argv + argc);
   OwnOptions own;
-  try {
-    own = take_own_options(args);
-  } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "hfremesh-mpi: %s\n", error.what());
-    const int code = static_cast<int>(ExitCode::kUsage);
-    hfr::mpi::dismiss(comm, code);
-    return code;
-  }
-  if (argc > 1 && !says_threads(argc, argv) && comm.size() > 1) args.insert(args.end(), {"--threads", "1"});
-  std::vector<char*> pointers = {argv[0]};
-  for (std::string& arg : args) pointers.push_back(arg.data());
-  pointers.push_back(nullptr);
   bool are_gone = false, has_thrown = false;
-  const auto improve = [&](hfr::TetMesh& mesh, const hfr::ImproveOptions& options) {
+  hfr::app::Variant variant;
+  variant.name = "hfremesh-mpi";
+  if (comm.size() > 1) variant.threads = 1;  // ranks share the cores
+  variant.add_options = [&](hfr::app::Command& command) { add_own_options(command, own); };
+  variant.improve = [&](hfr::TetMesh& mesh, const hfr::ImproveOptions& options) {
     try {
-      return hfr::mpi::improve(mesh, options, comm, own.sharing);
+      return hfr::mpi::improve(mesh, options, comm, own.sharing());
     } catch (const hfr::mpi::RankFailed& failed) {
       are_gone = true;
       throw hfr::app::Failure(static_cast<ExitCode>(failed.code()), failed.what());
@@ -101,8 +82,7 @@ int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
       throw;
     }
   };
-  const int code =
-      static_cast<int>(hfr::app::run_tool(static_cast<int>(pointers.size()) - 1, pointers.data(), improve));
+  const int code = static_cast<int>(hfr::app::run_tool(argc, argv, variant));
   if (own.shows_traffic) print_traffic(comm);
   if (are_gone) return code;
   if (has_thrown)

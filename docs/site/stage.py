@@ -17,8 +17,8 @@ ABOVE = {"README.md": "about.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.
 CONTENTS = {
     "Start": ["start", "tutorials", "gallery/README", "coming-from", "about"],
     "Use": ["tool", "surface", "simulation", "file-formats", "reports", "json", "exit-codes", "opencl", "install", "building"],
-    "Programs": ["library", "half-face-kernel", "python", "c-api"],
-    "How it works": ["architecture", "pipeline", "quality", "operators", "scheduler", "untangling", "determinism"],
+    "Programs": ["library", "half-face-kernel", "python", "c-api", "petsc"],
+    "How it works": ["architecture", "pipeline", "quality", "operators", "scheduler", "distributed", "untangling", "determinism"],
     "Figures": ["performance", "worst-angles", "peers", "paper-tables", "fuzzing"],
     "Project": ["versions", "contributing", "changelog"],
 }

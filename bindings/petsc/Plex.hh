@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_BINDINGS_PETSC_PLEX_HH
+#define HFR_BINDINGS_PETSC_PLEX_HH
+
+#include <petscdmplex.h>
+#include <petscsf.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hfremesh/HalfFace/TetMesh.hh"
+
+// From 3.19 on.
+#if PETSC_VERSION_LT(3, 19, 0)
+#define PETSC_SUCCESS 0
+#endif
+
+/// How a DMPlex goes to the library and back. Functions that return a PetscErrorCode throw nothing, the
+/// others call nothing of PETSc.
+namespace hfr::petsc {
+
+/// A value of a label at a point: cell, face, edge or vertex.
+struct Mark {
+  int label = 0;  ///< index into the names
+  int value = 0;
+  int n = 0;                           ///< vertices of the point
+  std::array<std::int64_t, 4> v = {};  ///< their numbers over all ranks
+};
+
+/// What one rank has of a DMPlex: of each point one rank alone.
+struct LocalPlex {
+  std::vector<std::int64_t> numbers;  ///< of the vertices, over all ranks
+  std::vector<Vec3> points;           ///< of the vertices
+  std::vector<std::array<std::int64_t, 4>> cells;
+  /// By cell: the largest volume that it may have; kKeep for any, kRefine for an eighth of what it has.
+  std::vector<double> largest;
+  std::vector<std::string> names;  ///< of the labels
+  std::vector<Mark> marks;
+};
+inline constexpr double kKeep = 0, kRefine = -1;
+
+/// `marks`: DM_ADAPT_REFINE and so on, not carried over; nullptr where the limits of the DM count.
+PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out);
+
+/// Labels of a DMPlex as one number a point: what a mesh keeps. A number stands for a set of labels with
+/// values.
+struct Labelling {
+  struct Label {
+    std::string name;
+    /// Each point of the closure of a point that has the label has it, too. Then only what is no part of
+    /// another such closure is kept as a constraint, and closures are labelled again in the end.
+    bool is_closed = false;
+  };
+  struct Value {
+    int label = 0, value = 0;
+    auto operator<=>(const Value&) const = default;
+  };
+  std::vector<Label> labels;               ///< by name
+  std::vector<std::vector<Value>> values;  ///< of the numbers from 1 on
+};
+
+/// The mesh of all ranks on one of them. It does not depend on how cells and vertices were distributed and
+/// numbered, as long as no two vertices have one place: vertices stand in the order of their coordinates,
+/// cells in that of their vertices. `largest`: as LocalPlex has it, by cell.
+struct WholePlex {
+  TetMesh mesh;
+  std::vector<double> largest;
+  Labelling labelling;
+};
+WholePlex put_together(const std::vector<LocalPlex>& parts);
+
+/// Halves cells by their longest edge until none is larger than `largest` allows. Neighbours are halved where
+/// their longest edge is the one (M.-C. Rivara, Mesh refinement processes based on the generalized bisection
+/// of simplices, SIAM J. Numer. Anal. 21, 1984).
+void bisect(TetMesh& mesh, const std::vector<double>& largest);
+
+/// The new DMPlex, interpolated and with labels, on the ranks of `old`; collective. `mesh`: on rank 0 the
+/// mesh, nullptr elsewhere; `labelling`: its labels, on every rank.
+PetscErrorCode write_plex(DM old, const TetMesh* mesh, const Labelling& labelling, DM* out);
+
+/// The adaptor: DMGenerateRegister() takes it. `metric`: nullptr, or it is refused; with one the labels would
+/// be those that DMAdaptMetric() names.
+PetscErrorCode adapt(DM dm, Vec metric, DMLabel marks, DMLabel, DM* out);
+
+}  // namespace hfr::petsc
+
+#endif
