@@ -40,16 +40,23 @@ class Worker {
   /// `mesh` and `work`: on rank 0 those of the run.
   void take(Partition how, const TetMesh* mesh, const Workspace* work) {
     parts_ = std::make_unique<DistributedMesh>(comm_);
-    const std::vector<int> owner = partition(comm_, mesh, how);
+    std::vector<int> owner;
+    {
+      const Comm::InPhase phase(comm_, Phase::kCut);
+      owner = partition(comm_, mesh, how);
+    }
+    const Comm::InPhase phase(comm_, Phase::kHandOut);
     parts_->scatter(mesh, work, owner);
   }
 
   void bring_back(TetMesh* mesh, Workspace* work) {
+    const Comm::InPhase phase(comm_, Phase::kPutTogether);
     parts_->gather(mesh, work, DistributedMesh::Gather::kChanged);
     parts_.reset();
   }
 
   Ranks::Tally tally(double below) {
+    const Comm::InPhase phase(comm_, Phase::kTally);
     std::array<std::uint64_t, 2> sums = {0, 0};
     double worst = std::numeric_limits<double>::infinity();
     const TetMesh& part = parts_->part();
@@ -63,11 +70,12 @@ class Worker {
       sums[1] += q < below ? 1 : 0;
       worst = std::min(worst, q);
     }
-    comm_.sum(sums);
-    return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), comm_.min(worst)};
+    worst = comm_.sum_and_min(sums, worst);
+    return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), worst};
   }
 
   RoundCounts pass(const Ranks::Look& look) {
+    const Comm::InPhase phase(comm_, Phase::kEvaluate);
     return look.metric == Metric::kMinSine ? pass(look, MinSine2{}) : pass(look, MinDihedral{});
   }
 
@@ -104,6 +112,7 @@ class Worker {
         const auto n_own = std::count_if(vertices.begin(), vertices.end(),
                                          [&](VertexHandle v) { return parts_->is_own(v); });
         if (comm_.sum(static_cast<std::uint64_t>(n_own)) == 0) return {};
+        const Comm::InPhase phase(comm_, Phase::kSmooth);
         return smooth_parts(*parts_, MaxMinSearch{}, metric, vertices, policy);
       }
     }

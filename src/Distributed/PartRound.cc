@@ -40,6 +40,7 @@ struct Decision {
 
 auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain)
     -> Selected {
+  const Comm::InPhase phase(comm_, Phase::kSelect);
   announce(candidates);
   decide(candidates);
   Selected selected;
@@ -132,8 +133,7 @@ void PartRound::decide(std::span<const Candidate> candidates) {
     std::uint64_t n_left = 0;
     for (std::size_t e : undecided_)
       if (entries_[e].own != Winner::kOfOthers && entries_[e].state == State::kUndecided) ++n_left;
-    is_done = comm_.sum(n_left) == 0;
-    tell_decisions();
+    is_done = tell_decisions(n_left) == 0;
     for (std::size_t e : undecided_)
       if (entries_[e].own == Winner::kOfOthers && entries_[e].state == State::kWon)
         for (CellHandle c : entries_[e].scope) mesh_.work().claim[c.idx()] = static_cast<std::uint32_t>(e);
@@ -173,7 +173,8 @@ void PartRound::sweep(std::span<const Candidate> candidates) {
         if (claim[c.idx()] == e) claim[c.idx()] = kUnclaimed;
 }
 
-void PartRound::tell_decisions() {
+/// Returns the sum of `n_left` over all ranks.
+std::uint64_t PartRound::tell_decisions(std::uint64_t n_left) {
   std::vector<Packer> to(comm_.n_ranks());
   for (std::size_t e : undecided_) {
     const Entry& entry = entries_[e];
@@ -187,7 +188,8 @@ void PartRound::tell_decisions() {
     if (entries_[e].own == Winner::kOfOthers)
       waiting.emplace_back(entries_[e].home, entries_[e].number_at_home, e);
   std::sort(waiting.begin(), waiting.end());
-  for (const Comm::Message& message : comm_.exchange(to)) {
+  const Comm::Exchanged came = comm_.exchange(to, n_left);
+  for (const Comm::Message& message : came.messages) {
     Unpacker in(message.bytes);
     while (!in.at_end()) {
       const auto decision = in.get<Decision>();
@@ -198,6 +200,7 @@ void PartRound::tell_decisions() {
       entries_[std::get<2>(*at)].state = decision.has_won ? State::kWon : State::kLost;
     }
   }
+  return came.sum;
 }
 
 /// Slots as the round in shared memory has them: in rank order, from the back of the free list, then new
@@ -287,10 +290,12 @@ void PartRound::note_pending(std::span<const Candidate> candidates, const Entry&
 }
 
 void PartRound::finish(std::span<const Commit> commits) {
+  const Comm::InPhase phase(comm_, Phase::kBorder);
   bool is_touched = false;
   for (std::size_t w = 0; w < commits.size(); ++w) {
     if (!pending_[w].in_zone) continue;
     is_touched = true;
+    mesh_.note_changed(pending_[w].vertices);
     for (CellHandle c : commits[w].created) mesh_.note_created(c);
   }
   // First what has changed, to whoever held it: then each rank knows all cells round the vertices that were
@@ -331,19 +336,16 @@ auto PartRound::changed_cells(std::span<const Commit> commits) const -> std::vec
 
 /// For each rank: all cells round own vertices that have come within two edges of its own.
 auto PartRound::new_cells() const -> std::vector<Push> {
-  const TetMesh& part = mesh_.part();
   std::vector<Push> pushes(comm_.n_ranks());
-  RankSet set(mesh_.within_two().words()), now = set;
-  for (Index i : mesh_.zone()) {
-    set.clear();
-    for (VertexHandle v : part.cell(CellHandle(i)).v) {
-      if (!mesh_.is_own(v)) continue;
-      now.clear();
-      now.add(mesh_.within_two(v));
-      now.remove(mesh_.told(v));
-      set.add(now.bits());
-    }
-    for_others(set.bits(), pushes, [&](Push& push) { push.cells.push_back(CellHandle(i)); });
+  RankSet now(mesh_.within_two().words());
+  for (VertexHandle v : mesh_.renewed()) {
+    if (mesh_.part().is_deleted(v)) continue;
+    now.clear();
+    now.add(mesh_.within_two(v));
+    now.remove(mesh_.told(v));
+    if (now.empty()) continue;
+    for (CellHandle c : mesh_.part().vertex_cells(v))
+      for_others(now.bits(), pushes, [&](Push& push) { push.cells.push_back(c); });
   }
   return pushes;
 }

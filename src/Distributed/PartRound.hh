@@ -72,7 +72,7 @@ class PartRound : public RoundPlace {
     return entry.own == Winner::kOfOthers ? std::span<const CellHandle>(entry.scope)
                                           : candidates[entry.own].scope;
   }
-  void tell_decisions();
+  std::uint64_t tell_decisions(std::uint64_t n_left);
   std::size_t hand_out_slots(std::span<const Candidate> candidates, std::size_t may_lose,
                              std::size_t may_gain, std::vector<Winner>& winners);
   void note_pending(std::span<const Candidate> candidates, const Entry& entry);
