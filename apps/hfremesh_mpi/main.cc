@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -61,16 +62,39 @@ OwnOptions take_own_options(std::vector<std::string>& args) {
   return own;
 }
 
-/// What ranks have said to each other, for --traffic.
-void print_traffic(const hfr::mpi::Comm& comm) {
-  const hfr::mpi::Traffic& t = comm.traffic();
-  std::fprintf(stderr,
-               "hfremesh-mpi: rank %d: %llu messages of %llu bytes in %llu exchanges, %llu collectives of "
-               "%llu bytes\n",
-               comm.rank(), static_cast<unsigned long long>(t.messages),
-               static_cast<unsigned long long>(t.bytes), static_cast<unsigned long long>(t.exchanges),
-               static_cast<unsigned long long>(t.collectives),
-               static_cast<unsigned long long>(t.collective_bytes));
+/// For --traffic: a line for each rank, then one for each phase.
+void print_figures(std::span<const hfr::mpi::RankFigures> ranks) {
+  using hfr::mpi::Traffic;
+  const auto n = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  for (std::size_t r = 0; r < ranks.size(); ++r) {
+    Traffic sum;
+    for (const Traffic& one : ranks[r].traffic) sum += one;
+    std::fprintf(
+        stderr,
+        "hfremesh-mpi: rank %zu: sent %llu messages of %llu bytes in %llu exchanges, %llu collectives of "
+        "%llu bytes; %llu rounds; part: %llu own cells, %llu held, %llu near others; peak memory %llu "
+        "bytes\n",
+        r, n(sum.messages), n(sum.bytes), n(sum.exchanges), n(sum.collectives), n(sum.collective_bytes),
+        n(ranks[r].n_rounds), n(ranks[r].n_own), n(ranks[r].n_held), n(ranks[r].n_border),
+        n(ranks[r].peak_bytes));
+  }
+  for (std::size_t p = 0; p < hfr::mpi::kPhaseNames.size(); ++p) {
+    double slowest = 0;
+    Traffic most;
+    for (const auto& rank : ranks) {
+      slowest = std::max(slowest, rank.seconds[p]);
+      most.messages = std::max(most.messages, rank.traffic[p].messages);
+      most.bytes = std::max(most.bytes, rank.traffic[p].bytes);
+      most.exchanges = std::max(most.exchanges, rank.traffic[p].exchanges + rank.traffic[p].collectives);
+      most.collective_bytes = std::max(most.collective_bytes, rank.traffic[p].collective_bytes);
+    }
+    std::fprintf(
+        stderr,
+        "hfremesh-mpi: phase %s: %.3f s on rank 0, %.3f s on the slowest; of a rank at most %llu messages "
+        "of %llu bytes, %llu bytes to all, %llu calls\n",
+        hfr::mpi::kPhaseNames[p], ranks[0].seconds[p], slowest, n(most.messages), n(most.bytes),
+        n(most.collective_bytes), n(most.exchanges));
+  }
 }
 
 /// Rank 0. What another rank throws becomes an error of the tool, with the exit code that it has there.
@@ -89,6 +113,7 @@ int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
   std::vector<char*> pointers = {argv[0]};
   for (std::string& arg : args) pointers.push_back(arg.data());
   pointers.push_back(nullptr);
+  if (own.shows_traffic) own.sharing.tell_figures = print_figures;
   bool are_gone = false, has_thrown = false;
   const auto improve = [&](hfr::TetMesh& mesh, const hfr::ImproveOptions& options) {
     try {
@@ -103,7 +128,6 @@ int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
   };
   const int code =
       static_cast<int>(hfr::app::run_tool(static_cast<int>(pointers.size()) - 1, pointers.data(), improve));
-  if (own.shows_traffic) print_traffic(comm);
   if (are_gone) return code;
   if (has_thrown)
     comm.fail(code, "the tool has ended");

@@ -82,6 +82,7 @@ Phase Comm::enter(Phase phase) {
   const auto now = Clock::now();
   seconds_[static_cast<std::size_t>(phase_)] += std::chrono::duration<double>(now - since_).count();
   since_ = now;
+  if (phase != Phase::kWait) counted_ = phase;
   return std::exchange(phase_, phase);
 }
 
@@ -131,7 +132,7 @@ Comm::Exchanged Comm::exchange(std::vector<Packer>& to, std::uint64_t value) {
   for (std::size_t r = 0; r < n_ranks(); ++r)
     if (static_cast<int>(r) != rank_ && !to[r].empty()) ++question.sums[1];
   agree(question);
-  ++traffic_.exchanges;
+  ++counts().exchanges;
   Exchanged result;
   result.sum = question.sums[0];
   if (question.sums[1] > 0)
@@ -153,8 +154,8 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
       came.push_back({r, std::move(bytes)});
       continue;
     }
-    ++traffic_.messages;
-    traffic_.bytes += bytes.size();
+    ++counts().messages;
+    counts().bytes += bytes.size();
     sends.emplace_back();
     require(MPI_Issend(bytes.data(), to_count(bytes.size()), MPI_BYTE, r, tag_, comm_, &sends.back()));
   }
@@ -193,8 +194,8 @@ std::vector<std::byte> Comm::all_gather_bytes(std::span<const std::byte> mine) {
   Question question;
   question.sums[0] = mine.size();
   agree(question);
-  ++traffic_.collectives;
-  traffic_.collective_bytes += mine.size();
+  ++counts().collectives;
+  counts().collective_bytes += mine.size();
   if (question.sums[0] == 0) return {};
   const int n = to_count(mine.size());
   std::vector<int> counts(n_ranks()), begins(n_ranks());
@@ -230,8 +231,8 @@ double Comm::sum_and_min(std::span<std::uint64_t> values, double mine) {
   std::copy(values.begin(), values.end(), question.sums.begin());
   question.least = mine;
   agree(question);
-  ++traffic_.collectives;
-  traffic_.collective_bytes += sizeof(Question);
+  ++counts().collectives;
+  counts().collective_bytes += sizeof(Question);
   std::copy_n(question.sums.begin(), values.size(), values.begin());
   return question.least;
 }
@@ -240,18 +241,18 @@ std::vector<std::byte> Comm::from_first(std::vector<std::byte> bytes) {
   Question question;
   if (rank_ == 0) question.sums[0] = bytes.size();
   agree(question);
-  ++traffic_.collectives;
+  ++counts().collectives;
   bytes.resize(question.sums[0]);
   MPI_Request request = MPI_REQUEST_NULL;
   require(MPI_Ibcast(bytes.data(), to_count(bytes.size()), MPI_BYTE, 0, comm_, &request));
   wait(request);
-  if (rank_ == 0) traffic_.collective_bytes += bytes.size();
+  if (rank_ == 0) counts().collective_bytes += bytes.size();
   return bytes;
 }
 
 Block Comm::hand_out(const std::function<Block(int)>& make) {
   agree();
-  ++traffic_.exchanges;
+  ++counts().exchanges;
   tag_ = (tag_ + 1) % kTags;
   if (rank_ != 0) return receive_block();
   Block before, block;  // of the rank before, while that of this one is made
@@ -289,8 +290,8 @@ void Comm::send_block(int to, const Block& block, std::vector<MPI_Request>& requ
   require(MPI_Irecv(&has_room, 1, MPI_CHAR, to, tag_, comm_, &request));
   wait(request);
   if (!has_room) return;
-  ++traffic_.messages;
-  traffic_.bytes += size;
+  ++counts().messages;
+  counts().bytes += size;
   for (std::size_t at = 0; at < block.size(); at += kPiece) {
     requests.emplace_back();
     require(MPI_Isend(block.data() + at, to_count(std::min(kPiece, block.size() - at)), MPI_BYTE, to, tag_,

@@ -38,6 +38,15 @@ struct Traffic {
   std::uint64_t exchanges = 0;    ///< times that all ranks took part in
   std::uint64_t collectives = 0;  ///< sums, minima and gatherings over all ranks
   std::uint64_t collective_bytes = 0;
+
+  Traffic& operator+=(const Traffic& o) {
+    messages += o.messages;
+    bytes += o.bytes;
+    exchanges += o.exchanges;
+    collectives += o.collectives;
+    collective_bytes += o.collective_bytes;
+    return *this;
+  }
 };
 
 /// What a rank's time goes to.
@@ -54,9 +63,10 @@ enum class Phase : std::uint8_t {
   kWait,         ///< for other ranks, in whatever phase
   kCount
 };
-inline constexpr std::array<const char*, static_cast<std::size_t>(Phase::kCount)> kPhaseNames = {
+template <class T>
+using PerPhase = std::array<T, static_cast<std::size_t>(Phase::kCount)>;
+inline constexpr PerPhase<const char*> kPhaseNames = {
     "alone", "cut", "hand out", "evaluate", "select", "border", "smooth", "tally", "put together", "wait"};
-using PhaseSeconds = std::array<double, static_cast<std::size_t>(Phase::kCount)>;
 
 /// What the ranks of a communicator say to each other. All functions but rank(), size() and traffic() are
 /// called by all ranks in the same order. Each begins with the question whether a rank has failed: so none
@@ -73,7 +83,8 @@ class Comm {
   int rank() const { return rank_; }
   int size() const { return size_; }
   std::size_t n_ranks() const { return static_cast<std::size_t>(size_); }
-  const Traffic& traffic() const { return traffic_; }
+  /// By the phase that it was sent in; what was sent while a rank waits is that of the phase that waits.
+  const PerPhase<Traffic>& traffic() const { return traffic_; }
   MPI_Comm handle() const { return comm_; }
 
   struct Message {
@@ -129,7 +140,7 @@ class Comm {
     Phase before_;
   };
   /// Since the beginning.
-  PhaseSeconds seconds() {
+  PerPhase<double> seconds() {
     enter(phase_);
     return seconds_;
   }
@@ -156,6 +167,7 @@ class Comm {
   void send_block(int to, const Block& block, std::vector<MPI_Request>& requests);
   Block receive_block();
   Phase enter(Phase phase);
+  Traffic& counts() { return traffic_[static_cast<std::size_t>(counted_)]; }
 
   using Clock = std::chrono::steady_clock;
 
@@ -165,10 +177,10 @@ class Comm {
   int rank_ = 0, size_ = 1;
   int tag_ = 0;
   std::uint64_t n_calls_ = 0, fail_at_ = 0;
-  Traffic traffic_;
-  Phase phase_ = Phase::kAlone;
+  PerPhase<Traffic> traffic_{};
+  Phase phase_ = Phase::kAlone, counted_ = Phase::kAlone;  // counted: the last but waiting
   Clock::time_point since_ = Clock::now();
-  PhaseSeconds seconds_{};
+  PerPhase<double> seconds_{};
 };
 
 }  // namespace hfr::mpi

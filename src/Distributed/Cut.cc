@@ -62,7 +62,8 @@ void Cut::find_held(int n_ranks) {
 
 Block Cut::message(int rank) {
   const std::vector<Index> cells = std::exchange(held_[static_cast<std::size_t>(rank)], {});
-  const std::vector<Index> vertices = vertices_of(cells);
+  par::for_each(policy_, cells.size(), [&](std::size_t i) { cell_[cells[i]] = static_cast<Index>(i); });
+  const std::vector<Index> vertices = vertices_of(cells, rank);
   PartHeader header;
   header.n_slots = mesh_.n_cells();
   header.n_free = mesh_.free_cells().size();
@@ -75,17 +76,27 @@ Block Cut::message(int rank) {
   Block block = PartArrays::block_for(header);
   const PartArrays arrays = PartArrays::in(block);
   for (std::size_t i = 0; i < arrays.free.size(); ++i) arrays.free[i] = mesh_.free_cells()[i].idx();
-  par::for_each(policy_, cells.size(), [&](std::size_t i) { cell_[cells[i]] = static_cast<Index>(i); });
   write_vertices(vertices, cells, arrays);
   write_cells(cells, arrays);
   return block;
 }
 
-/// Ascending; notes their places.
-std::vector<Index> Cut::vertices_of(std::span<const Index> cells) {
+/// Ascending; notes their places. Also those right behind the cells: they may come near, and to make room for
+/// a vertex later takes O(part).
+std::vector<Index> Cut::vertices_of(std::span<const Index> cells, int rank) {
   std::fill(marks_.begin(), marks_.end(), std::uint8_t{0});
-  for (Index c : cells)
-    for (VertexHandle v : mesh_.cell(CellHandle(c)).v) marks_[v.idx()] = 1;
+  for (Index c : cells) {
+    const Cell& cell = mesh_.cell(CellHandle(c));
+    bool is_own = true;
+    for (VertexHandle v : cell.v) {
+      marks_[v.idx()] = 1;
+      is_own = is_own && owner_[v.idx()] == rank;
+    }
+    if (is_own) continue;
+    for (HalfFaceHandle m : cell.mate)
+      if (m.is_valid() && place_of(cell_of(m).idx(), cells) == PartArrays::kNothing)
+        marks_[mesh_.halfface_opposite_vertex(m).idx()] = 1;
+  }
   std::vector<Index> vertices =
       par::compact<Index>(policy_, marks_.size(), [&](std::size_t v) { return marks_[v] != 0; });
   par::for_each(policy_, vertices.size(),

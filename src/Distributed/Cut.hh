@@ -24,7 +24,7 @@ class Cut {
 
  private:
   void find_held(int n_ranks);
-  std::vector<Index> vertices_of(std::span<const Index> cells);
+  std::vector<Index> vertices_of(std::span<const Index> cells, int rank);
   void write_vertices(std::span<const Index> vertices, std::span<const Index> cells,
                       const PartArrays& out) const;
   void write_cells(std::span<const Index> cells, const PartArrays& out) const;

@@ -186,6 +186,7 @@ void DistributedMesh::write_cells(std::span<const CellRecord> cells) {
     mesh_.set_region(c, r.region);
     work_.quality[c.idx()] = r.quality;
     work_.pending[c.idx()] = r.pending;
+    work_.touch({&c, 1});
     for (VertexHandle v : corners) {
       const CellHandle incident = mesh_.incident_cell(v);
       if (!incident.is_valid() || mesh_.is_deleted(incident) || !mesh_.cell(incident).has(v))

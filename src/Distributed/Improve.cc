@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/Improve.hh"
 
+#ifdef __unix__
+#include <sys/resource.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -17,11 +21,12 @@
 #include "Remesh/PassState.hh"
 #include "Remesh/Ranks.hh"
 #include "Remesh/RunMemory.hh"
+#include "Scheduler/PoorCells.hh"
 
 namespace hfr::mpi {
 namespace {
 
-enum class Task : std::uint8_t { kTake, kPass, kTally, kBringBack, kDismiss };
+enum class Task : std::uint8_t { kTake, kPass, kTally, kBringBack, kFigures, kDismiss };
 
 /// What rank 0 asks all ranks for.
 struct Order {
@@ -30,7 +35,17 @@ struct Order {
   Ranks::Look look;
   double below = 0;
   int code = 0;
+  int threads = 1;  // of the other ranks
 };
+
+/// Of this process; 0 where the system does not tell.
+std::uint64_t peak_bytes() {
+#ifdef __unix__
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) == 0) return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#endif
+  return 0;
+}
 
 /// One rank of a run: does the orders that all ranks have at the same time.
 class Worker {
@@ -40,6 +55,7 @@ class Worker {
   /// `mesh` and `work`: on rank 0 those of the run.
   void take(Partition how, const TetMesh* mesh, const Workspace* work) {
     parts_ = std::make_unique<DistributedMesh>(comm_);
+    poor_ = {};
     std::vector<int> owner;
     {
       const Comm::InPhase phase(comm_, Phase::kCut);
@@ -47,6 +63,7 @@ class Worker {
     }
     const Comm::InPhase phase(comm_, Phase::kHandOut);
     parts_->scatter(mesh, work, owner);
+    count_part();
   }
 
   void bring_back(TetMesh* mesh, Workspace* work) {
@@ -81,19 +98,35 @@ class Worker {
 
   std::size_t n_cells() const { return static_cast<std::size_t>(parts_->n_cells()); }
 
+  /// Of all ranks.
+  std::vector<RankFigures> figures() {
+    figures_.traffic = comm_.traffic();
+    figures_.seconds = comm_.seconds();
+    figures_.peak_bytes = peak_bytes();
+    return comm_.all_gather(std::span<const RankFigures>(&figures_, 1));
+  }
+
  private:
+  void count_part() {
+    const TetMesh& part = parts_->part();
+    figures_.n_held = part.n_cells();
+    figures_.n_border = parts_->zone().size();
+    figures_.n_own = 0;
+    for (std::size_t c = 0; c < part.n_cells(); ++c) figures_.n_own += parts_->is_own(CellHandle(c)) ? 1 : 0;
+  }
+
   template <class M>
   RoundCounts pass(const Ranks::Look& look, const M& metric) {
     const TetMesh& part = parts_->part();
     Workspace& work = parts_->work();
     const par::Policy policy{look.threads};
-    const Worklist list(part, policy, [&](CellHandle c) {
-      if (!(work.quality[c.idx()] < look.below)) return false;
+    const Worklist list(part, policy, poor_.below(look.below, work, policy), [&](CellHandle c) {
       const auto& v = part.cell(c).v;
       return std::any_of(v.begin(), v.end(),
                          [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
     });
     if (comm_.sum(list.cells().size()) == 0) return {};
+    ++figures_.n_rounds;
     switch (look.kind) {
       case PassKind::kEdge:
         return round<EdgeRemoval<M>>(look, {metric, work.quality}, list);
@@ -151,6 +184,8 @@ class Worker {
 
   Comm& comm_;
   std::unique_ptr<DistributedMesh> parts_;
+  PoorCells poor_;  // of the part
+  RankFigures figures_;
 };
 
 void tell(Comm& comm, const Order& order) {
@@ -172,14 +207,19 @@ class Conductor : public Ranks {
   bool can_take(const TetMesh& mesh, const Workspace& work) const override {
     return DistributedMesh::reason_against(mesh, work).empty();
   }
-  std::size_t least_cells() const override { return sharing_.least_cells; }
+  std::size_t least_cells(std::size_t n_cells) const override {
+    const std::size_t part = sharing_.least_one_in == 0 ? 0 : n_cells / sharing_.least_one_in;
+    return std::max(sharing_.least_cells, part);
+  }
   void take(const TetMesh& mesh, const Workspace& work) override {
     tell(comm_, {Task::kTake, sharing_.partition, {}, 0, 0});
     worker_.take(sharing_.partition, &mesh, &work);
   }
   RoundCounts pass(const Look& look) override {
-    tell(comm_, {Task::kPass, {}, look, 0, 0});
-    return worker_.pass(look);
+    Look shared = look;
+    if (sharing_.threads > 0) shared.threads = sharing_.threads;
+    tell(comm_, {Task::kPass, {}, shared, 0, 0});
+    return worker_.pass(shared);
   }
   Tally tally(double below) override {
     tell(comm_, {Task::kTally, {}, {}, below, 0});
@@ -189,6 +229,11 @@ class Conductor : public Ranks {
   void bring_back(TetMesh& mesh, Workspace& work) override {
     tell(comm_, {Task::kBringBack, {}, {}, 0, 0});
     worker_.bring_back(&mesh, &work);
+  }
+  void tell_figures() {
+    if (!sharing_.tell_figures) return;
+    tell(comm_, {Task::kFigures, {}, {}, 0, 0});
+    sharing_.tell_figures(worker_.figures());
   }
 
  private:
@@ -204,7 +249,9 @@ Result improve(TetMesh& mesh, const ImproveOptions& options, Comm& comm, const S
   RunMemory memory;
   Conductor conductor(comm, sharing);
   if (comm.size() > 1) memory.ranks = &conductor;
-  return hfr::improve(mesh, options, memory);
+  Result result = hfr::improve(mesh, options, memory);
+  conductor.tell_figures();
+  return result;
 }
 
 int serve(Comm& comm) {
@@ -225,6 +272,9 @@ int serve(Comm& comm) {
         break;
       case Task::kBringBack:
         worker.bring_back(nullptr, nullptr);
+        break;
+      case Task::kFigures:
+        worker.figures();
         break;
       case Task::kDismiss:
         return order.code;

@@ -16,6 +16,14 @@ struct Outcome {
   Result result;
 };
 
+/// Whatever a pass is worth.
+mpi::Sharing share_all(mpi::Partition how) {
+  mpi::Sharing sharing;
+  sharing.partition = how;
+  sharing.least_cells = 0;
+  return sharing;
+}
+
 Outcome improve_on_all(const TetMesh& input, const ImproveOptions& options, mpi::Comm& comm,
                        const mpi::Sharing& sharing) {
   Outcome outcome;
@@ -47,7 +55,7 @@ void expect_that_of_shared_memory(const TetMesh& input, const ImproveOptions& op
                                   std::vector<mpi::Partition> ways = {mpi::Partition::kGraph}) {
   for (const mpi::Partition how : ways) {
     mpi::Comm comm(MPI_COMM_WORLD);
-    const Outcome outcome = improve_on_all(input, options, comm, {how, 0});
+    const Outcome outcome = improve_on_all(input, options, comm, share_all(how));
     if (comm.rank() != 0) continue;
     TetMesh mesh = input;
     const Result result = improve(mesh, options);
@@ -93,7 +101,7 @@ TEST(MpiImprove, ARankThatFailsAnywhereEndsAll) {
     try {
       if (comm.rank() == 0) {
         TetMesh mesh = input;
-        mpi::improve(mesh, options, comm, {mpi::Partition::kCoordinates, 0});
+        mpi::improve(mesh, options, comm, share_all(mpi::Partition::kCoordinates));
         mpi::dismiss(comm);
       } else {
         mpi::serve(comm);
