@@ -59,17 +59,20 @@ if(HFR_PCH_OF_LIBRARY)
   target_precompile_headers(hfr_precompiled PRIVATE ${HFR_STANDARD_HEADERS})
 endif()
 
-# hfr_public_headers(FOLDER NAME FILES ...): headers of FOLDER that users include as <hfremesh/NAME/FILE>. Installed
+# hfr_public_headers(FOLDER NAME [COMPONENT ...] FILES ...): headers of FOLDER that users include as <hfremesh/NAME/FILE>. Installed
 # below include/hfremesh/NAME; in the build tree a header of one line stands there for each, so that whoever has
 # the project as a subfolder finds what an installed copy has, and nothing else.
 function(hfr_public_headers FOLDER NAME)
-  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "" "FILES")
+  cmake_parse_arguments(PARSE_ARGV 2 ARG "" "COMPONENT" "FILES")
+  if(NOT ARG_COMPONENT)
+    set(ARG_COMPONENT ${CMAKE_INSTALL_DEFAULT_COMPONENT_NAME})
+  endif()
   set(forwards ${PROJECT_BINARY_DIR}/include/hfremesh/${NAME})
   foreach(file IN LISTS ARG_FILES)
     file(CONFIGURE OUTPUT ${forwards}/${file} CONTENT "#include \"${FOLDER}/${file}\"\n" @ONLY)
     set_property(GLOBAL APPEND PROPERTY HFR_PUBLIC_HEADERS ${forwards}/${file})
     if(HFR_INSTALL)
-      install(FILES ${FOLDER}/${file} DESTINATION ${HFR_INCLUDE_DIR}/${NAME})
+      install(FILES ${FOLDER}/${file} DESTINATION ${HFR_INCLUDE_DIR}/${NAME} COMPONENT ${ARG_COMPONENT})
     endif()
   endforeach()
 endfunction()

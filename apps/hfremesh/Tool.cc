@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <utility>
 #include <vector>
 
 #include "Commands.hh"
@@ -37,13 +36,14 @@ constexpr const char* kSubcommands[] = {"improve", "move",     "check",   "stats
                                         "convert", "generate", "devices", "manual"};
 
 /// The arguments. "hfremesh IN -o OUT" is short for "hfremesh improve IN -o OUT".
-std::vector<std::string> arguments(int argc, char** argv) {
+std::vector<std::string> arguments(int argc, char** argv, const Variant& variant) {
   std::vector<std::string> args(argv + 1, argv + argc);
-  static const std::vector<std::string> kOwnFlags = {"-h", "--help", "--version"};
+  std::vector<std::string> own_flags = {"--version"};
+  if (!variant.add_options) own_flags.insert(own_flags.end(), {"-h", "--help"});
   const auto is_one_of = [](const auto& list, const std::string& word) {
     return std::find(std::begin(list), std::end(list), word) != std::end(list);
   };
-  if (!args.empty() && !is_one_of(kSubcommands, args[0]) && !is_one_of(kOwnFlags, args[0]))
+  if (!args.empty() && !is_one_of(kSubcommands, args[0]) && !is_one_of(own_flags, args[0]))
     args.insert(args.begin(), "improve");
   return args;
 }
@@ -110,12 +110,12 @@ std::string parsed_command(const std::vector<Subcommand>& subcommands) {
   return "";
 }
 
-ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams, ImproveFunction improve) {
+ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams, const Variant& variant) {
   Parser parser(
-      "hfremesh",
+      variant.name,
       "Repairs and improves tetrahedral meshes. 'hfremesh IN -o OUT' is short for 'hfremesh improve "
       "IN -o OUT'.",
-      std::string("hfremesh ") + HFR_VERSION);
+      variant.name + " " + HFR_VERSION);
   Command program = parser.program();
   program.require_subcommand();
   program.example("hfremesh bad.mesh -o good.mesh", "improve; size, boundary and tags stay");
@@ -125,17 +125,22 @@ ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams, ImproveF
   program.example("hfremesh stats bad.mesh good.mesh", "figures side by side");
   program.example("hfremesh generate cavity -o bad.mesh", "a mesh with inverted cells, to try it on");
   CommonOptions common;
-  if (improve) common.improve = std::move(improve);
+  common.threads = variant.threads;
+  if (variant.improve) common.improve = variant.improve;
   const std::vector<Subcommand> subcommands = {
       add_improve(program, common),  add_move(program, common),    add_check(program, common),
       add_stats(program, common),    add_report(program, common),  add_convert(program, common),
       add_generate(program, common), add_devices(program, common), add_manual(program, common)};
+  if (variant.add_options) {
+    Command command = subcommands.front().command;
+    variant.add_options(command);
+  }
   try {
     if (argc < 2) throw Failure(ExitCode::kUsage, "a mesh or a subcommand is required");
-    if (!parser.parse(arguments(argc, argv))) return ExitCode::kDone;
+    if (!parser.parse(arguments(argc, argv, variant))) return ExitCode::kDone;
   } catch (const Failure& error) {
-    print_error(
-        fmt::format("{}; try 'hfremesh {}--help'", shortened(error.what()), parsed_command(subcommands)));
+    print_error(fmt::format("{}; try '{} {}--help'", shortened(error.what()), variant.name,
+                            parsed_command(subcommands)));
     return error.code();
   }
   for (const Subcommand& subcommand : subcommands)
@@ -146,13 +151,13 @@ ExitCode parse_and_run(int argc, char** argv, StandardStreams& streams, ImproveF
 }  // namespace
 }  // namespace hfr::app
 
-hfr::app::ExitCode hfr::app::run_tool(int argc, char** argv, ImproveFunction improve) {
+hfr::app::ExitCode hfr::app::run_tool(int argc, char** argv, const Variant& variant) {
   give_memory_back();
   StandardStreams streams;
   handle_signals();
   ExitCode code = ExitCode::kInternal;
   try {
-    code = parse_and_run(argc, argv, streams, std::move(improve));
+    code = parse_and_run(argc, argv, streams, variant);
   } catch (const std::exception& error) {
     print_error(error.what());
   }

@@ -53,7 +53,7 @@ class Worker {
   explicit Worker(Comm& comm) : comm_(comm) {}
 
   /// `mesh` and `work`: on rank 0 those of the run.
-  void take(Partition how, const TetMesh* mesh, const Workspace* work) {
+  void take(Partition how, const TetMesh* mesh, const Workspace* work, par::Policy policy) {
     parts_ = std::make_unique<DistributedMesh>(comm_);
     poor_ = {};
     std::vector<int> owner;
@@ -62,13 +62,13 @@ class Worker {
       owner = partition(comm_, mesh, how);
     }
     const Comm::InPhase phase(comm_, Phase::kHandOut);
-    parts_->scatter(mesh, work, owner);
+    parts_->scatter(mesh, work, owner, policy);
     count_part();
   }
 
-  void bring_back(TetMesh* mesh, Workspace* work) {
+  void bring_back(TetMesh* mesh, Workspace* work, par::Policy policy) {
     const Comm::InPhase phase(comm_, Phase::kPutTogether);
-    parts_->gather(mesh, work, DistributedMesh::Gather::kChanged);
+    parts_->gather(mesh, work, DistributedMesh::Gather::kChanged, policy);
     parts_.reset();
   }
 
@@ -197,7 +197,9 @@ void tell(Comm& comm, const Order& order) {
 /// Rank 0: tells the others, and does its own share.
 class Conductor : public Ranks {
  public:
-  Conductor(Comm& comm, const Sharing& sharing) : comm_(comm), sharing_(sharing), worker_(comm) {}
+  /// `alone`: while the others wait.
+  Conductor(Comm& comm, const Sharing& sharing, par::Policy alone)
+      : comm_(comm), sharing_(sharing), alone_(alone), worker_(comm) {}
 
   bool can_do(PassKind kind, Metric metric) const override {
     return (metric == Metric::kMinSine || metric == Metric::kMinDihedral) &&
@@ -212,12 +214,12 @@ class Conductor : public Ranks {
     return std::max(sharing_.least_cells, part);
   }
   void take(const TetMesh& mesh, const Workspace& work) override {
-    tell(comm_, {Task::kTake, sharing_.partition, {}, 0, 0});
-    worker_.take(sharing_.partition, &mesh, &work);
+    tell(comm_, {Task::kTake, sharing_.partition, {}, 0, 0, threads()});
+    worker_.take(sharing_.partition, &mesh, &work, alone_);
   }
   RoundCounts pass(const Look& look) override {
     Look shared = look;
-    if (sharing_.threads > 0) shared.threads = sharing_.threads;
+    shared.threads = threads();
     tell(comm_, {Task::kPass, {}, shared, 0, 0});
     return worker_.pass(shared);
   }
@@ -227,8 +229,8 @@ class Conductor : public Ranks {
   }
   std::size_t n_cells() const override { return worker_.n_cells(); }
   void bring_back(TetMesh& mesh, Workspace& work) override {
-    tell(comm_, {Task::kBringBack, {}, {}, 0, 0});
-    worker_.bring_back(&mesh, &work);
+    tell(comm_, {Task::kBringBack, {}, {}, 0, 0, threads()});
+    worker_.bring_back(&mesh, &work, alone_);
   }
   void tell_figures() {
     if (!sharing_.tell_figures) return;
@@ -237,8 +239,12 @@ class Conductor : public Ranks {
   }
 
  private:
+  /// Of each rank in what all do.
+  int threads() const { return sharing_.threads > 0 ? sharing_.threads : alone_.threads; }
+
   Comm& comm_;
   Sharing sharing_;
+  par::Policy alone_;
   Worker worker_;
 };
 
@@ -247,7 +253,7 @@ class Conductor : public Ranks {
 Result improve(TetMesh& mesh, const ImproveOptions& options, Comm& comm, const Sharing& sharing) {
   HFR_REQUIRE(comm.rank() == 0, "hfr::mpi::improve() is called by rank 0; the others call serve()");
   RunMemory memory;
-  Conductor conductor(comm, sharing);
+  Conductor conductor(comm, sharing, options.policy);
   if (comm.size() > 1) memory.ranks = &conductor;
   Result result = hfr::improve(mesh, options, memory);
   conductor.tell_figures();
@@ -262,7 +268,7 @@ int serve(Comm& comm) {
     const Order order = Unpacker(bytes).get<Order>();
     switch (order.task) {
       case Task::kTake:
-        worker.take(order.partition, nullptr, nullptr);
+        worker.take(order.partition, nullptr, nullptr, {order.threads});
         break;
       case Task::kPass:
         worker.pass(order.look);
@@ -271,7 +277,7 @@ int serve(Comm& comm) {
         worker.tally(order.below);
         break;
       case Task::kBringBack:
-        worker.bring_back(nullptr, nullptr);
+        worker.bring_back(nullptr, nullptr, {order.threads});
         break;
       case Task::kFigures:
         worker.figures();

@@ -18,8 +18,11 @@ enum class Partition {
 
 /// The rank that owns each vertex, on rank 0; nothing elsewhere. All ranks take part; `mesh` is looked at on
 /// rank 0 alone. A vertex is owned by the part of its smallest cell, so each part of the cells becomes a part
-/// of the vertices. Where PT-Scotch fails, or leaves a rank without a cell, by coordinates.
+/// of the vertices. Where PT-Scotch is missing, fails, or leaves a rank without a cell, by coordinates.
 std::vector<int> partition(Comm& comm, const TetMesh* mesh, Partition how);
+
+/// Whether this build has PT-Scotch.
+bool has_graph_partition();
 
 }  // namespace hfr::mpi
 
