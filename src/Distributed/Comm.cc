@@ -135,6 +135,7 @@ Comm::Exchanged Comm::exchange(std::vector<Packer>& to, std::uint64_t value) {
   ++counts().exchanges;
   Exchanged result;
   result.sum = question.sums[0];
+  result.n_messages = question.sums[1];
   if (question.sums[1] > 0)
     result.messages = send_and_receive(to);
   else if (auto& mine = to[static_cast<std::size_t>(rank_)]; !mine.empty())
@@ -235,19 +236,6 @@ double Comm::sum_and_min(std::span<std::uint64_t> values, double mine) {
   counts().collective_bytes += sizeof(Question);
   std::copy_n(question.sums.begin(), values.size(), values.begin());
   return question.least;
-}
-
-std::vector<std::byte> Comm::from_first(std::vector<std::byte> bytes) {
-  Question question;
-  if (rank_ == 0) question.sums[0] = bytes.size();
-  agree(question);
-  ++counts().collectives;
-  bytes.resize(question.sums[0]);
-  MPI_Request request = MPI_REQUEST_NULL;
-  require(MPI_Ibcast(bytes.data(), to_count(bytes.size()), MPI_BYTE, 0, comm_, &request));
-  wait(request);
-  if (rank_ == 0) counts().collective_bytes += bytes.size();
-  return bytes;
 }
 
 Block Comm::hand_out(const std::function<Block(int)>& make) {

@@ -96,7 +96,8 @@ class Comm {
   std::vector<Message> exchange(std::vector<Packer>& to) { return exchange(to, 0).messages; }
   struct Exchanged {
     std::vector<Message> messages;
-    std::uint64_t sum = 0;  ///< of the values of all ranks
+    std::uint64_t sum = 0;         ///< of the values of all ranks
+    std::uint64_t n_messages = 0;  ///< between two ranks, over all of them
   };
   Exchanged exchange(std::vector<Packer>& to, std::uint64_t value);
   /// Each rank gets make(rank) of rank 0, in the order of ranks but for rank 0 itself, which is last: while
@@ -111,14 +112,23 @@ class Comm {
     return values;
   }
   std::uint64_t sum(std::uint64_t mine);
-  static constexpr std::size_t kMostSums = 4;
+  static constexpr std::size_t kMostSums = 16;
   /// kMostSums at most.
   void sum(std::span<std::uint64_t> values);
   double min(double mine);
   /// Both at once: sums, and the least.
   double sum_and_min(std::span<std::uint64_t> values, double mine);
-  /// The bytes of rank 0. While rank 0 works, the others sleep here.
-  std::vector<std::byte> from_first(std::vector<std::byte> bytes);
+  /// What rank 0 says. While rank 0 works, the others sleep here.
+  template <class T>
+  requires std::is_trivially_copyable_v<T> T from_first(const T& value) {
+    static_assert(sizeof(T) <= sizeof(std::uint64_t) * kMostSums);
+    std::array<std::uint64_t, kMostSums> words{};
+    if (rank_ == 0) std::memcpy(words.data(), &value, sizeof(T));
+    sum(words);  // of zeros, elsewhere
+    T said;
+    std::memcpy(static_cast<void*>(&said), words.data(), sizeof(T));
+    return said;
+  }
 
   /// Instead of the next call: this rank has failed. Returns what the others are told: of the smallest rank
   /// that has. `code`: 1 … 255.

@@ -125,11 +125,14 @@ class Worker {
       return std::any_of(v.begin(), v.end(),
                          [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
     });
-    if (comm_.sum(list.cells().size()) == 0) return {};
+    std::array<std::uint64_t, 2> listed = {list.cells().size(), 0};
+    if (look.kind == PassKind::kEdge) listed[1] = n_own(list.cells());
+    comm_.sum(listed);
+    if (listed[0] == 0) return {};
     ++figures_.n_rounds;
     switch (look.kind) {
       case PassKind::kEdge:
-        return round<EdgeRemoval<M>>(look, {metric, work.quality}, list);
+        return round<EdgeRemoval<M>>(look, {metric, work.quality}, list, listed[1] > look.first_edge_beyond);
       case PassKind::kFace:
         return round<FaceSwap<M>>(look, {metric, work.quality}, list);
       case PassKind::kMultiFace:
@@ -159,12 +162,9 @@ class Worker {
   }
 
   template <class Op>
-  RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list) {
+  RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does = false) {
     PartRound place(*parts_);
     Round<Op> round(parts_->part(), parts_->work(), options(look, place));
-    constexpr auto kNever = std::numeric_limits<std::uint64_t>::max();
-    const bool first_does = std::is_same_v<typename Op::Seed, EdgeHandle> &&
-                            look.first_edge_beyond < kNever && n_own(list.cells()) > look.first_edge_beyond;
     return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
       const CellHandle c(list.cells()[i]);
       if constexpr (!std::is_same_v<typename Op::Seed, EdgeHandle>)
@@ -176,10 +176,10 @@ class Worker {
     });
   }
 
-  /// Of these cells of the part, how many are own ones, over all ranks.
-  std::uint64_t n_own(std::span<const Index> cells) {
-    return comm_.sum(static_cast<std::uint64_t>(
-        std::count_if(cells.begin(), cells.end(), [&](Index c) { return parts_->is_own(CellHandle(c)); })));
+  /// Of these cells of the part, how many are own ones.
+  std::uint64_t n_own(std::span<const Index> cells) const {
+    return static_cast<std::uint64_t>(
+        std::count_if(cells.begin(), cells.end(), [&](Index c) { return parts_->is_own(CellHandle(c)); }));
   }
 
   Comm& comm_;
@@ -188,11 +188,7 @@ class Worker {
   RankFigures figures_;
 };
 
-void tell(Comm& comm, const Order& order) {
-  Packer out;
-  out.put(order);
-  comm.from_first(std::move(out.bytes()));
-}
+void tell(Comm& comm, const Order& order) { comm.from_first(order); }
 
 /// Rank 0: tells the others, and does its own share.
 class Conductor : public Ranks {
@@ -264,8 +260,7 @@ int serve(Comm& comm) {
   HFR_REQUIRE(comm.rank() != 0, "hfr::mpi::serve() is for all ranks but 0");
   Worker worker(comm);
   while (true) {
-    const std::vector<std::byte> bytes = comm.from_first({});
-    const Order order = Unpacker(bytes).get<Order>();
+    const Order order = comm.from_first(Order{});
     switch (order.task) {
       case Task::kTake:
         worker.take(order.partition, nullptr, nullptr, {order.threads});
