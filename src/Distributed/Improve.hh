@@ -37,7 +37,7 @@ struct Sharing {
   std::size_t least_cells = 1'000;
   std::size_t least_one_in = 32;
   /// Where it is set: told on rank 0, at the end of improve(), of each rank.
-  std::function<void(std::span<const RankFigures>)> tell_figures;
+  std::function<void(std::span<const RankFigures>)> tell_figures = {};
 };
 
 /// hfr::improve() with the same bits, some passes done by all ranks of the communicator: those of the polish
