@@ -3,7 +3,6 @@
 #include <mpi.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <limits>
 #include <string>
@@ -11,6 +10,7 @@
 #include "Numbers.hh"
 #include "PrintFigures.hh"
 #include "Tool.hh"
+#include "WaitPassively.hh"
 #include "hfremesh/Distributed/Cores.hh"
 #include "hfremesh/Distributed/Improve.hh"
 #include "hfremesh/Distributed/Partition.hh"
@@ -114,8 +114,7 @@ int follow(hfr::mpi::Comm& comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Ranks share cores with threads: who waits sleeps.
-  setenv("OMP_WAIT_POLICY", "passive", 0);
+  hfr::app::wait_passively(argv);
   int level = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_MULTIPLE, &level);
   int code = 0;
