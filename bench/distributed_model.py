@@ -10,20 +10,20 @@ import argparse
 import math
 
 MEASURED = {
-    "rounds": 78,  # shared rounds and smoothing passes of a run (c40)
+    "rounds": 59,  # shared rounds and smoothing passes of a run
     "calls": 6.4,  # a round: reductions of all ranks
-    "evaluate": 0.10e-6,  # seconds an own cell and run: lists, evaluation, commits
-    "border": 0.6e-6,  # seconds a border cell and run
+    "evaluate": 0.09e-6,  # seconds an own cell and run: lists, evaluation, commits
+    "border": 0.8e-6,  # seconds a border cell and run
     "border_face": 36,  # border cells for each cube of the interface of a part
     "halo_face": 18,  # of them other ranks'
-    "message": 800,  # bytes a winner in the border, all rounds and both exchanges of a round
-    "winner": 0.0106,  # winners for each cell, over a run (c40)
+    "message": 700,  # bytes that a rank sends for a winner in its border
+    "winner": 0.0053,  # winners for each cell, over a run
     "slot": 56 + 8 * 1.5,  # bytes a winner to all ranks
-    "slot_seconds": 0.3e-6,  # to sort and walk through a winner, on each rank; estimated
-    "cell_bytes": 55,  # bytes a cell that is handed out, its vertices included
-    "hand_out": 0.2e-6,  # seconds a cell on rank 0: cutting, messages, parts put together
-    "whole": 160,  # bytes a cell on rank 0
-    "part": 120,  # bytes a cell held on another rank
+    "slot_seconds": 0.3e-6,  # to sort and walk through a winner, on each rank: a guess
+    "cell_bytes": 107,  # bytes a held cell in the two hand-overs of a run, its vertices included
+    "hand_out": 0.3e-6,  # seconds a cell on rank 0 in both: cutting, messages, putting together
+    "whole": 200,  # bytes a cell on rank 0, at its peak with two ranks
+    "part": 132,  # bytes a held cell on another rank
 }
 LARGEST = 2**32 // 12  # cells that the 32-bit handles of half-edges in the mesh of rank 0 can name
 
