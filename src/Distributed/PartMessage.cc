@@ -3,8 +3,8 @@
 
 namespace hfr::mpi {
 
-/// Puts the arrays behind one another, the widest types first, so that each begins where its type may.
-/// Returns where they end.
+/// Puts the arrays behind one another, the widest types first (handles have 4 bytes or 8), so that each
+/// begins where its type may. Returns where they end.
 std::size_t PartArrays::place(std::byte* base, const PartHeader& header) {
   static_assert(sizeof(PartHeader) % sizeof(double) == 0);
   std::size_t at = sizeof(PartHeader);
@@ -16,14 +16,14 @@ std::size_t PartArrays::place(std::byte* base, const PartHeader& header) {
   put(quality, header.n_cells);
   put(vertex_number, header.n_vertices);
   put(incident, header.n_vertices);
-  put(owner, header.n_vertices);
-  put(star_size, header.n_vertices);
-  put(changed, header.n_vertices);
   put(cell_number, header.n_cells);
   put(corners, header.n_cells);
   put(mates, header.n_cells);
-  put(region, header.has_regions ? header.n_cells : 0);
   put(free, header.n_free);
+  put(owner, header.n_vertices);
+  put(star_size, header.n_vertices);
+  put(changed, header.n_vertices);
+  put(region, header.has_regions ? header.n_cells : 0);
   put(frozen, header.n_vertices);
   put(pending, header.n_cells);
   return at;

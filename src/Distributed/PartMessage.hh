@@ -13,7 +13,7 @@ namespace hfr::mpi {
 
 /// The part of a mesh that one rank holds, as rank 0 hands it out: what PartHeader says, then arrays whose
 /// sizes it tells, in the order of PartArrays. 41 bytes a vertex, 45 a cell, 4 more where cells have regions,
-/// 4 a free slot of the whole. Numbers are handles in the mesh of rank 0.
+/// 4 a free slot of the whole, with handles of 32 bits. Numbers are handles in the mesh of rank 0.
 struct PartHeader {
   std::uint64_t n_slots = 0, n_free = 0, n_vertices = 0, n_cells = 0;
   double floor = 0;
@@ -30,12 +30,12 @@ struct PartArrays {
   std::span<Vec3> point;
   std::span<double> quality;
   std::span<Index> vertex_number, incident;
-  std::span<std::int32_t> owner;
-  std::span<std::uint32_t> star_size, changed;
   std::span<Index> cell_number;
   std::span<Four> corners, mates;
-  std::span<std::int32_t> region;
   std::span<Index> free;
+  std::span<std::int32_t> owner;
+  std::span<std::uint32_t> star_size, changed;
+  std::span<std::int32_t> region;
   std::span<std::uint8_t> frozen, pending;
 
   /// A message for the header, which is written; the arrays are not.
