@@ -3,12 +3,15 @@
 #include <mpi.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
+#include <limits>
 #include <string>
 
 #include "Numbers.hh"
+#include "PrintFigures.hh"
 #include "Tool.hh"
+#include "WaitPassively.hh"
+#include "hfremesh/Distributed/Cores.hh"
 #include "hfremesh/Distributed/Improve.hh"
 #include "hfremesh/Distributed/Partition.hh"
 
@@ -18,14 +21,24 @@ using hfr::app::ExitCode;
 
 /// What the tool has no option for.
 struct OwnOptions {
-  unsigned long share_from = hfr::mpi::Sharing{}.least_cells;
+  static constexpr unsigned long kByRule = std::numeric_limits<unsigned long>::max();
+  unsigned long share_from = kByRule;
+  int threads_each = 1;
   std::string partition = "coordinates";
   bool shows_traffic = false;
 
   hfr::mpi::Sharing sharing() const {
     using hfr::mpi::Partition;
-    if (partition == "graph") return {Partition::kGraph, share_from};
-    return {partition == "numbers" ? Partition::kNumbers : Partition::kCoordinates, share_from};
+    hfr::mpi::Sharing sharing;
+    if (partition == "graph") sharing.partition = Partition::kGraph;
+    if (partition == "numbers") sharing.partition = Partition::kNumbers;
+    if (share_from != kByRule) {
+      sharing.least_cells = share_from;
+      sharing.least_one_in = 0;
+    }
+    sharing.threads = threads_each;
+    if (shows_traffic) sharing.tell_figures = hfr::app::print_figures;
+    return sharing;
   }
 };
 
@@ -34,12 +47,19 @@ void add_own_options(hfr::app::Command command, OwnOptions& own) {
                   "on four ranks, with the output of one");
   command.group("Several ranks");
   command
-      .option(
-          "--share-from", own.share_from,
-          "Passes with fewer cells to look at are done by one rank. The output is the same for each number")
+      .option("--share-from", own.share_from,
+              "Passes with fewer cells to look at are done by one rank; unless given, with fewer than 1000, "
+              "or than "
+              "one in 32 of all. The output is the same for each number")
+      .type_name("N")
+      .check(hfr::app::whole_number());
+  command
+      .option("--threads-each", own.threads_each,
+              "Threads of each rank in the passes that all ranks do; --threads are those of the first rank "
+              "while the others wait, and unless given as many as there are ranks on its machine")
       .type_name("N")
       .shows_default()
-      .check(hfr::app::whole_number());
+      .check(hfr::app::whole_number(1, 1024));
   command.option("--partition", own.partition, "How the mesh is cut; graph is PT-Scotch")
       .type_name("HOW")
       .shows_default()
@@ -48,28 +68,17 @@ void add_own_options(hfr::app::Command command, OwnOptions& own) {
         const bool lacks = how == "graph" && !hfr::mpi::has_graph_partition();
         return lacks ? std::string("this build has no PT-Scotch; coordinates and numbers are there") : "";
       });
-  command.flag("--traffic", own.shows_traffic, "Print what the first rank has sent to the others");
-}
-
-/// What ranks have said to each other, for --traffic.
-void print_traffic(const hfr::mpi::Comm& comm) {
-  const hfr::mpi::Traffic& t = comm.traffic();
-  std::fprintf(stderr,
-               "hfremesh-mpi: rank %d: %llu messages of %llu bytes in %llu exchanges, %llu collectives of "
-               "%llu bytes\n",
-               comm.rank(), static_cast<unsigned long long>(t.messages),
-               static_cast<unsigned long long>(t.bytes), static_cast<unsigned long long>(t.exchanges),
-               static_cast<unsigned long long>(t.collectives),
-               static_cast<unsigned long long>(t.collective_bytes));
+  command.flag("--traffic", own.shows_traffic,
+               "Print what ranks have sent, their memory, and seconds by phase");
 }
 
 /// Rank 0. What another rank throws becomes an error of the tool, with the exit code that it has there.
-int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
+int lead(int argc, char** argv, hfr::mpi::Comm& comm, int cores) {
   OwnOptions own;
   bool are_gone = false, has_thrown = false;
   hfr::app::Variant variant;
   variant.name = "hfremesh-mpi";
-  if (comm.size() > 1) variant.threads = 1;  // ranks share the cores
+  if (comm.size() > 1) variant.threads = cores;
   variant.add_options = [&](hfr::app::Command& command) { add_own_options(command, own); };
   variant.improve = [&](hfr::TetMesh& mesh, const hfr::ImproveOptions& options) {
     try {
@@ -83,7 +92,6 @@ int lead(int argc, char** argv, hfr::mpi::Comm& comm) {
     }
   };
   const int code = static_cast<int>(hfr::app::run_tool(argc, argv, variant));
-  if (own.shows_traffic) print_traffic(comm);
   if (are_gone) return code;
   if (has_thrown)
     comm.fail(code, "the tool has ended");
@@ -106,14 +114,14 @@ int follow(hfr::mpi::Comm& comm) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Ranks share cores with threads: who waits sleeps.
-  setenv("OMP_WAIT_POLICY", "passive", 0);
+  hfr::app::wait_passively(argv);
   int level = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_MULTIPLE, &level);
   int code = 0;
   {
     hfr::mpi::Comm comm(MPI_COMM_WORLD);
-    code = comm.rank() == 0 ? lead(argc, argv, comm) : follow(comm);
+    const int cores = hfr::mpi::lend_cores(comm);
+    code = comm.rank() == 0 ? lead(argc, argv, comm, cores) : follow(comm);
   }
   MPI_Finalize();
   return code;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -72,6 +73,21 @@ class Unpacker {
   }
 
   std::span<const std::byte> bytes_;
+};
+
+/// Bytes whose number is known before they are written; not initialised.
+class Block {
+ public:
+  Block() = default;
+  explicit Block(std::size_t size) : bytes_(new std::byte[size]), size_(size) {}
+
+  std::byte* data() { return bytes_.get(); }
+  const std::byte* data() const { return bytes_.get(); }
+  std::size_t size() const { return size_; }
+
+ private:
+  std::unique_ptr<std::byte[]> bytes_;
+  std::size_t size_ = 0;
 };
 
 }  // namespace hfr::mpi

@@ -7,8 +7,10 @@
 #include <array>
 #include <chrono>
 #include <limits>
+#include <new>
 #include <string>
 #include <thread>
+#include <utility>
 
 namespace hfr::mpi {
 namespace {
@@ -16,17 +18,23 @@ namespace {
 constexpr std::int64_t kNobody = std::numeric_limits<std::int64_t>::max();
 constexpr int kCodes = 256;
 constexpr int kTags = 16'384;
-constexpr std::size_t kLongestMessage = 512;  // of a rank that fails
+constexpr std::size_t kLongestMessage = 512;          // of a rank that fails
+constexpr std::size_t kPiece = std::size_t{1} << 30;  // of a block
 
-/// Gives way to other processes while there is nothing to do, the longer the more: ranks may share a core.
+/// Gives way to other processes while there is nothing to do: ranks may share a core. Who sleeps is woken
+/// before those who only give way: on a busy machine that is what counts. Sleeps for a sixteenth of the time
+/// that it has waited, so that it comes little late and takes little from whoever works.
 class Patience {
  public:
   void pause() {
-    // Who sleeps is woken before those who only give way: on a busy machine that is what counts.
-    if (++n_ > 500) std::this_thread::sleep_for(std::chrono::microseconds(n_ < 20'000 ? 20 : 500));
+    using namespace std::chrono;
+    if (++n_ <= 200) return;
+    const auto waited = duration_cast<microseconds>(steady_clock::now() - start_);
+    std::this_thread::sleep_for(std::clamp(waited / 16, microseconds(20), microseconds(2'000)));
   }
 
  private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   int n_ = 0;
 };
 
@@ -45,12 +53,42 @@ Comm::Comm(MPI_Comm comm) {
   require(MPI_Comm_dup(comm, &comm_));
   require(MPI_Comm_rank(comm_, &rank_));
   require(MPI_Comm_size(comm_, &size_));
+  static_assert(std::is_trivially_copyable_v<Question>);
+  require(MPI_Type_contiguous(static_cast<int>(sizeof(Question)), MPI_BYTE, &question_type_));
+  require(MPI_Type_commit(&question_type_));
+  require(MPI_Op_create(&Comm::combine, /*commute=*/1, &combine_));
 }
 
 Comm::~Comm() {
   int is_over = 0;
   MPI_Finalized(&is_over);
-  if (!is_over) MPI_Comm_free(&comm_);
+  if (is_over) return;
+  MPI_Op_free(&combine_);
+  MPI_Type_free(&question_type_);
+  MPI_Comm_free(&comm_);
+}
+
+void Comm::combine(void* in, void* in_out, int* n, MPI_Datatype*) {
+  const auto* mine = static_cast<const std::byte*>(in);
+  auto* all = static_cast<std::byte*>(in_out);
+  for (int i = 0; i < *n; ++i, mine += sizeof(Question), all += sizeof(Question)) {
+    Question a, b;
+    std::memcpy(&a, mine, sizeof(Question));
+    std::memcpy(&b, all, sizeof(Question));
+    b.first_failed = std::min(a.first_failed, b.first_failed);
+    b.least = std::min(a.least, b.least);
+    for (std::size_t k = 0; k < kMostSums; ++k) b.sums[k] += a.sums[k];
+    std::memcpy(all, &b, sizeof(Question));
+  }
+}
+
+/// Returns the phase until now.
+Phase Comm::enter(Phase phase) {
+  const auto now = Clock::now();
+  seconds_[static_cast<std::size_t>(phase_)] += std::chrono::duration<double>(now - since_).count();
+  since_ = now;
+  if (phase != Phase::kWait) counted_ = phase;
+  return std::exchange(phase_, phase);
 }
 
 void Comm::require(int result) {
@@ -58,6 +96,7 @@ void Comm::require(int result) {
 }
 
 void Comm::wait(MPI_Request& request) {
+  const InPhase waiting(*this, Phase::kWait);
   Patience patience;
   for (int done = 0;;) {
     require(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
@@ -66,33 +105,51 @@ void Comm::wait(MPI_Request& request) {
   }
 }
 
-std::optional<RankFailed> Comm::ask(int code, const std::string& message) {
-  const std::int64_t mine = code == 0 ? kNobody : std::int64_t{kCodes} * rank_ + code;
-  std::int64_t first = kNobody;
+std::optional<RankFailed> Comm::ask(Question& question, int code, const std::string& message) {
+  question.first_failed = code == 0 ? kNobody : std::int64_t{kCodes} * rank_ + code;
+  const Question mine = question;
   MPI_Request request = MPI_REQUEST_NULL;
-  require(MPI_Iallreduce(&mine, &first, 1, MPI_INT64_T, MPI_MIN, comm_, &request));
+  require(MPI_Iallreduce(&mine, &question, 1, question_type_, combine_, comm_, &request));
   wait(request);
-  if (first == kNobody) return std::nullopt;
-  const int rank = static_cast<int>(first / kCodes);
+  if (question.first_failed == kNobody) return std::nullopt;
+  const int rank = static_cast<int>(question.first_failed / kCodes);
   std::array<char, kLongestMessage> text{};
   if (rank == rank_) message.copy(text.data(), text.size() - 1);
   require(MPI_Ibcast(text.data(), to_count(text.size()), MPI_CHAR, rank, comm_, &request));
   wait(request);
-  return RankFailed(rank, static_cast<int>(first % kCodes), text.data());
+  return RankFailed(rank, static_cast<int>(question.first_failed % kCodes), text.data());
 }
 
-void Comm::agree() {
+void Comm::agree(Question& question) {
   if (++n_calls_ == fail_at_) throw ResourceLimit("a fault that was asked for");
-  if (const auto failed = ask(0, {})) throw *failed;
+  if (const auto failed = ask(question, 0, {})) throw *failed;
 }
 
 RankFailed Comm::fail(int code, const std::string& message) {
-  return *ask(std::clamp(code, 1, kCodes - 1), message);
+  Question question;
+  return *ask(question, std::clamp(code, 1, kCodes - 1), message);
 }
 
-std::vector<Comm::Message> Comm::exchange(std::vector<Packer>& to) {
-  agree();
-  ++traffic_.exchanges;
+/// Where nobody sends anything, the question is all.
+Comm::Exchanged Comm::exchange(std::vector<Packer>& to, std::uint64_t value) {
+  Question question;
+  question.sums[0] = value;
+  for (std::size_t r = 0; r < n_ranks(); ++r)
+    if (static_cast<int>(r) != rank_ && !to[r].empty()) ++question.sums[1];
+  agree(question);
+  ++counts().exchanges;
+  Exchanged result;
+  result.sum = question.sums[0];
+  result.n_messages = question.sums[1];
+  if (question.sums[1] > 0)
+    result.messages = send_and_receive(to);
+  else if (auto& mine = to[static_cast<std::size_t>(rank_)]; !mine.empty())
+    result.messages.push_back({rank_, std::move(mine.bytes())});
+  return result;
+}
+
+std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
+  const InPhase waiting(*this, Phase::kWait);
   tag_ = (tag_ + 1) % kTags;
   std::vector<Message> came;
   std::vector<MPI_Request> sends;
@@ -103,8 +160,8 @@ std::vector<Comm::Message> Comm::exchange(std::vector<Packer>& to) {
       came.push_back({r, std::move(bytes)});
       continue;
     }
-    ++traffic_.messages;
-    traffic_.bytes += bytes.size();
+    ++counts().messages;
+    counts().bytes += bytes.size();
     sends.emplace_back();
     require(MPI_Issend(bytes.data(), to_count(bytes.size()), MPI_BYTE, r, tag_, comm_, &sends.back()));
   }
@@ -140,9 +197,12 @@ std::vector<Comm::Message> Comm::exchange(std::vector<Packer>& to) {
 }
 
 std::vector<std::byte> Comm::all_gather_bytes(std::span<const std::byte> mine) {
-  agree();
-  ++traffic_.collectives;
-  traffic_.collective_bytes += mine.size();
+  Question question;
+  question.sums[0] = mine.size();
+  agree(question);
+  ++counts().collectives;
+  counts().collective_bytes += mine.size();
+  if (question.sums[0] == 0) return {};
   const int n = to_count(mine.size());
   std::vector<int> counts(n_ranks()), begins(n_ranks());
   MPI_Request request = MPI_REQUEST_NULL;
@@ -166,38 +226,97 @@ std::uint64_t Comm::sum(std::uint64_t mine) {
 }
 
 void Comm::sum(std::span<std::uint64_t> values) {
-  agree();
-  ++traffic_.collectives;
-  traffic_.collective_bytes += values.size_bytes();
-  MPI_Request request = MPI_REQUEST_NULL;
-  require(MPI_Iallreduce(MPI_IN_PLACE, values.data(), to_count(values.size()), MPI_UINT64_T, MPI_SUM, comm_,
-                         &request));
-  wait(request);
+  sum_and_min(values, std::numeric_limits<double>::infinity());
 }
 
-double Comm::min(double mine) {
-  agree();
-  ++traffic_.collectives;
-  traffic_.collective_bytes += sizeof(double);
-  MPI_Request request = MPI_REQUEST_NULL;
-  double least = mine;
-  require(MPI_Iallreduce(&mine, &least, 1, MPI_DOUBLE, MPI_MIN, comm_, &request));
-  wait(request);
-  return least;
+double Comm::min(double mine) { return sum_and_min({}, mine); }
+
+double Comm::sum_and_min(std::span<std::uint64_t> values, double mine) {
+  HFR_REQUIRE(values.size() <= kMostSums, "more sums at once than a question has room for");
+  Question question;
+  std::copy(values.begin(), values.end(), question.sums.begin());
+  question.least = mine;
+  agree(question);
+  ++counts().collectives;
+  counts().collective_bytes += sizeof(Question);
+  std::copy_n(question.sums.begin(), values.size(), values.begin());
+  return question.least;
 }
 
-std::vector<std::byte> Comm::from_first(std::vector<std::byte> bytes) {
+Block Comm::hand_out(const std::function<Block(int)>& make) {
   agree();
-  ++traffic_.collectives;
-  std::uint64_t n = bytes.size();
+  ++counts().exchanges;
+  tag_ = (tag_ + 1) % kTags;
+  if (rank_ != 0) return receive_block();
+  Block before, block;  // of the rank before, while that of this one is made
+  std::vector<MPI_Request> requests;
+  const auto wait_for_all = [&] {
+    for (MPI_Request& request : requests) wait(request);
+    requests.clear();
+  };
+  for (int r = 1; r < size_; ++r) {
+    try {
+      block = make(r);
+    } catch (...) {  // nobody may wait for what does not come
+      wait_for_all();
+      for (; r < size_; ++r) send_block(r, {}, requests);
+      wait_for_all();
+      throw;
+    }
+    wait_for_all();
+    before = std::move(block);
+    send_block(r, before, requests);
+  }
+  Block mine = make(0);
+  wait_for_all();
+  return mine;
+}
+
+/// How long it is, then, as soon as there is room for it, the block, in pieces that MPI can count.
+void Comm::send_block(int to, const Block& block, std::vector<MPI_Request>& requests) {
+  std::uint64_t size = block.size();
   MPI_Request request = MPI_REQUEST_NULL;
-  require(MPI_Ibcast(&n, 1, MPI_UINT64_T, 0, comm_, &request));
+  require(MPI_Isend(&size, 1, MPI_UINT64_T, to, tag_, comm_, &request));
   wait(request);
-  bytes.resize(n);
-  require(MPI_Ibcast(bytes.data(), to_count(bytes.size()), MPI_BYTE, 0, comm_, &request));
+  if (size == 0) return;
+  char has_room = 0;
+  require(MPI_Irecv(&has_room, 1, MPI_CHAR, to, tag_, comm_, &request));
   wait(request);
-  if (rank_ == 0) traffic_.collective_bytes += n;
-  return bytes;
+  if (!has_room) return;
+  ++counts().messages;
+  counts().bytes += size;
+  for (std::size_t at = 0; at < block.size(); at += kPiece) {
+    requests.emplace_back();
+    require(MPI_Isend(block.data() + at, to_count(std::min(kPiece, block.size() - at)), MPI_BYTE, to, tag_,
+                      comm_, &requests.back()));
+  }
+}
+
+Block Comm::receive_block() {
+  std::uint64_t size = 0;
+  MPI_Request request = MPI_REQUEST_NULL;
+  require(MPI_Irecv(&size, 1, MPI_UINT64_T, 0, tag_, comm_, &request));
+  wait(request);
+  if (size == 0) {  // rank 0 has failed and says so now
+    agree();
+    throw InternalError("rank 0 sends nothing");
+  }
+  Block block;
+  char has_room = 1;
+  try {
+    block = Block(size);
+  } catch (const std::bad_alloc&) {
+    has_room = 0;
+  }
+  require(MPI_Isend(&has_room, 1, MPI_CHAR, 0, tag_, comm_, &request));
+  wait(request);
+  if (!has_room) throw ResourceLimit("no memory for this rank's part of the mesh");
+  for (std::size_t at = 0; at < block.size(); at += kPiece) {
+    require(MPI_Irecv(block.data() + at, to_count(std::min(kPiece, block.size() - at)), MPI_BYTE, 0, tag_,
+                      comm_, &request));
+    wait(request);
+  }
+  return block;
 }
 
 }  // namespace hfr::mpi

@@ -3,122 +3,19 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
+#include "Distributed/Cut.hh"
+#include "Distributed/PartMessage.hh"
 #include "HalfFace/Writer.hh"
 
 namespace hfr::mpi {
 namespace {
 
-constexpr Index kNone = CellHandle::kInvalid;
-
 std::uint64_t face_number(std::uint64_t cell, int corner) {
   return 4 * cell + static_cast<std::uint64_t>(corner);
 }
-
-/// Owners within one edge, and within two, of the vertices of these cells; others stay as they are.
-template <class Cells, class Owner>
-void find_near(const TetMesh& mesh, const Cells& cells, const Owner& owner, RankSets& one, RankSets& two) {
-  const auto for_live = [&](auto&& body) {
-    for (Index c : cells)
-      if (!mesh.is_deleted(CellHandle(c))) body(mesh.cell(CellHandle(c)).v);
-  };
-  for_live([&](const auto& v) {
-    for (VertexHandle u : v) {
-      one.set_only(u.idx(), owner(u));
-      two.set_only(u.idx(), owner(u));
-    }
-  });
-  for_live([&](const auto& v) {
-    for (VertexHandle u : v)
-      for (VertexHandle w : v) one.add(u.idx(), owner(w));
-  });
-  for_live([&](const auto& v) {
-    for (VertexHandle u : v)
-      for (VertexHandle w : v) two.add(u.idx(), one[w.idx()]);
-  });
-}
-
-std::vector<Index> all_slots(const TetMesh& mesh) {
-  std::vector<Index> slots(mesh.n_cells());
-  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = static_cast<Index>(i);
-  return slots;
-}
-
-/// The message that makes a part of the cells that a rank holds. `place`: scratch, an entry a slot and a
-/// vertex of the whole, all kNone before and after.
-class PartMessage {
- public:
-  PartMessage(const TetMesh& mesh, const Workspace& work, std::span<const int> owner)
-      : mesh_(mesh),
-        work_(work),
-        owner_(owner),
-        cell_(mesh.n_cells(), kNone),
-        vertex_(mesh.n_vertices(), kNone) {}
-
-  void write(std::span<const Index> cells, Packer& out) {
-    std::vector<Index> vertices;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      cell_[cells[i]] = static_cast<Index>(i);
-      for (VertexHandle v : mesh_.cell(CellHandle(cells[i])).v) {
-        if (vertex_[v.idx()] == kNone) vertices.push_back(v.idx());
-        vertex_[v.idx()] = 0;
-      }
-    }
-    std::sort(vertices.begin(), vertices.end());
-    for (std::size_t i = 0; i < vertices.size(); ++i) vertex_[vertices[i]] = static_cast<Index>(i);
-    write_vertices(vertices, out);
-    write_cells(cells, out);
-    for (Index c : cells) cell_[c] = kNone;
-    for (Index v : vertices) vertex_[v] = kNone;
-  }
-
- private:
-  template <class T, class Items, class Value>
-  static void put(Packer& out, const Items& items, Value&& value) {
-    std::vector<T> values;
-    values.reserve(items.size());
-    for (Index i : items) values.push_back(value(i));
-    out.put_all(values);
-  }
-  void write_vertices(std::span<const Index> vertices, Packer& out) const {
-    put<std::uint64_t>(out, vertices, [](Index v) { return std::uint64_t{v}; });
-    put<Vec3>(out, vertices, [&](Index v) { return mesh_.points()[v]; });
-    put<int>(out, vertices, [&](Index v) { return owner_[v]; });
-    put<std::uint32_t>(out, vertices, [&](Index v) { return work_.star_size[v]; });
-    put<std::uint32_t>(out, vertices, [&](Index v) { return work_.changed[v]; });
-    put<std::uint8_t>(out, vertices, [&](Index v) { return work_.frozen[v]; });
-    put<Index>(out, vertices, [&](Index v) {
-      const CellHandle c = mesh_.incident_cell(VertexHandle(v));
-      return c.is_valid() ? cell_[c.idx()] : kNone;
-    });
-  }
-  void write_cells(std::span<const Index> cells, Packer& out) const {
-    using Four = std::array<Index, 4>;
-    put<std::uint64_t>(out, cells, [](Index c) { return std::uint64_t{c}; });
-    put<Four>(out, cells, [&](Index c) {
-      const auto& v = mesh_.cell(CellHandle(c)).v;
-      return Four{vertex_[v[0].idx()], vertex_[v[1].idx()], vertex_[v[2].idx()], vertex_[v[3].idx()]};
-    });
-    put<Four>(out, cells, [&](Index c) {
-      Four mates;
-      for (std::size_t k = 0; k < 4; ++k) {
-        const HalfFaceHandle m = mesh_.cell(CellHandle(c)).mate[k];
-        const Index there = m.is_valid() ? cell_[cell_of(m).idx()] : kNone;
-        mates[k] = there == kNone ? kNone : 4 * there + static_cast<Index>(corner_of(m));
-      }
-      return mates;
-    });
-    put<double>(out, cells, [&](Index c) { return work_.quality[c]; });
-    put<std::uint8_t>(out, cells, [&](Index c) { return work_.pending[c]; });
-    put<int>(out, cells, [&](Index c) { return mesh_.region(CellHandle(c)); });
-  }
-
-  const TetMesh& mesh_;
-  const Workspace& work_;
-  std::span<const int> owner_;
-  std::vector<Index> cell_, vertex_;
-};
 
 }  // namespace
 
@@ -134,115 +31,59 @@ std::string DistributedMesh::reason_against(const TetMesh& mesh, const Workspace
   return {};
 }
 
-void DistributedMesh::scatter(const TetMesh* mesh, const Workspace* work, std::span<const int> owner) {
-  std::vector<Packer> to(comm_.n_ranks());
+void DistributedMesh::scatter(const TetMesh* mesh, const Workspace* work, std::span<const int> owner,
+                              par::Policy policy) {
+  std::optional<Cut> cut;
   if (comm_.rank() == 0) {
     const std::string reason = reason_against(*mesh, *work);
     HFR_REQUIRE(reason.empty(), "a mesh with " + reason + " cannot be cut among ranks yet");
-    RankSets one(mesh->n_vertices(), comm_.size()), two(mesh->n_vertices(), comm_.size());
-    find_near(
-        *mesh, all_slots(*mesh), [&](VertexHandle v) { return owner[v.idx()]; }, one, two);
-    std::vector<std::vector<Index>> held(comm_.n_ranks());
-    RankSet set(one.words());
-    for (std::size_t c = 0; c < mesh->n_cells(); ++c) {
-      if (mesh->is_deleted(CellHandle(c))) continue;
-      set.clear();
-      for (VertexHandle v : mesh->cell(CellHandle(c)).v) set.add(two[v.idx()]);
-      for_ranks(set.bits(),
-                [&](int r) { held[static_cast<std::size_t>(r)].push_back(static_cast<Index>(c)); });
-    }
-    std::vector<std::uint64_t> free;
-    for (CellHandle c : mesh->free_cells()) free.push_back(c.idx());
-    PartMessage message(*mesh, *work, owner);
-    for (std::size_t r = 0; r < comm_.n_ranks(); ++r) {
-      to[r].put(std::uint64_t{mesh->n_cells()});
-      to[r].put_all(free);
-      to[r].put(work->clock);
-      to[r].put(work->floor);
-      to[r].put(static_cast<std::uint8_t>(work->holds_damage ? 1 : 0));
-      message.write(held[r], to[r]);
-      held[r] = {};
-    }
+    cut.emplace(*mesh, *work, owner, comm_.size(), policy);
   }
-  build_part(comm_.exchange(to).at(0).bytes);
+  Block mine = comm_.hand_out([&](int rank) { return cut->message(rank); });
+  cut.reset();
+  build_part(mine, policy);
 }
 
-void DistributedMesh::build_part(std::span<const std::byte> bytes) {
-  using Four = std::array<Index, 4>;
-  Unpacker in(bytes);
-  n_slots_ = in.get<std::uint64_t>();
-  free_ = in.get_all<std::uint64_t>();
+void DistributedMesh::build_part(Block& block, par::Policy policy) {
+  const PartHeader header = PartArrays::header_of(block);
+  const PartArrays in = PartArrays::in(block);
+  n_slots_ = header.n_slots;
+  free_.assign(in.free.begin(), in.free.end());
   work_ = Workspace();
-  clock_at_scatter_ = work_.clock = in.get<std::uint32_t>();
-  work_.floor = in.get<double>();
-  work_.holds_damage = in.get<std::uint8_t>() != 0;
-  vertex_number_ = in.get_all<std::uint64_t>();
-  mesh_ = TetMesh();
-  mesh_.reserve_vertices(vertex_number_.size());
-  for (Vec3 p : in.get_all<Vec3>()) mesh_.add_vertex(p);
-  owner_ = in.get_all<int>();
-  work_.star_size = in.get_all<std::uint32_t>();
-  work_.changed = in.get_all<std::uint32_t>();
-  work_.frozen = in.get_all<std::uint8_t>();
-  TetMesh::Writer writer(mesh_);
-  const auto incident = in.get_all<Index>();
-  cell_number_ = in.get_all<std::uint64_t>();
+  clock_at_scatter_ = work_.clock = header.clock;
+  work_.floor = header.floor;
+  work_.holds_damage = header.holds_damage != 0;
+  work_.star_size.assign(in.star_size.begin(), in.star_size.end());
+  work_.changed.assign(in.changed.begin(), in.changed.end());
+  work_.frozen.assign(in.frozen.begin(), in.frozen.end());
+  work_.quality.assign(in.quality.begin(), in.quality.end());
+  work_.pending.assign(in.pending.begin(), in.pending.end());
+  work_.claim.assign(in.quality.size(), kUnclaimed);
+  vertex_number_.assign(in.vertex_number.begin(), in.vertex_number.end());
+  owner_.assign(in.owner.begin(), in.owner.end());
+  cell_number_.assign(in.cell_number.begin(), in.cell_number.end());
   later_.clear();
   n_sorted_ = cell_number_.size();
+  mesh_ = TetMesh();
+  mesh_.reserve_vertices(in.point.size());
+  for (Vec3 p : in.point) mesh_.add_vertex(p);
+  TetMesh::Writer writer(mesh_);
+  const auto handle = []<class H>(Index i, H) { return i == PartArrays::kNothing ? H() : H(i); };
+  for (std::size_t v = 0; v < in.incident.size(); ++v)
+    writer.set_incident_cell(VertexHandle(v), handle(in.incident[v], CellHandle()));
   writer.resize_cells(n_sorted_);
-  const auto corners = in.get_all<Four>();
-  const auto mates = in.get_all<Four>();
-  for (std::size_t v = 0; v < incident.size(); ++v)
-    writer.set_incident_cell(VertexHandle(v), incident[v] == kNone ? CellHandle() : CellHandle(incident[v]));
-  for (std::size_t c = 0; c < n_sorted_; ++c) {
+  par::for_each(policy, n_sorted_, [&](std::size_t c) {
     Cell& cell = writer.cell(CellHandle(c));
     for (std::size_t k = 0; k < 4; ++k) {
-      cell.v[k] = VertexHandle(corners[c][k]);
-      cell.mate[k] = mates[c][k] == kNone ? HalfFaceHandle() : HalfFaceHandle(mates[c][k]);
-      if (!mesh_.incident_cell(cell.v[k]).is_valid()) writer.set_incident_cell(cell.v[k], CellHandle(c));
+      cell.v[k] = VertexHandle(in.corners[c][k]);
+      cell.mate[k] = handle(in.mates[c][k], HalfFaceHandle());
     }
-  }
-  work_.quality = in.get_all<double>();
-  work_.pending = in.get_all<std::uint8_t>();
-  work_.claim.assign(n_sorted_, kUnclaimed);
-  const auto regions = in.get_all<int>();
-  for (std::size_t c = 0; c < n_sorted_; ++c) mesh_.set_region(CellHandle(c), regions[c]);
-  start_zone();
-}
-
-void DistributedMesh::start_zone() {
-  near1_ = near2_ = RankSets(mesh_.n_vertices(), comm_.size());
-  zone_.clear();
-  rim_.clear();
-  open_.clear();
-  for (std::size_t c = 0; c < mesh_.n_cells(); ++c) note_created(CellHandle(c));
-  update_zone();
-  note_told();
-}
-
-void DistributedMesh::update_zone() {
-  while (true) {
-    std::vector<VertexHandle> inside;  // so far: cells of theirs may be missing in the zone
-    for (Index c : zone_)
-      if (!mesh_.is_deleted(CellHandle(c)))
-        for (VertexHandle v : mesh_.cell(CellHandle(c)).v)
-          if (is_own(v) && is_inside(v)) inside.push_back(v);
-    std::sort(inside.begin(), inside.end());
-    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
-    find_near(
-        mesh_, zone_, [&](VertexHandle v) { return owner(v); }, near1_, near2_);
-    std::erase_if(inside, [&](VertexHandle v) { return is_inside(v); });
-    if (inside.empty()) break;
-    for (VertexHandle v : inside)
-      for (CellHandle c : mesh_.vertex_cells(v)) zone_.push_back(c.idx());
-    std::sort(zone_.begin(), zone_.end());
-    zone_.erase(std::unique(zone_.begin(), zone_.end()), zone_.end());
-  }
-  std::erase_if(zone_, [&](Index c) {
-    if (mesh_.is_deleted(CellHandle(c))) return true;
-    const auto& v = mesh_.cell(CellHandle(c)).v;
-    return std::all_of(v.begin(), v.end(), [&](VertexHandle u) { return is_inside(u); });
   });
+  for (std::size_t c = 0; c < in.region.size(); ++c) mesh_.set_region(CellHandle(c), in.region[c]);
+  start_zone();
+  for (Index c : rim_)  // at the edge of the part the incident cell may be one that is not here
+    for (VertexHandle v : mesh_.cell(CellHandle(c)).v)
+      if (!mesh_.incident_cell(v).is_valid()) writer.set_incident_cell(v, CellHandle(c));
 }
 
 VertexHandle DistributedMesh::vertex_at(std::uint64_t number) const {
@@ -272,6 +113,7 @@ CellHandle DistributedMesh::slot_of(std::uint64_t number) {
 
 void DistributedMesh::detach(CellHandle c) {
   TetMesh::Writer writer(mesh_);
+  note_changed(mesh_.cell(c).v);
   for (HalfFaceHandle h : mesh_.cell_halffaces(c)) {
     const HalfFaceHandle m = mesh_.opposite_halfface(h);
     if (!m.is_valid() || mesh_.opposite_halfface(m) != h) continue;
@@ -280,25 +122,6 @@ void DistributedMesh::detach(CellHandle c) {
   }
   writer.mark_deleted(c);
   work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
-}
-
-void DistributedMesh::note_created(CellHandle c) {
-  const auto& v = mesh_.cell(c).v;
-  zone_.push_back(c.idx());
-  if (std::none_of(v.begin(), v.end(), [&](VertexHandle u) { return is_own(u); })) rim_.push_back(c.idx());
-}
-
-void DistributedMesh::prune() {
-  std::erase_if(rim_, [&](Index i) {
-    const CellHandle c(i);
-    if (mesh_.is_deleted(c)) return true;
-    const auto& v = mesh_.cell(c).v;
-    if (std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return near2_.has(u.idx(), comm_.rank()); }))
-      return false;
-    detach(c);
-    return true;
-  });
-  open_.clear();  // behind them is nothing that this part holds
 }
 
 auto DistributedMesh::record(VertexHandle v) const -> VertexRecord {
@@ -341,9 +164,9 @@ void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<co
   match_open_faces();
   TetMesh::Writer writer(mesh_);
   for (const VertexRecord& r : vertices) {
-    if (!r.of_owner) continue;
     const VertexHandle v = vertex_at(r.number);
-    mesh_.set_point(v, r.point);
+    mesh_.set_point(v, r.point);  // whoever holds a vertex has its point
+    if (!r.of_owner) continue;
     work_.star_size[v.idx()] = r.star_size;
     work_.changed[v.idx()] = r.changed;
     const CellHandle c = r.incident == kNoNumber ? CellHandle() : cell_at(r.incident);
@@ -363,6 +186,7 @@ void DistributedMesh::write_cells(std::span<const CellRecord> cells) {
     mesh_.set_region(c, r.region);
     work_.quality[c.idx()] = r.quality;
     work_.pending[c.idx()] = r.pending;
+    work_.touch({&c, 1});
     for (VertexHandle v : corners) {
       const CellHandle incident = mesh_.incident_cell(v);
       if (!incident.is_valid() || mesh_.is_deleted(incident) || !mesh_.cell(incident).has(v))
@@ -471,11 +295,18 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> records) {
   for (std::size_t i = 0; i < n_old; ++i)
     if (mesh_.is_deleted(VertexHandle(i))) writer.mark_deleted(to[i]);
   RankSets one(n, comm_.size()), two(n, comm_.size()), known(n, comm_.size());
-  for (std::size_t i = 0; i < n_old; ++i) {
-    known.add(to[i].idx(), told_[i]);
-    one.add(to[i].idx(), near1_[i]);
-    two.add(to[i].idx(), near2_[i]);
+  for (std::size_t v = 0; v < n; ++v) {
+    one.set_only(v, owners[v]);
+    two.set_only(v, owners[v]);
   }
+  for (std::size_t i = 0; i < n_old; ++i) {
+    known.set(to[i].idx(), told_[i]);
+    one.set(to[i].idx(), near1_[i]);
+    two.set(to[i].idx(), near2_[i]);
+  }
+  for (auto* list : {&dirty_, &renewed_})
+    for (VertexHandle& v : *list) v = to[v.idx()];
+  marks_.assign(n, 0);
   near1_ = std::move(one);
   near2_ = std::move(two);
   told_ = std::move(known);
@@ -487,60 +318,80 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> records) {
   work_.frozen = std::move(frozen);
 }
 
-void DistributedMesh::gather(TetMesh* mesh, Workspace* work, Gather what) {
-  std::vector<VertexRecord> vertices;
-  std::vector<CellRecord> cells;
-  const auto has_changed = [&](VertexHandle v) {
-    return what == Gather::kEverything || work_.changed[v.idx()] > clock_at_scatter_;
-  };
-  for (std::size_t i = 0; i < mesh_.n_vertices(); ++i) {
+void DistributedMesh::gather(TetMesh* mesh, Workspace* work, Gather what, par::Policy policy) {
+  const bool all = what == Gather::kEverything;
+  const auto has_changed = [&](VertexHandle v) { return work_.changed[v.idx()] > clock_at_scatter_; };
+  const std::vector<Index> vertices = par::compact<Index>(policy, mesh_.n_vertices(), [&](std::size_t i) {
     const VertexHandle v(i);
-    if (is_own(v) && (has_changed(v) || mesh_.is_deleted(v))) vertices.push_back(record(v));
-  }
-  for (std::size_t i = 0; i < mesh_.n_cells(); ++i) {
+    return is_own(v) && (all || has_changed(v) || mesh_.is_deleted(v));
+  });
+  // What is written to a cell, or behind one of its faces, leaves three changed corners at least.
+  const std::vector<Index> cells = par::compact<Index>(policy, mesh_.n_cells(), [&](std::size_t i) {
     const CellHandle c(i);
-    if (mesh_.is_deleted(c) || !is_own(c)) continue;
+    if (mesh_.is_deleted(c) || !is_own(c)) return false;
     const auto& v = mesh_.cell(c).v;
-    if (std::any_of(v.begin(), v.end(), has_changed)) cells.push_back(record(c));
-  }
+    return all || std::count_if(v.begin(), v.end(), has_changed) >= 3;
+  });
+  std::vector<VertexRecord> vertex_records(vertices.size());
+  par::for_each(policy, vertices.size(),
+                [&](std::size_t i) { vertex_records[i] = record(VertexHandle(vertices[i])); });
+  std::vector<CellRecord> cell_records(cells.size());
+  par::for_each(policy, cells.size(), [&](std::size_t i) { cell_records[i] = record(CellHandle(cells[i])); });
   std::vector<Packer> to(comm_.n_ranks());
-  to[0].put_all(vertices);
-  to[0].put_all(cells);
+  if (comm_.rank() != 0) {
+    to[0].put_all(vertex_records);
+    to[0].put_all(cell_records);
+  }
   const auto came = comm_.exchange(to);
   if (comm_.rank() != 0) return;
-  TetMesh::Writer writer(*mesh);
+  write_slots(*mesh, *work);
+  write_whole(*mesh, *work, vertex_records, cell_records, policy);
+  for (const Comm::Message& message : came) {
+    Unpacker in(message.bytes);
+    const auto theirs = in.get_all<VertexRecord>();
+    write_whole(*mesh, *work, theirs, in.get_all<CellRecord>(), policy);
+  }
+}
+
+/// The slots of the whole, and which of them are free.
+void DistributedMesh::write_slots(TetMesh& mesh, Workspace& work) const {
+  TetMesh::Writer writer(mesh);
   writer.resize_cells(n_slots_);
-  work->grow(*mesh);
-  work->clock = work_.clock;
-  work->all_touched = true;
+  work.grow(mesh);
+  work.clock = work_.clock;
+  work.all_touched = true;
   writer.free_cells().clear();
   for (std::uint64_t c : free_) {
     writer.free_cells().push_back(CellHandle(c));
     writer.mark_deleted(CellHandle(c));
-    work->quality[c] = std::numeric_limits<double>::infinity();
+    work.quality[c] = std::numeric_limits<double>::infinity();
   }
-  for (const Comm::Message& message : came) {
-    Unpacker in(message.bytes);
-    for (const VertexRecord& r : in.get_all<VertexRecord>()) {
-      const VertexHandle v(r.number);
-      mesh->set_point(v, r.point);
-      writer.set_incident_cell(v, r.incident == kNoNumber ? CellHandle() : CellHandle(r.incident));
-      work->star_size[v.idx()] = r.star_size;
-      work->changed[v.idx()] = r.changed;
-      if (r.deleted) writer.mark_deleted(v);
-    }
-    for (const CellRecord& r : in.get_all<CellRecord>()) {
-      const CellHandle c(r.number);
-      Cell& cell = writer.cell(c);
-      for (std::size_t k = 0; k < 4; ++k) {
-        cell.v[k] = VertexHandle(r.v[k]);
-        cell.mate[k] = r.mate[k] == kNoNumber ? HalfFaceHandle() : HalfFaceHandle(r.mate[k]);
-      }
-      mesh->set_region(c, r.region);
-      work->quality[c.idx()] = r.quality;
-      work->pending[c.idx()] = r.pending;
-    }
+}
+
+/// What one rank tells of its own vertices and cells, in the mesh of the whole.
+void DistributedMesh::write_whole(TetMesh& mesh, Workspace& work, std::span<const VertexRecord> vertices,
+                                  std::span<const CellRecord> cells, par::Policy policy) const {
+  TetMesh::Writer writer(mesh);
+  for (const VertexRecord& r : vertices) {
+    const VertexHandle v(r.number);
+    mesh.set_point(v, r.point);
+    writer.set_incident_cell(v, r.incident == kNoNumber ? CellHandle() : CellHandle(r.incident));
+    work.star_size[v.idx()] = r.star_size;
+    work.changed[v.idx()] = r.changed;
+    if (r.deleted) writer.mark_deleted(v);
   }
+  par::for_each(policy, cells.size(), [&](std::size_t i) {
+    const CellRecord& r = cells[i];
+    const CellHandle c(r.number);
+    Cell& cell = writer.cell(c);
+    for (std::size_t k = 0; k < 4; ++k) {
+      cell.v[k] = VertexHandle(r.v[k]);
+      cell.mate[k] = r.mate[k] == kNoNumber ? HalfFaceHandle() : HalfFaceHandle(r.mate[k]);
+    }
+    mesh.set_region(c, r.region);
+    work.quality[c.idx()] = r.quality;
+    work.pending[c.idx()] = r.pending;
+  });
 }
 
 }  // namespace hfr::mpi

@@ -42,7 +42,8 @@ class DistributedMesh {
 
   /// Hands out the mesh and the workspace of rank 0, attached to it and with its qualities; `owner`: of each
   /// vertex, see partition(). What other ranks pass is not looked at. All take part.
-  void scatter(const TetMesh* mesh, const Workspace* work, std::span<const int> owner);
+  void scatter(const TetMesh* mesh, const Workspace* work, std::span<const int> owner,
+               par::Policy policy = {});
 
   /// What gather() brings.
   enum class Gather : std::uint8_t {
@@ -52,7 +53,7 @@ class DistributedMesh {
   /// Brings the parts together in the mesh and workspace of rank 0, which have the vertices, labels and
   /// properties that were handed out. The mesh is then what the same passes make of it in shared memory:
   /// points, slots, mates, incident cells, free list. All take part; the parts stay as they are.
-  void gather(TetMesh* mesh, Workspace* work, Gather what);
+  void gather(TetMesh* mesh, Workspace* work, Gather what, par::Policy policy = {});
 
   Comm& comm() const { return comm_; }
   TetMesh& part() { return mesh_; }
@@ -83,19 +84,26 @@ class DistributedMesh {
   const RankSets& within_two() const { return near2_; }
   /// within_two() as it was when other ranks were last told of all cells round v.
   std::span<const std::uint64_t> told(VertexHandle v) const { return told_[v.idx()]; }
-  void note_told() { told_ = near2_; }
+  void note_told();
+  /// Own vertices whose within_two() may be another than told().
+  std::span<const VertexHandle> renewed() const { return renewed_; }
   /// True where no vertex within two edges is another rank's.
   bool is_inside(VertexHandle v) const { return near2_.is_only(v.idx(), comm_.rank()); }
   /// Slots that hold, or held, a cell with a vertex that is not inside.
   std::span<const Index> zone() const { return zone_; }
   /// A cell has come that may be in the zone.
   void note_created(CellHandle c);
+  /// Cells with these vertices have come or gone.
+  void note_changed(std::span<const VertexHandle> vertices) {
+    dirty_.insert(dirty_.end(), vertices.begin(), vertices.end());
+  }
   /// Free slots of the whole, in the order of TetMesh::free_cells(): the same on all ranks.
   std::vector<std::uint64_t>& free_slots() { return free_; }
   std::uint64_t& n_slots() { return n_slots_; }
   /// The slot of that number, a new deleted one if need be.
   CellHandle slot_of(std::uint64_t number);
-  /// After cells of zone() have changed: near() and within_two(), and zone() without what is not in it.
+  /// near() and within_two() after what was noted, and zone() without what is not in it. O(zone), with the
+  /// work on sets where cells have come or gone.
   void update_zone();
   /// Takes out the cells without a vertex within two edges of own ones.
   void prune();
@@ -125,13 +133,19 @@ class DistributedMesh {
   void apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells);
 
  private:
-  void build_part(std::span<const std::byte> bytes);
+  void build_part(Block& block, par::Policy policy);
   void insert_vertices(std::span<const VertexRecord> fresh);
   void write_cells(std::span<const CellRecord> cells);
   void link(std::span<const CellRecord> cells);
   void match_open_faces();
   bool see_each_other(HalfFaceHandle h, HalfFaceHandle g) const;
   void start_zone();
+  void put_into_zone(CellHandle c);
+  template <class Fill>
+  std::vector<VertexHandle> renew(RankSets& sets, std::span<const VertexHandle> vertices, Fill&& fill);
+  void write_slots(TetMesh& mesh, Workspace& work) const;
+  void write_whole(TetMesh& mesh, Workspace& work, std::span<const VertexRecord> vertices,
+                   std::span<const CellRecord> cells, par::Policy policy) const;
 
   Comm& comm_;
   TetMesh mesh_;
@@ -144,6 +158,8 @@ class DistributedMesh {
   RankSets near1_, near2_, told_;
   std::vector<HalfFaceHandle> open_;  // faces behind which something may come
   std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
+  std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
+  std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
   std::uint64_t n_slots_ = 0;
   std::vector<std::uint64_t> free_;
   std::uint32_t clock_at_scatter_ = 0;

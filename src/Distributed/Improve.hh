@@ -3,7 +3,11 @@
 #define HFR_DISTRIBUTED_IMPROVE_HH
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "hfremesh/Distributed/Comm.hh"
 #include "hfremesh/Distributed/Partition.hh"
@@ -12,12 +16,28 @@
 
 namespace hfr::mpi {
 
+/// What one rank has done.
+struct RankFigures {
+  PerPhase<Traffic> traffic{};
+  PerPhase<double> seconds{};
+  std::uint64_t n_rounds = 0;    ///< shared rounds and smoothing passes
+  std::uint64_t peak_bytes = 0;  ///< largest resident memory; 0 where the system does not tell
+  /// Of its part when it was handed out last: own cells, all, and those within two edges of another's vertex.
+  std::uint64_t n_own = 0, n_held = 0, n_border = 0;
+};
 /// How ranks share the work. The mesh that comes out does not depend on it.
 struct Sharing {
   Partition partition = Partition::kCoordinates;
-  /// Cells in focus from which on a pass is done by all ranks: cutting the mesh and putting it together takes
-  /// about as long as a few passes over all of it.
+  /// Threads of each rank in what all ranks do; 0: as many as the options of the run say, which are those of
+  /// rank 0 while the others wait.
+  int threads = 0;
+  /// Cells in focus from which on a pass is done by all ranks; also one of so many cells of the mesh. To hand
+  /// the mesh out and to put it together takes as long as about that many cells take to be mended on one
+  /// thread (docs/distributed.md). Counts decide and no clock, so the same passes are shared each time.
   std::size_t least_cells = 1'000;
+  std::size_t least_one_in = 32;
+  /// Where it is set: told on rank 0, at the end of improve(), of each rank.
+  std::function<void(std::span<const RankFigures>)> tell_figures = {};
 };
 
 /// hfr::improve() with the same bits, some passes done by all ranks of the communicator: those of the polish

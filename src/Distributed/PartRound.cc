@@ -40,8 +40,9 @@ struct Decision {
 
 auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain)
     -> Selected {
-  announce(candidates);
-  decide(candidates);
+  const Comm::InPhase phase(comm_, Phase::kSelect);
+  const bool is_anyone_told = announce(candidates);
+  decide(candidates, is_anyone_told);
   Selected selected;
   for (std::size_t e = 0; e < entries_.size(); ++e)
     if (entries_[e].state == State::kWon) selected.winners.push_back({entries_[e].own, entries_[e].seed, {}});
@@ -53,8 +54,9 @@ auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lo
 }
 
 /// Tells each rank of the candidates that have a vertex within one edge of its own ones: those are all that
-/// share a cell with a candidate of that rank, and all that it has to commit.
-void PartRound::announce(std::span<const Candidate> candidates) {
+/// share a cell with a candidate of that rank, and all that it has to commit. Returns whether any rank has
+/// told another of one.
+bool PartRound::announce(std::span<const Candidate> candidates) {
   const TetMesh& part = mesh_.part();
   std::vector<Packer> to(comm_.n_ranks());
   entries_.clear();
@@ -88,13 +90,15 @@ void PartRound::announce(std::span<const Candidate> candidates) {
       for (CellHandle c : candidate.scope) out.put(mesh_.number(c));
     });
   }
-  for (const Comm::Message& message : comm_.exchange(to)) hear(message);
+  const Comm::Exchanged came = comm_.exchange(to, 0);
+  for (const Comm::Message& message : came.messages) hear(message);
   const auto by_rank = [](const Entry& a, const Entry& b) {
     return std::tie(a.key, a.name) < std::tie(b.key, b.name);
   };
   const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates.size());
   std::sort(middle, entries_.end(), by_rank);
   std::inplace_merge(entries_.begin(), middle, entries_.end(), by_rank);
+  return came.n_messages > 0;
 }
 
 void PartRound::hear(const Comm::Message& message) {
@@ -122,7 +126,7 @@ void PartRound::hear(const Comm::Message& message) {
 
 /// Until all ranks know of all their candidates: decides what the decisions of others allow, and tells those
 /// who wait for it. The first undecided candidate of the whole is decided each time.
-void PartRound::decide(std::span<const Candidate> candidates) {
+void PartRound::decide(std::span<const Candidate> candidates, bool is_anyone_told) {
   undecided_.resize(entries_.size());
   for (std::size_t e = 0; e < entries_.size(); ++e) undecided_[e] = e;
   sub_rounds_ = 0;
@@ -132,8 +136,7 @@ void PartRound::decide(std::span<const Candidate> candidates) {
     std::uint64_t n_left = 0;
     for (std::size_t e : undecided_)
       if (entries_[e].own != Winner::kOfOthers && entries_[e].state == State::kUndecided) ++n_left;
-    is_done = comm_.sum(n_left) == 0;
-    tell_decisions();
+    is_done = !is_anyone_told || tell_decisions(n_left) == 0;
     for (std::size_t e : undecided_)
       if (entries_[e].own == Winner::kOfOthers && entries_[e].state == State::kWon)
         for (CellHandle c : entries_[e].scope) mesh_.work().claim[c.idx()] = static_cast<std::uint32_t>(e);
@@ -173,7 +176,8 @@ void PartRound::sweep(std::span<const Candidate> candidates) {
         if (claim[c.idx()] == e) claim[c.idx()] = kUnclaimed;
 }
 
-void PartRound::tell_decisions() {
+/// Returns the sum of `n_left` over all ranks.
+std::uint64_t PartRound::tell_decisions(std::uint64_t n_left) {
   std::vector<Packer> to(comm_.n_ranks());
   for (std::size_t e : undecided_) {
     const Entry& entry = entries_[e];
@@ -187,7 +191,8 @@ void PartRound::tell_decisions() {
     if (entries_[e].own == Winner::kOfOthers)
       waiting.emplace_back(entries_[e].home, entries_[e].number_at_home, e);
   std::sort(waiting.begin(), waiting.end());
-  for (const Comm::Message& message : comm_.exchange(to)) {
+  const Comm::Exchanged came = comm_.exchange(to, n_left);
+  for (const Comm::Message& message : came.messages) {
     Unpacker in(message.bytes);
     while (!in.at_end()) {
       const auto decision = in.get<Decision>();
@@ -198,6 +203,7 @@ void PartRound::tell_decisions() {
       entries_[std::get<2>(*at)].state = decision.has_won ? State::kWon : State::kLost;
     }
   }
+  return came.sum;
 }
 
 /// Slots as the round in shared memory has them: in rank order, from the back of the free list, then new
@@ -222,8 +228,7 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
     if (plan.adds_vertex && plan.n_created > plan.n_removed) use.gain = plan.n_created - plan.n_removed;
     if (use.n_fresh + use.n_freed + use.loss + use.gain > 0) mine.push_back(use);
   }
-  std::vector<SlotUse> uses = comm_.all_gather(std::span<const SlotUse>(mine));
-  const std::vector<std::uint64_t> freed = comm_.all_gather(std::span<const std::uint64_t>(my_freed));
+  const auto [uses, freed] = gather_uses(mine, my_freed);
   std::vector<std::size_t> order(uses.size()), first_freed(uses.size());
   std::size_t n_freed = 0, lost = 0, gained = 0;
   for (std::size_t i = 0; i < uses.size(); ++i) {
@@ -244,7 +249,7 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
     while (e < entries_.size() && entries_[e].state != State::kWon) ++e;
   };
   for (std::size_t i : order) {
-    SlotUse& use = uses[i];
+    const SlotUse& use = uses[i];
     for (skip(); e < entries_.size() && rank_of(entries_[e]) < rank_of(use); skip()) ++e, ++w;
     const bool is_here = e < entries_.size() && rank_of(entries_[e]) == rank_of(use);
     if (!all_stay && (use.loss > may_lose || use.gain > may_gain)) {
@@ -273,6 +278,24 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
   return n_given_up;
 }
 
+/// Of all ranks, in their order.
+auto PartRound::gather_uses(std::span<const SlotUse> mine, std::span<const std::uint64_t> freed) -> Uses {
+  Packer out;
+  if (!mine.empty()) {
+    out.put_all(mine);
+    out.put_all(freed);
+  }
+  const std::vector<std::byte> bytes = comm_.all_gather(std::span<const std::byte>(out.bytes()));
+  Uses all;
+  for (Unpacker in(bytes); !in.at_end();) {
+    const auto uses = in.get_all<SlotUse>();
+    all.uses.insert(all.uses.end(), uses.begin(), uses.end());
+    const auto theirs = in.get_all<std::uint64_t>();
+    all.freed.insert(all.freed.end(), theirs.begin(), theirs.end());
+  }
+  return all;
+}
+
 /// Before the commit: whose cells the winner takes away. A rank answers for the cells round its own vertices.
 void PartRound::note_pending(std::span<const Candidate> candidates, const Entry& entry) {
   Pending pending;
@@ -287,18 +310,23 @@ void PartRound::note_pending(std::span<const Candidate> candidates, const Entry&
 }
 
 void PartRound::finish(std::span<const Commit> commits) {
+  const Comm::InPhase phase(comm_, Phase::kBorder);
   bool is_touched = false;
   for (std::size_t w = 0; w < commits.size(); ++w) {
     if (!pending_[w].in_zone) continue;
     is_touched = true;
+    mesh_.note_changed(pending_[w].vertices);
     for (CellHandle c : commits[w].created) mesh_.note_created(c);
   }
   // First what has changed, to whoever held it: then each rank knows all cells round the vertices that were
   // within two edges of its own. An edge that came may have brought vertices nearer, but only such; so it
   // knows whom its own are near to now.
-  is_touched = exchange(changed_cells(commits), commits) || is_touched;
+  const Outcome first = exchange(changed_cells(commits), commits, is_touched);
+  is_touched = is_touched || first.has_come;
   if (is_touched) mesh_.update_zone();
-  const bool has_come = exchange(is_touched ? new_cells() : std::vector<Push>(comm_.n_ranks()), commits);
+  if (!first.is_any_touched) return;  // nowhere
+  const bool has_come =
+      exchange(is_touched ? new_cells() : std::vector<Push>(comm_.n_ranks()), commits, false).has_come;
   if (has_come) mesh_.update_zone();
   if (!is_touched && !has_come) return;
   mesh_.prune();
@@ -331,25 +359,23 @@ auto PartRound::changed_cells(std::span<const Commit> commits) const -> std::vec
 
 /// For each rank: all cells round own vertices that have come within two edges of its own.
 auto PartRound::new_cells() const -> std::vector<Push> {
-  const TetMesh& part = mesh_.part();
   std::vector<Push> pushes(comm_.n_ranks());
-  RankSet set(mesh_.within_two().words()), now = set;
-  for (Index i : mesh_.zone()) {
-    set.clear();
-    for (VertexHandle v : part.cell(CellHandle(i)).v) {
-      if (!mesh_.is_own(v)) continue;
-      now.clear();
-      now.add(mesh_.within_two(v));
-      now.remove(mesh_.told(v));
-      set.add(now.bits());
-    }
-    for_others(set.bits(), pushes, [&](Push& push) { push.cells.push_back(CellHandle(i)); });
+  RankSet now(mesh_.within_two().words());
+  for (VertexHandle v : mesh_.renewed()) {
+    if (mesh_.part().is_deleted(v)) continue;
+    now.clear();
+    now.add(mesh_.within_two(v));
+    now.remove(mesh_.told(v));
+    if (now.empty()) continue;
+    for (CellHandle c : mesh_.part().vertex_cells(v))
+      for_others(now.bits(), pushes, [&](Push& push) { push.cells.push_back(c); });
   }
   return pushes;
 }
 
-/// Sends these and writes what comes; false when nothing does.
-bool PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> commits) {
+/// Sends these and writes what comes.
+auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> commits, bool is_touched)
+    -> Outcome {
   using VertexRecord = DistributedMesh::VertexRecord;
   using CellRecord = DistributedMesh::CellRecord;
   std::vector<Packer> to(comm_.n_ranks());
@@ -368,8 +394,9 @@ bool PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
     to[r].put_all(vertices);
     to[r].put_all(cells);
   }
-  const auto came = comm_.exchange(to);
-  if (came.empty()) return false;
+  const auto [came, n_touched, n_messages] = comm_.exchange(to, is_touched ? 1 : 0);
+  const bool is_any_touched = n_touched + n_messages > 0;
+  if (came.empty()) return {false, is_any_touched};
   std::unordered_set<std::uint64_t> done;  // removed by what was committed here
   for (const Commit& commit : commits)
     for (CellHandle c : commit.removed) done.insert(mesh_.number(c));
@@ -388,7 +415,7 @@ bool PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
     cells.insert(cells.end(), c.begin(), c.end());
   }
   mesh_.apply(vertices, cells);
-  return true;
+  return {true, is_any_touched};
 }
 
 RoundCounts PartRound::total(RoundCounts mine) {

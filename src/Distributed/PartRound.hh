@@ -64,15 +64,20 @@ class PartRound : public RoundPlace {
     bool in_zone = false;
   };
 
-  void announce(std::span<const Candidate> candidates);
+  bool announce(std::span<const Candidate> candidates);
   void hear(const Comm::Message& message);
-  void decide(std::span<const Candidate> candidates);
+  void decide(std::span<const Candidate> candidates, bool is_anyone_told);
   void sweep(std::span<const Candidate> candidates);
   std::span<const CellHandle> scope_of(const Entry& entry, std::span<const Candidate> candidates) const {
     return entry.own == Winner::kOfOthers ? std::span<const CellHandle>(entry.scope)
                                           : candidates[entry.own].scope;
   }
-  void tell_decisions();
+  std::uint64_t tell_decisions(std::uint64_t n_left);
+  struct Uses {
+    std::vector<SlotUse> uses;
+    std::vector<std::uint64_t> freed;
+  };
+  Uses gather_uses(std::span<const SlotUse> mine, std::span<const std::uint64_t> freed);
   std::size_t hand_out_slots(std::span<const Candidate> candidates, std::size_t may_lose,
                              std::size_t may_gain, std::vector<Winner>& winners);
   void note_pending(std::span<const Candidate> candidates, const Entry& entry);
@@ -91,7 +96,11 @@ class PartRound : public RoundPlace {
   }
   std::vector<Push> changed_cells(std::span<const Commit> commits) const;
   std::vector<Push> new_cells() const;
-  bool exchange(std::vector<Push>&& pushes, std::span<const Commit> commits);
+  struct Outcome {
+    bool has_come = false;        ///< something, to this rank
+    bool is_any_touched = false;  ///< the zone of some rank
+  };
+  Outcome exchange(std::vector<Push>&& pushes, std::span<const Commit> commits, bool is_touched);
 
   DistributedMesh& mesh_;
   Comm& comm_;

@@ -35,43 +35,28 @@ PartSmoothing::PartSmoothing(DistributedMesh& mesh, std::span<const VertexHandle
               });
     begin_.push_back(links_.size());
   }
-  gather_others();
 }
 
 /// Every cell with a vertex of another rank is in the zone.
-void PartSmoothing::gather_others() {
+void PartSmoothing::find_links(std::vector<Come>& came) {
   const TetMesh& part = mesh_.part();
-  std::vector<std::pair<VertexHandle, HalfFaceHandle>> pairs;
+  come_.resize(part.n_vertices(), 0);
+  for (std::size_t i = 0; i < came.size(); ++i)
+    come_[came[i].vertex.idx()] = static_cast<std::uint32_t>(i + 1);
   for (Index i : mesh_.zone()) {
     const CellHandle c(i);
     if (part.is_deleted(c)) continue;
-    for (HalfFaceHandle h : part.cell_halffaces(c)) {
-      const VertexHandle v = part.halfface_opposite_vertex(h);
-      if (!mesh_.is_own(v)) pairs.emplace_back(v, h);
-    }
+    const auto& v = part.cell(c).v;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (const std::uint32_t place = come_[v[k].idx()]; place != 0)
+        came[place - 1].link.push_back(halfface_of(c, static_cast<int>(k)));
   }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  for (const auto& [v, h] : pairs) {
-    if (others_.empty() || others_.back() != v) {
-      others_.push_back(v);
-      begin_of_others_.push_back(links_of_others_.size());
-    }
-    links_of_others_.push_back(h);
-  }
-  begin_of_others_.push_back(links_of_others_.size());
+  for (const Come& one : came) come_[one.vertex.idx()] = 0;
 }
 
 std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
   const auto i = static_cast<std::size_t>(std::lower_bound(own_.begin(), own_.end(), own) - own_.begin());
   return {links_.data() + begin_[i], links_.data() + begin_[i + 1]};
-}
-
-std::span<const HalfFaceHandle> PartSmoothing::link_of_others(VertexHandle v) const {
-  const auto at = std::lower_bound(others_.begin(), others_.end(), v);
-  if (at == others_.end() || *at != v) return {};
-  const auto i = static_cast<std::size_t>(at - others_.begin());
-  return {links_of_others_.data() + begin_of_others_[i], links_of_others_.data() + begin_of_others_[i + 1]};
 }
 
 /// A vertex is coloured once all its smaller neighbours are; so all ranks together colour in the order of
@@ -130,7 +115,7 @@ std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
   return groups;
 }
 
-std::vector<std::pair<VertexHandle, Vec3>> PartSmoothing::tell(std::span<const VertexHandle> moved) {
+auto PartSmoothing::tell(std::span<const VertexHandle> moved) -> std::vector<Come> {
   Comm& comm = mesh_.comm();
   std::vector<Packer> to(comm.n_ranks());
   RankSet set(mesh_.within_two().words());
@@ -143,15 +128,16 @@ std::vector<std::pair<VertexHandle, Vec3>> PartSmoothing::tell(std::span<const V
       to[static_cast<std::size_t>(r)].put(MovedVertex{mesh_.number(v), mesh_.part().point(v)});
     });
   }
-  std::vector<std::pair<VertexHandle, Vec3>> came;
+  std::vector<Come> came;
   for (const Comm::Message& message : comm.exchange(to)) {
     Unpacker in(message.bytes);
     while (!in.at_end()) {
       const auto news = in.get<MovedVertex>();
       const VertexHandle v = mesh_.vertex_at(news.number);
-      if (v.is_valid()) came.emplace_back(v, news.point);
+      if (v.is_valid()) came.push_back({v, news.point, {}});
     }
   }
+  if (!came.empty()) find_links(came);
   return came;
 }
 

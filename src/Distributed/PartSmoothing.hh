@@ -26,23 +26,26 @@ class PartSmoothing {
     std::uint64_t number = 0;
     Vec3 point;
   };
+  /// A vertex of another rank: where it is now, and the half-faces opposite it in the cells that are held
+  /// here.
+  struct Come {
+    VertexHandle vertex;
+    Vec3 point;
+    std::vector<HalfFaceHandle> link;
+  };
   /// Tells the ranks that hold them of own vertices that have moved; returns what came from others and is
-  /// held here.
-  std::vector<std::pair<VertexHandle, Vec3>> tell(std::span<const VertexHandle> moved);
-  /// Half-faces opposite another rank's vertex in the cells that are held here.
-  std::span<const HalfFaceHandle> link_of_others(VertexHandle v) const;
+  /// held here. O(zone) where something came.
+  std::vector<Come> tell(std::span<const VertexHandle> moved);
 
  private:
-  void gather_others();
+  void find_links(std::vector<Come>& came);
 
   DistributedMesh& mesh_;
   std::vector<VertexHandle> own_;
   std::vector<std::uint8_t> colour_;  // by vertex of the part
   std::vector<std::size_t> begin_;    // by own_
   std::vector<HalfFaceHandle> links_;
-  std::vector<VertexHandle> others_;  // ascending
-  std::vector<std::size_t> begin_of_others_;
-  std::vector<HalfFaceHandle> links_of_others_;
+  std::vector<std::uint32_t> come_;  // by vertex: one more than its place among those that have come
 };
 
 /// smooth_pass() over the parts of a mesh, with the same moves. Counts are those of the whole.
@@ -77,10 +80,9 @@ RoundCounts smooth_parts(DistributedMesh& parts, const Search& search, const Met
     for (std::size_t k = 0; k < group.size(); ++k)
       if (has_moved[k]) moved.push_back(group[k]);
     for (VertexHandle v : moved) touch(pass.link(v));
-    for (const auto& [v, x] : pass.tell(moved)) {
-      const auto link = pass.link_of_others(v);
-      move_vertex(mesh, work, metric, v, link, x);
-      touch(link);
+    for (const PartSmoothing::Come& one : pass.tell(moved)) {
+      move_vertex(mesh, work, metric, one.vertex, one.link, one.point);
+      touch(one.link);
     }
     counts.winners += moved.size();
   }

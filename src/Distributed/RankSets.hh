@@ -50,6 +50,9 @@ class RankSets {
   void add(std::size_t i, std::span<const std::uint64_t> set) {
     for (std::size_t w = 0; w < words_; ++w) bits_[i * words_ + w] |= set[w];
   }
+  void set(std::size_t i, std::span<const std::uint64_t> set) {
+    for (std::size_t w = 0; w < words_; ++w) bits_[i * words_ + w] = set[w];
+  }
 
  private:
   std::size_t words_ = 1;

@@ -63,23 +63,7 @@ std::size_t PassState::n_below(double value) {
 
 std::span<const Index> PassState::poor(double value) {
   to_host();
-  Workspace& work = run_.work;
-  const auto& quality = work.quality;
-  if (work.all_touched || value != poor_below_) {
-    poor_ =
-        par::compact<Index>(run_.policy(), quality.size(), [&](std::size_t i) { return quality[i] < value; });
-  } else if (!work.touched.empty()) {
-    std::erase_if(poor_, [&](Index c) { return !(quality[c] < value); });
-    const auto n_old = static_cast<std::ptrdiff_t>(poor_.size());
-    for (Index c : work.touched)
-      if (quality[c] < value) poor_.push_back(c);
-    std::sort(poor_.begin() + n_old, poor_.end());
-    std::inplace_merge(poor_.begin(), poor_.begin() + n_old, poor_.end());
-    poor_.erase(std::unique(poor_.begin(), poor_.end()), poor_.end());
-  }
-  poor_below_ = value;
-  work.clear_touched();
-  return poor_;
+  return poor_.below(value, run_.work, run_.policy());
 }
 
 void PassState::count(const Focus& focus) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "Remesh/Run.hh"
+#include "Scheduler/PoorCells.hh"
 #include "Scheduler/Seeds.hh"
 #include "Scheduler/Workspace.hh"
 
@@ -102,8 +103,7 @@ class PassState {
   RankPasses* ranks_ = nullptr;     // the same
   std::size_t n_invalid_ = 0;
   double worst_ = 0;
-  std::vector<Index> poor_;  // below poor_below_, but for what the workspace has as touched
-  double poor_below_ = -std::numeric_limits<double>::infinity();
+  PoorCells poor_;
   std::array<std::uint32_t, kKinds> looked_{};  // clock at the last look of each kind
 };
 

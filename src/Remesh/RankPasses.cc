@@ -23,7 +23,7 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
   if (state_.n_invalid() > 0 || run.findings.is_folded || run.strategy.pass.ranks_exactly) return false;
   if (kind == PassKind::kSmooth && run.strategy.pass.smoother != Smoother::kNewton) return false;
   if (is_resident_) return true;
-  return state_.n_below(turn.focus.below) >= run.ranks->least_cells() &&
+  return state_.n_below(turn.focus.below) >= run.ranks->least_cells(run.mesh.n_logical_cells()) &&
          run.ranks->can_take(run.mesh, run.work);
 }
 

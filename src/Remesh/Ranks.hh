@@ -42,8 +42,8 @@ class Ranks {
   /// Whether they can do passes of this kind in this metric, over a mesh like this one.
   virtual bool can_do(PassKind kind, Metric metric) const = 0;
   virtual bool can_take(const TetMesh& mesh, const Workspace& work) const = 0;
-  /// From how many cells in focus on it is worth their while.
-  virtual std::size_t least_cells() const = 0;
+  /// From how many cells in focus on it is worth their while, with so many cells in all.
+  virtual std::size_t least_cells(std::size_t n_cells) const = 0;
   virtual void take(const TetMesh& mesh, const Workspace& work) = 0;
   /// counts.rounds is 0 where there is nothing to look at.
   virtual RoundCounts pass(const Look& look) = 0;

@@ -16,6 +16,15 @@ struct Outcome {
   Result result;
 };
 
+/// Whatever a pass is worth.
+mpi::Sharing share_all(mpi::Partition how) {
+  mpi::Sharing sharing;
+  sharing.partition = how;
+  sharing.least_cells = 0;
+  sharing.least_one_in = 0;
+  return sharing;
+}
+
 Outcome improve_on_all(const TetMesh& input, const ImproveOptions& options, mpi::Comm& comm,
                        const mpi::Sharing& sharing) {
   Outcome outcome;
@@ -47,7 +56,7 @@ void expect_that_of_shared_memory(const TetMesh& input, const ImproveOptions& op
                                   std::vector<mpi::Partition> ways = {mpi::Partition::kGraph}) {
   for (const mpi::Partition how : ways) {
     mpi::Comm comm(MPI_COMM_WORLD);
-    const Outcome outcome = improve_on_all(input, options, comm, {how, 0});
+    const Outcome outcome = improve_on_all(input, options, comm, share_all(how));
     if (comm.rank() != 0) continue;
     TetMesh mesh = input;
     const Result result = improve(mesh, options);
@@ -61,6 +70,32 @@ void expect_that_of_shared_memory(const TetMesh& input, const ImproveOptions& op
 TEST(MpiImprove, GoalRunsAreThoseOfSharedMemory) {
   expect_that_of_shared_memory(valid_box(5, 0.45, 1), short_run(6), true,
                                {mpi::Partition::kGraph, mpi::Partition::kNumbers});
+}
+
+/// By counts alone: too few cells in focus of a mesh of so many.
+TEST(MpiImprove, PassesThatAreNotWorthAHandOverStayOnOneRank) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const TetMesh input = valid_box(5, 0.45, 1);
+  for (const std::size_t one_in : {std::size_t{1}, input.n_cells()}) {
+    mpi::Sharing sharing = share_all(mpi::Partition::kCoordinates);
+    sharing.least_one_in = one_in;
+    std::vector<mpi::RankFigures> told;
+    sharing.tell_figures = [&](std::span<const mpi::RankFigures> ranks) {
+      told.assign(ranks.begin(), ranks.end());
+    };
+    const Outcome outcome = improve_on_all(input, short_run(6), comm, sharing);
+    if (comm.rank() != 0) continue;
+    const bool is_shared = one_in > 1 && comm.size() > 1;
+    EXPECT_EQ(n_lines(outcome.result, "gather") > 0, is_shared);
+    ASSERT_EQ(told.size(), comm.n_ranks());
+    std::uint64_t n_own = 0;
+    for (const mpi::RankFigures& rank : told) {
+      EXPECT_EQ(rank.n_rounds > 0, is_shared);
+      EXPECT_GE(rank.n_held, rank.n_own);
+      n_own += rank.n_own;
+    }
+    EXPECT_EQ(n_own > 0, is_shared);
+  }
 }
 
 TEST(MpiImprove, InsertionIsLeftToOneRank) {
@@ -93,7 +128,7 @@ TEST(MpiImprove, ARankThatFailsAnywhereEndsAll) {
     try {
       if (comm.rank() == 0) {
         TetMesh mesh = input;
-        mpi::improve(mesh, options, comm, {mpi::Partition::kCoordinates, 0});
+        mpi::improve(mesh, options, comm, share_all(mpi::Partition::kCoordinates));
         mpi::dismiss(comm);
       } else {
         mpi::serve(comm);

@@ -5,9 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <ranges>
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
+#include "Distributed/Near.hh"
 #include "HalfFace/Writer.hh"
 #include "Operators/Clusters.hh"
 #include "Scheduler/Workspace.hh"
@@ -91,11 +94,30 @@ inline std::vector<int> edges_to_own(const mpi::DistributedMesh& parts, const Wh
   return distance;
 }
 
+/// near() and within_two() are what the cells say, as far as they are exact.
+inline void expect_near_sets(const mpi::DistributedMesh& parts, const std::vector<int>& distance) {
+  const TetMesh& part = parts.part();
+  mpi::RankSets one(part.n_vertices(), parts.comm().size()), two = one;
+  mpi::find_near(
+      part, std::views::iota(Index{0}, static_cast<Index>(part.n_cells())),
+      [&](VertexHandle v) { return parts.owner(v); }, one, two);
+  std::size_t n_wrong = 0;
+  for (std::size_t i = 0; i < part.n_vertices(); ++i) {
+    const int d = distance[parts.number(V(i))];
+    if (part.is_deleted(V(i)) || !part.incident_cell(V(i)).is_valid()) continue;
+    n_wrong += d <= 2 && !std::ranges::equal(one[i], parts.near(V(i))) ? 1 : 0;
+    n_wrong += d <= 1 && !std::ranges::equal(two[i], parts.within_two(V(i))) ? 1 : 0;
+    n_wrong += d == 0 && !std::ranges::equal(two[i], parts.told(V(i))) ? 1 : 0;
+  }
+  EXPECT_EQ(n_wrong, 0U) << "sets of near ranks";
+}
+
 /// This rank holds of the whole what it should, and no more: cells with a vertex within two edges of own
 /// ones, as the whole has them, mates among them included.
 inline void expect_part_of(const mpi::DistributedMesh& parts, const Whole& whole) {
   const TetMesh& part = parts.part();
   const std::vector<int> distance = edges_to_own(parts, whole);
+  expect_near_sets(parts, distance);
   const auto should_hold = [&](CellHandle c) {
     const auto& v = whole.mesh.cell(c).v;
     return std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return distance[u.idx()] <= 2; });

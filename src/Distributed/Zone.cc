@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a part meets others: who is near to whom, kept up to date round what has changed.
+#include <algorithm>
+#include <utility>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Distributed/Near.hh"
+
+namespace hfr::mpi {
+namespace {
+
+/// body(corners) for the cells of the list that are there and have a marked vertex.
+template <class Body>
+void for_marked(const TetMesh& mesh, std::span<const Index> cells, std::span<const std::uint8_t> marks,
+                Body&& body) {
+  for (Index c : cells) {
+    if (mesh.is_deleted(CellHandle(c))) continue;
+    const auto& v = mesh.cell(CellHandle(c)).v;
+    if (marks[v[0].idx()] | marks[v[1].idx()] | marks[v[2].idx()] | marks[v[3].idx()]) body(v);
+  }
+}
+
+}  // namespace
+
+/// Sets of vertices further than two edges from others' are their owner's alone.
+void DistributedMesh::start_zone() {
+  const std::size_t n = mesh_.n_vertices(), n_cells = mesh_.n_cells();
+  near1_ = near2_ = RankSets(n, comm_.size());
+  std::vector<std::uint8_t> steps(n, 0);  // 1: another's; 2, 3: one and two edges from such
+  for (std::size_t v = 0; v < n; ++v) {
+    near1_.set_only(v, owner_[v]);
+    near2_.set_only(v, owner_[v]);
+    steps[v] = owner_[v] == comm_.rank() ? 0 : 1;
+  }
+  zone_.clear();
+  for (std::uint8_t step = 1; step <= 3; ++step)
+    for (std::size_t c = 0; c < n_cells; ++c) {
+      if (mesh_.is_deleted(CellHandle(c))) continue;
+      const auto& v = mesh_.cell(CellHandle(c)).v;
+      if (std::none_of(v.begin(), v.end(),
+                       [&](VertexHandle u) { return steps[u.idx()] != 0 && steps[u.idx()] <= step; }))
+        continue;
+      if (step == 3)
+        zone_.push_back(static_cast<Index>(c));
+      else
+        for (VertexHandle u : v)
+          if (steps[u.idx()] == 0) steps[u.idx()] = static_cast<std::uint8_t>(step + 1);
+    }
+  find_near(
+      mesh_, zone_, [&](VertexHandle v) { return owner(v); }, near1_, near2_);
+  in_zone_.assign(n_cells, 0);
+  rim_.clear();
+  for (Index c : zone_) {
+    in_zone_[c] = 1;
+    const auto& v = mesh_.cell(CellHandle(c)).v;
+    if (std::none_of(v.begin(), v.end(), [&](VertexHandle u) { return is_own(u); })) rim_.push_back(c);
+  }
+  open_.clear();
+  dirty_.clear();
+  renewed_.clear();
+  marks_.assign(n, 0);
+  told_ = near2_;
+}
+
+void DistributedMesh::put_into_zone(CellHandle c) {
+  if (in_zone_.size() < mesh_.n_cells()) in_zone_.resize(mesh_.n_cells(), 0);
+  if (std::exchange(in_zone_[c.idx()], std::uint8_t{1}) == 0) zone_.push_back(c.idx());
+}
+
+void DistributedMesh::note_created(CellHandle c) {
+  const auto& v = mesh_.cell(c).v;
+  put_into_zone(c);
+  note_changed(v);
+  if (std::none_of(v.begin(), v.end(), [&](VertexHandle u) { return is_own(u); })) rim_.push_back(c.idx());
+}
+
+/// Sets of these vertices as `fill` makes them from the cells of the zone, all of which it is called for that
+/// have one. Returns those that are others than before; `left`: own ones that were inside.
+template <class Fill>
+std::vector<VertexHandle> DistributedMesh::renew(RankSets& sets, std::span<const VertexHandle> vertices,
+                                                 Fill&& fill) {
+  const std::size_t words = sets.words();
+  std::vector<std::uint64_t> before;
+  before.reserve(vertices.size() * words);
+  for (VertexHandle v : vertices) {
+    before.insert(before.end(), sets[v.idx()].begin(), sets[v.idx()].end());
+    sets.set_only(v.idx(), owner(v));
+    marks_[v.idx()] = 1;
+  }
+  for_marked(mesh_, zone_, marks_, [&](const auto& corners) {
+    for (VertexHandle u : corners)
+      if (marks_[u.idx()])
+        for (VertexHandle w : corners) fill(u, w);
+  });
+  for (VertexHandle v : vertices) marks_[v.idx()] = 0;
+  std::vector<VertexHandle> others;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    if (!std::equal(before.begin() + static_cast<std::ptrdiff_t>(i * words),
+                    before.begin() + static_cast<std::ptrdiff_t>((i + 1) * words),
+                    sets[vertices[i].idx()].begin()))
+      others.push_back(vertices[i]);
+  return others;
+}
+
+/// Cells that are not in the zone have inside vertices only, so they add nothing to a set but this rank.
+void DistributedMesh::update_zone() {
+  std::vector<VertexHandle> vertices;  // each once
+  for (VertexHandle v : dirty_)
+    if (std::exchange(marks_[v.idx()], std::uint8_t{1}) == 0) vertices.push_back(v);
+  dirty_.clear();
+  const auto put_star = [&](VertexHandle v) {
+    if (!mesh_.is_deleted(v))
+      for (CellHandle c : mesh_.vertex_cells(v)) put_into_zone(c);
+  };
+  const auto nearer =
+      renew(near1_, vertices, [&](VertexHandle u, VertexHandle w) { near1_.add(u.idx(), owner(w)); });
+  for (VertexHandle v : nearer)
+    if (is_own(v) && is_inside(v)) put_star(v);
+  // Within two edges: the same vertices, and the neighbours of those that are near to others now.
+  for (VertexHandle v : nearer) marks_[v.idx()] = 1;
+  std::vector<VertexHandle> neighbours;
+  for_marked(mesh_, zone_, marks_, [&](const auto& corners) {
+    neighbours.insert(neighbours.end(), corners.begin(), corners.end());
+  });
+  for (VertexHandle v : nearer) marks_[v.idx()] = 0;
+  for (VertexHandle v : vertices) marks_[v.idx()] = 1;
+  for (VertexHandle v : neighbours)
+    if (std::exchange(marks_[v.idx()], std::uint8_t{1}) == 0) vertices.push_back(v);
+  std::vector<VertexHandle> was_inside;
+  for (VertexHandle v : vertices)
+    if (is_own(v) && is_inside(v)) was_inside.push_back(v);
+  const auto renewed =
+      renew(near2_, vertices, [&](VertexHandle u, VertexHandle w) { near2_.add(u.idx(), near1_[w.idx()]); });
+  for (VertexHandle v : was_inside)
+    if (!is_inside(v)) put_star(v);
+  for (VertexHandle v : renewed)
+    if (is_own(v)) renewed_.push_back(v);
+  std::erase_if(zone_, [&](Index c) {
+    const auto& v = mesh_.cell(CellHandle(c)).v;
+    const bool goes = mesh_.is_deleted(CellHandle(c)) ||
+                      std::all_of(v.begin(), v.end(), [&](VertexHandle u) { return is_inside(u); });
+    if (goes) in_zone_[c] = 0;
+    return goes;
+  });
+}
+
+void DistributedMesh::note_told() {
+  for (VertexHandle v : renewed_) told_.set(v.idx(), near2_[v.idx()]);
+  renewed_.clear();
+}
+
+void DistributedMesh::prune() {
+  std::erase_if(rim_, [&](Index i) {
+    const CellHandle c(i);
+    if (mesh_.is_deleted(c)) return true;
+    const auto& v = mesh_.cell(c).v;
+    if (std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return near2_.has(u.idx(), comm_.rank()); }))
+      return false;
+    detach(c);
+    return true;
+  });
+  open_.clear();  // behind them is nothing that this part holds
+}
+
+}  // namespace hfr::mpi
