@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <new>
 #include <optional>
+#include <span>
 
 #include "Plex.hh"
 #include "hfremesh/Distributed/Improve.hh"
@@ -62,12 +63,14 @@ std::vector<LocalPlex> gather(mpi::Comm& comm, const LocalPlex& mine) {
 /// Names of labels, and whether they are closed, from rank 0 to all.
 void share_labels(mpi::Comm& comm, Labelling& labelling) {
   mpi::Packer out;
-  out.put(static_cast<std::uint64_t>(labelling.labels.size()));
-  for (const Labelling::Label& label : labelling.labels) {
-    pack(label.name, out);
-    out.put(label.is_closed);
+  if (comm.rank() == 0) {
+    out.put(static_cast<std::uint64_t>(labelling.labels.size()));
+    for (const Labelling::Label& label : labelling.labels) {
+      pack(label.name, out);
+      out.put(label.is_closed);
+    }
   }
-  const std::vector<std::byte> bytes = comm.from_first(std::move(out.bytes()));
+  const std::vector<std::byte> bytes = comm.all_gather(std::span<const std::byte>(out.bytes()));
   if (comm.rank() == 0) return;
   mpi::Unpacker in(bytes);
   for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
