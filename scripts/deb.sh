@@ -45,7 +45,7 @@ case ${1:-} in
 esac
 
 cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DBUILD_SHARED_LIBS=ON \
-  -DCMAKE_SKIP_INSTALL_RPATH=ON -DHFR_TESTS=OFF -DHFR_BENCH=OFF \
+  -DCMAKE_SKIP_INSTALL_RPATH=ON -DCMAKE_BUILD_RPATH_USE_ORIGIN=ON -DHFR_TESTS=OFF -DHFR_BENCH=OFF \
   -DCMAKE_CXX_FLAGS="-ffile-prefix-map=$build=. -ffile-prefix-map=$root=."
 cmake --build "$build" --parallel "$("$root/scripts/jobs.sh")"
 rm -rf "$build/packages"
