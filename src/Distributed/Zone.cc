@@ -75,7 +75,7 @@ void DistributedMesh::note_created(CellHandle c) {
 }
 
 /// Sets of these vertices as `fill` makes them from the cells of the zone, all of which it is called for that
-/// have one. Returns those that are others than before; `left`: own ones that were inside.
+/// have one. Returns those whose sets are others than before.
 template <class Fill>
 std::vector<VertexHandle> DistributedMesh::renew(RankSets& sets, std::span<const VertexHandle> vertices,
                                                  Fill&& fill) {

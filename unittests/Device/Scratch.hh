@@ -4,30 +4,12 @@
 
 #include <stdlib.h>
 
-#include <filesystem>
 #include <optional>
 #include <string>
 
+#include "ScratchFolder.hh"
+
 namespace hfr::test {
-
-/// A fresh folder that goes with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "hfremesh-device-XXXXXX").string();
-    path_ = mkdtemp(name.data());
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// An environment variable, set (or unset, by nullptr) until the object goes.
 class ScopedVariable {

@@ -27,8 +27,8 @@
 #include <thread>
 
 #include "Fuzz/Case.hh"
-#include "Fuzz/ScratchFolder.hh"
 #include "IO/MeshFile.hh"
+#include "ScratchFolder.hh"
 
 namespace hfr::fuzz {
 namespace {
@@ -100,7 +100,7 @@ void write_case(const Case& c, const std::string& folder, const std::string& nam
 }
 
 int run_one(const CommandLine& line) {
-  const ScratchFolder scratch;
+  const test::ScratchFolder scratch;
   const Case wanted = make_case(line.number);
   say(fmt::format("case {}: {} cells: {} | {}\n", wanted.number, wanted.complex.cells.size(),
                   wanted.complex.made_of, wanted.options.command_line()));
@@ -272,7 +272,7 @@ class Watch {
   std::size_t n_;
   Worker* workers_ = nullptr;
   std::vector<pid_t> pids_;
-  ScratchFolder scratch_;
+  test::ScratchFolder scratch_;
 };
 
 CommandLine parse(int argc, char** argv) {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "Fuzz/ScratchFolder.hh"
+#include "ScratchFolder.hh"
 
 namespace hfr::fuzz {
 namespace {
@@ -23,7 +23,7 @@ std::filesystem::path folder_for_scratch() {
 }  // namespace
 
 const std::filesystem::path& scratch() {
-  static const ScratchFolder folder(folder_for_scratch());
+  static const test::ScratchFolder folder(folder_for_scratch());
   return folder.path();
 }
 

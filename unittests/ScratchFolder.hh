@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef HFR_UNITTESTS_FUZZ_SCRATCH_FOLDER_HH
-#define HFR_UNITTESTS_FUZZ_SCRATCH_FOLDER_HH
+#ifndef HFR_UNITTESTS_SCRATCH_FOLDER_HH
+#define HFR_UNITTESTS_SCRATCH_FOLDER_HH
 
 #include <stdlib.h>
 
@@ -9,14 +9,14 @@
 #include <string>
 #include <system_error>
 
-namespace hfr::fuzz {
+namespace hfr::test {
 
 /// A folder of its own in another one, removed with it: for processes that run at the same time, and end as
 /// they like.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
-    std::string name = in / "hfr_fuzz.XXXXXX";
+    std::string name = in / "hfremesh-test.XXXXXX";
     if (mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
     path_ = name;
   }
@@ -33,6 +33,6 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace hfr::fuzz
+}  // namespace hfr::test
 
 #endif
