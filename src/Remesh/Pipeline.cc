@@ -59,15 +59,23 @@ bool may_rise(const Run& run, double degrees) {
   return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
 }
 
-/// What a default run claims, with more cells where their number was in the way.
+/// What a default run claims: with more cells where their number was in the way, and as a run with that goal
+/// where these were not enough.
 void reach_claimed(const Run& run) {
-  if (!run.strategy.claimed || !run.findings.met_cell_bound || run.control.stopped()) return;
+  if (!run.strategy.claimed) return;
   const Strategy& claimed = *run.strategy.claimed;
-  if (!may_rise(run, claimed.goal->degrees)) return;
-  run.findings.forget_cell_bound();
-  Best best(run, claimed.goal->may_fall);
-  reach_in_turn(run.with(claimed), *claimed.goal);
-  best.settle();
+  const GoalEffort& goal = *claimed.goal;
+  const auto attempt = [&](auto&& how) {
+    if (!run.findings.met_cell_bound || run.control.stopped() || !may_rise(run, goal.degrees)) return;
+    Best best(run, goal.may_fall);
+    how(run.with(claimed));
+    best.settle();
+  };
+  attempt([&](const Run& part) {
+    run.findings.forget_cell_bound();
+    reach_in_turn(part, goal);
+  });
+  attempt([&](const Run& part) { attempt_beyond(part, goal); });
 }
 
 void run_default(const Run& run) {

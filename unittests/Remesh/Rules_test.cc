@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include "HalfFace/Errors.hh"
@@ -23,6 +26,39 @@ TetMesh pressed(Index n, double jitter, double height) {
 
 TetMesh wrung(double degrees) { return built(generate::cylinder(2, 6, 1, 2, 0, degrees)); }
 
+/// One inner vertex that all cells have: each joins it to a triangle of a sphere, whose vertices lie unevenly
+/// on 10 circles of latitude.
+TetMesh star_of_sphere(Vec3 centre, std::uint64_t seed) {
+  constexpr std::size_t kLatitudes = 10, kLongitudes = 30, kLast = 1 + (kLatitudes - 1) * kLongitudes;
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uneven(-0.15, 0.15);
+  generate::Arrays arrays;
+  arrays.points.push_back({0, 0, 1});
+  for (std::size_t i = 1; i < kLatitudes; ++i) {
+    for (std::size_t j = 0; j < kLongitudes; ++j) {
+      const double polar = std::numbers::pi * (static_cast<double>(i) + uneven(random)) / kLatitudes;
+      const double azimuth = 2 * std::numbers::pi * (static_cast<double>(j) + uneven(random)) / kLongitudes;
+      arrays.points.push_back(
+          {std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar)});
+    }
+  }
+  arrays.points.push_back({0, 0, -1});
+  arrays.points.push_back(centre);
+  const auto at = [](std::size_t i, std::size_t j) {
+    return i == 0 ? 0 : i == kLatitudes ? kLast : 1 + (i - 1) * kLongitudes + j % kLongitudes;
+  };
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    arrays.cells.push_back({static_cast<Index>(c), static_cast<Index>(b), static_cast<Index>(a), kLast + 1});
+  };
+  for (std::size_t i = 0; i < kLatitudes; ++i) {
+    for (std::size_t j = 0; j < kLongitudes; ++j) {
+      if (i + 1 < kLatitudes) add(at(i + 1, j), at(i + 1, j + 1), at(i, j));
+      if (i > 0) add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+  }
+  return built(arrays);
+}
+
 /// Valid ones, poor and good, and some that cannot be mended altogether.
 std::vector<TetMesh> meshes() {
   std::vector<TetMesh> all;
@@ -30,6 +66,7 @@ std::vector<TetMesh> meshes() {
     for (double jitter : {0.2, 0.35, 0.6}) all.push_back(jittered(4, jitter, seed));
   for (double height : {0.1, 0.05}) all.push_back(pressed(4, 0.2, height));
   for (double degrees : {58.0, 85.0}) all.push_back(wrung(degrees));
+  all.push_back(star_of_sphere({0.6, 0.1, 0.2}, 3));
   return all;
 }
 
@@ -105,6 +142,21 @@ TEST(Rules, DefaultRunReachesWhatAGoalReachesThatItClaims) {
   }
   EXPECT_GE(n_valid, 6U);
   EXPECT_GE(n_below, 3U);
+}
+
+TEST(Rules, DefaultRunGoesOnWithoutABoundOfItsOwnForWhatItClaims) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const TetMesh star = star_of_sphere({0.6, 0.1, 0.2}, seed);
+    ASSERT_GE(outcome_of(star, towards(15)).worst, 15);
+    TetMesh mesh = star;
+    EXPECT_GE(improve(mesh, serial()).after.min_dihedral.min, 15);
+    EXPECT_GT(mesh.n_cells(), star.n_cells() * 3 / 2) << "the second bound is enough for this star";
+    ImproveOptions bounded = serial();
+    bounded.max_cells = star.n_cells() * 3 / 2;
+    TetMesh other = star;
+    improve(other, bounded);
+    EXPECT_LE(other.n_cells(), bounded.max_cells + 64) << "a bound that was asked for is kept";
+  }
 }
 
 TEST(Rules, SurfaceThatMayChangeEndsNoLowerThanAFrozenOneBelowTheClaim) {
