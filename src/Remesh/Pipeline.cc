@@ -97,8 +97,9 @@ void run_frozen(const Run& run) {
 }
 
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
-  run_default(run);
-  run_frozen(run);
+  const Run usual = run.strategy.usual ? run.with(*run.strategy.usual) : run;
+  run_default(usual);
+  run_frozen(usual);
   Best best(run, effort.may_fall);
   raise_at_any_cost(run, effort, best);
   best.settle();

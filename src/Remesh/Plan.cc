@@ -186,7 +186,8 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
     lines.add("jpdc2013", say(strategy.compat.iterations, " iterations: edge, face, node, smooth"));
     return lines.text();
   }
-  add_bounds(lines, "cells", strategy.bounds);
+  const Strategy& first = strategy.usual ? *strategy.usual : strategy;
+  add_bounds(lines, "cells", first.bounds);
   if (strategy.untangle) {
     const UntangleEffort& effort = *strategy.untangle;
     lines.add("untangle", say(found.n_invalid, " cells: vertices moved together within ",
@@ -196,9 +197,9 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
   if (strategy.goal && !std::isfinite(strategy.goal->many_miss)) {
     lines.add("all cells", "not before the goal was worked for");
   } else {
-    add_all_cells(lines, strategy);
+    add_all_cells(lines, first);
   }
-  add_targets(lines, strategy);
+  add_targets(lines, first);
   if (strategy.goal) add_goal(lines, strategy, *strategy.goal);
   if (strategy.any_cost) add_any_cost(lines, *strategy.any_cost);
   if (strategy.volume)

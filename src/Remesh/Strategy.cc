@@ -176,9 +176,7 @@ LastCellsEffort last_cells_effort(const Asked& asked) {
   if (asked.coarsens() || asked.has_goal()) last.up_to = std::numeric_limits<double>::infinity();
   // Where the surface may change its shape there is always something that gives way by little.
   if (asked.is_free()) last.again = 1.02;
-  const PatchEffort& effort = asked.any_cost()    ? kAllEfforts[0]
-                              : asked.is_frozen() ? kLittleEffort
-                                                  : kSurfaceEffort;
+  const PatchEffort& effort = asked.is_frozen() ? kLittleEffort : kSurfaceEffort;
   if (asked.has_goal() && asked.is_flat()) last.patches_first = {effort};
   last.patches = {effort};
   last.patches.insert(last.patches.end(), kLastEfforts.begin(), kLastEfforts.end());
@@ -283,6 +281,12 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   };
   if (strategy.untangle && !(asked.has_goal() && *options.min_dihedral <= kPlainGoal))
     strategy.plain = towards(kPlainGoal);
+  if (asked.any_cost() && !asked.coarsens()) {
+    ImproveOptions other = options;
+    other.raise_min_dihedral = false;
+    strategy.usual = std::make_shared<const Strategy>(resolve(other, found, n_cells));
+    return strategy;
+  }
   if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens()) {
     const auto claimed = with_room(towards(kClaimedGoal), n_cells);
     claimed->pass.first_edge_does = false;  // what is left by then is hard
@@ -291,7 +295,6 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   if (strategy.claimed && !asked.is_frozen()) {
     ImproveOptions other = options;
     other.surface.mode = SurfaceMode::kFrozen;
-    other.raise_min_dihedral = false;
     strategy.frozen = std::make_shared<const Strategy>(resolve(other, found, n_cells));
   }
   return strategy;

@@ -406,6 +406,8 @@ struct Strategy {
   /// Where the input has invalid cells and more is asked for than that they be mended: the strategy of a run
   /// that only mends them (kPlainGoal), which is done first.
   std::shared_ptr<const Strategy> plain;
+  /// At any cost: that of the default run, with which it begins.
+  std::shared_ptr<const Strategy> usual;
   /// Without a goal: that of kClaimedGoal, for what is left below it.
   std::shared_ptr<const Strategy> claimed;
 

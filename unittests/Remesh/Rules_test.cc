@@ -128,6 +128,36 @@ TEST(Rules, RaisingTheWorstAngleAtAnyCostEndsNoLowerThanADefaultRun) {
   EXPECT_GE(n_valid, 4U);
 }
 
+TEST(Rules, RaisingTheWorstAngleAtAnyCostBeginsWithTheWholeDefaultRun) {
+  std::size_t n_modes = 0;
+  for (const SurfaceMode mode : {SurfaceMode::kFrozen, SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    for (const TetMesh& mesh : {jittered(4, 0.6, 1), pressed(4, 0.2, 0.1)}) {
+      ImproveOptions options = serial();
+      options.surface.mode = mode;
+      TetMesh usual = mesh, more = mesh;
+      std::vector<PassReport> first, all;
+      try {
+        first = improve(usual, options).passes;
+        options.raise_min_dihedral = true;
+        all = improve(more, options).passes;
+      } catch (const InvalidInput& error) {
+        EXPECT_NE(mode, SurfaceMode::kFrozen) << error.what();  // a build without OpenMesh
+        continue;
+      }
+      while (!first.empty() && first.back().stage == "volume") first.pop_back();  // at the end of each run
+      ASSERT_GE(all.size(), first.size());
+      for (std::size_t i = 0; i < first.size(); ++i) {
+        ASSERT_EQ(all[i].stage, first[i].stage) << i;
+        ASSERT_EQ(all[i].op, first[i].op) << i;
+        ASSERT_EQ(all[i].winners, first[i].winners) << i;
+        ASSERT_EQ(all[i].worst, first[i].worst) << i;
+      }
+      ++n_modes;
+    }
+  }
+  EXPECT_GE(n_modes, 2U);
+}
+
 TEST(Rules, DefaultRunReachesWhatAGoalReachesThatItClaims) {
   std::size_t n_valid = 0, n_below = 0;
   for (const TetMesh& mesh : meshes()) {
