@@ -324,7 +324,7 @@ std::size_t PassRunner<Metric>::insert_pass(const Turn& turn) {
   const Run& run = this->run();
   const PassEffort& effort = this->effort();
   const Row& row = PassRunner::row(PassKind::kInsert);
-  if (run.bounds.max > 0 && run.mesh.n_logical_cells() + effort.cells_of_vertex > run.bounds.max) {
+  if (!run.has_room()) {
     run.findings.note_cell_bound(run.bounds);
     return 0;
   }

@@ -59,23 +59,27 @@ bool may_rise(const Run& run, double degrees) {
   return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
 }
 
-/// What a default run claims: with more cells where their number was in the way, and as a run with that goal
-/// where these were not enough.
+/// What a default run claims, where the number of cells was in the way: with more of them, and with more
+/// again while that raises the worst angle; once also where a percentile has fallen for it.
 void reach_claimed(const Run& run) {
-  if (!run.strategy.claimed) return;
+  if (!run.strategy.claimed || (!run.findings.met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
-  const auto attempt = [&](auto&& how) {
-    if (!run.findings.met_cell_bound || run.control.stopped() || !may_rise(run, goal.degrees)) return;
-    Best best(run, goal.may_fall);
-    how(run.with(claimed));
-    best.settle();
-  };
-  attempt([&](const Run& part) {
+  const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
+  Run part = run.with(claimed);
+  for (bool stayed = true; may_rise(run, goal.degrees) && !run.control.stopped();) {
+    const double enough = goal.pays * std::max(smallest(), 0.0);
     run.findings.forget_cell_bound();
+    Best best(run, goal.may_fall);
     reach_in_turn(part, goal);
-  });
-  attempt([&](const Run& part) { attempt_beyond(part, goal); });
+    const bool rose = smallest() > enough;
+    best.settle();
+    const bool stays = smallest() > enough;
+    const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+    if (!may_grow || !rose || !(stays || stayed)) return;
+    stayed = stays;
+    part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
+  }
 }
 
 void run_default(const Run& run) {

@@ -52,6 +52,10 @@ struct Run {
   Ranks* ranks = nullptr;  ///< that may do passes, too; null: all is done here
 
   par::Policy policy() const { return strategy.pass.policy; }
+  /// Whether the bound on cells leaves room for those of another vertex.
+  bool has_room() const {
+    return bounds.max == 0 || mesh.n_logical_cells() + strategy.pass.cells_of_vertex <= bounds.max;
+  }
   /// The same run within other bounds on cells.
   Run within(CellBounds other) const {
     Run run = *this;

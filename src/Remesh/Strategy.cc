@@ -20,8 +20,6 @@ constexpr std::array<TargetAngle, 23> kTargetsAtAnyCost = {
 /// Cells that a run may leave of 100, and make of them, where the options do not say.
 constexpr std::size_t kLeastOfHundred = 81;
 constexpr std::size_t kMostOfHundred = 119;
-/// Cells that a default run may make of 100 for what it claims.
-constexpr std::size_t kClaimedOfHundred = 150;
 
 /// The questions that the options are asked, each in one place.
 class Asked {
@@ -275,10 +273,6 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     other.raise_min_dihedral = false;
     return std::make_shared<Strategy>(resolve(other, found, n_cells));
   };
-  const auto with_room = [&](std::shared_ptr<Strategy> other, std::size_t cells) {
-    if (options.max_cells == 0 && other->bounds.max > 0) other->bounds.max = cells * kClaimedOfHundred / 100;
-    return other;
-  };
   if (strategy.untangle && !(asked.has_goal() && *options.min_dihedral <= kPlainGoal))
     strategy.plain = towards(kPlainGoal);
   if (asked.any_cost() && !asked.coarsens()) {
@@ -288,7 +282,10 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     return strategy;
   }
   if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens()) {
-    const auto claimed = with_room(towards(kClaimedGoal), n_cells);
+    const auto claimed = towards(kClaimedGoal);
+    if (options.max_cells == 0 && claimed->bounds.max > 0)
+      claimed->bounds.max =
+          static_cast<std::size_t>(claimed->goal->more_cells * static_cast<double>(n_cells));
     claimed->pass.first_edge_does = false;  // what is left by then is hard
     strategy.claimed = claimed;
   }

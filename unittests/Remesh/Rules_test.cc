@@ -174,7 +174,7 @@ TEST(Rules, DefaultRunReachesWhatAGoalReachesThatItClaims) {
   EXPECT_GE(n_below, 3U);
 }
 
-TEST(Rules, DefaultRunGoesOnWithoutABoundOfItsOwnForWhatItClaims) {
+TEST(Rules, DefaultRunMakesMoreCellsForWhatItClaimsWhileTheyRaiseTheWorstAngle) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TetMesh star = star_of_sphere({0.6, 0.1, 0.2}, seed);
     ASSERT_GE(outcome_of(star, towards(15)).worst, 15);
