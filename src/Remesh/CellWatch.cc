@@ -13,6 +13,7 @@
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Geometry.hh"
 #include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Lowest.hh"
 #include "Quality/Metrics.hh"
@@ -267,8 +268,10 @@ void CellWatch::look_at(std::span<const CellHandle> cells) {
 void CellWatch::take(CellHandle c, double value, Totals& changes) {
   const std::size_t i = c.idx();
   const double block_worst = block_worst_[i / kBlock];
-  if (value < block_worst || quality_[i] <= block_worst)
+  if (value < block_worst || quality_[i] <= block_worst) {
+    par::before_shared_access();
     par::atomic(stale_[i / kBlock]).store(1, std::memory_order_relaxed);
+  }
   if (stays_good(c, value)) {
     quality_[i] = value;
     return;
