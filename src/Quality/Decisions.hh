@@ -42,26 +42,46 @@ concept HasBlockForm = requires(const Metric& metric, const CornerBlock& block, 
   block_decisions(metric, block, out);
 };
 
+/// visit(first, values, n) for the cell slots in [begin, end), at most CornerBlock::kSize of them at a time,
+/// ascending: those from `first` on, of which the first n values are; +infinity for deleted ones, and behind
+/// the last.
+template <class Metric, class Visit>
+requires HasBlockForm<Metric>
+void for_decision_blocks(const TetMesh& mesh, const Metric& metric, std::size_t begin, std::size_t end,
+                         Visit&& visit) {
+  constexpr double kNoCell = std::numeric_limits<double>::infinity();
+  CornerBlock block;
+  CornerBlock::Lane values{};
+  for (std::size_t first = begin; first < end; first += CornerBlock::kSize) {
+    const std::size_t n = end - first < CornerBlock::kSize ? end - first : CornerBlock::kSize;
+    bool some_deleted = false;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& v = mesh.cell(CellHandle(first + i)).v;
+      if (v[0].is_valid())
+        block.set(i, mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+      else
+        some_deleted = true;
+    }
+    block_decisions(metric, block, values);
+    if (some_deleted)
+      for (std::size_t i = 0; i < n; ++i)
+        if (mesh.is_deleted(CellHandle(first + i))) values[i] = kNoCell;
+    for (std::size_t i = n; i < CornerBlock::kSize; ++i) values[i] = kNoCell;
+    visit(first, values, n);
+  }
+}
+
 /// visit(i, decision value) for the cell slots i in [begin, end), ascending; +infinity for deleted ones.
 template <class Metric, class Visit>
 void for_decisions(const TetMesh& mesh, const Metric& metric, std::size_t begin, std::size_t end,
                    Visit&& visit) {
-  constexpr double kDeleted = std::numeric_limits<double>::infinity();
   if constexpr (HasBlockForm<Metric>) {
-    CornerBlock block;
-    CornerBlock::Lane value{};
-    for (std::size_t first = begin; first < end; first += CornerBlock::kSize) {
-      const std::size_t n = end - first < CornerBlock::kSize ? end - first : CornerBlock::kSize;
-      for (std::size_t i = 0; i < n; ++i) {
-        const auto& v = mesh.cell(CellHandle(first + i)).v;
-        if (v[0].is_valid())
-          block.set(i, mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
-      }
-      block_decisions(metric, block, value);
-      for (std::size_t i = 0; i < n; ++i)
-        visit(first + i, mesh.is_deleted(CellHandle(first + i)) ? kDeleted : value[i]);
-    }
+    for_decision_blocks(mesh, metric, begin, end,
+                        [&](std::size_t first, const CornerBlock::Lane& values, std::size_t n) {
+                          for (std::size_t i = 0; i < n; ++i) visit(first + i, values[i]);
+                        });
   } else {
+    constexpr double kDeleted = std::numeric_limits<double>::infinity();
     for (std::size_t i = begin; i < end; ++i) {
       const auto& v = mesh.cell(CellHandle(i)).v;
       visit(i, mesh.is_deleted(CellHandle(i))

@@ -74,6 +74,34 @@ HFR_FN Lowest lowest_in(const double* numbers, std::size_t n) {
 /// Of n numbers, a multiple of kLowestBlock, with widest_vectors().
 Lowest lowest_of(const double* numbers, std::size_t n);
 
+/// The smallest of some numbers, of which NaN is none, a zero without its sign; and whether each of them is
+/// at least a bound, which NaN is not.
+struct Floor {
+  double least = HFR_INFINITY;
+  bool holds = true;
+};
+
+/// n: a multiple of kLowestBlock.
+template <class V>
+HFR_FN Floor floor_in(const double* numbers, std::size_t n, double bound) {
+  V least = V{} + HFR_INFINITY, holds = V{} + 1.0;
+  for (std::size_t i = 0; i < n; i += sizeof(V) / sizeof(double)) {
+    V v;
+    load(v, numbers + i);
+    least = v < least ? v : least;
+    holds = v >= V{} + bound ? holds : V{};
+  }
+  alignas(64) double lanes[2 * kLowestBlock];
+  for (std::size_t i = 0; i < kLowestBlock; ++i) {
+    lanes[i] = HFR_INFINITY;
+    lanes[kLowestBlock + i] = 1;
+  }
+  std::memcpy(lanes, &least, sizeof(V));
+  std::memcpy(lanes + kLowestBlock, &holds, sizeof(V));
+  return {least_of_block(lanes) + 0.0, least_of_block(lanes + kLowestBlock) > 0};
+}
+Floor floor_of(const double* numbers, std::size_t n, double bound);
+
 }  // namespace hfr
 
 #endif

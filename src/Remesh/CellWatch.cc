@@ -2,6 +2,7 @@
 #include "Remesh/CellWatch.hh"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <memory>
 #include <string>
@@ -11,7 +12,10 @@
 
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Geometry.hh"
+#include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 #include "Quality/Decisions.hh"
+#include "Quality/Lowest.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
@@ -19,10 +23,12 @@
 namespace hfr {
 namespace {
 
-// Where fewer vertices than 1 in so many have moved, their cells are gathered; else all are looked at.
-constexpr std::size_t kManyMoved = 4;
+// Vertices whose cells are asked for while those of another are looked at.
+constexpr std::size_t kAhead = 4;
+constexpr double kNanosecondsACell = 40, kNanosecondsAStar = 1'500;  // about
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -31,6 +37,7 @@ CellWatch::CellWatch(const TetMesh& mesh, const RepairTriggers& triggers, par::P
       triggers_(triggers),
       policy_(policy),
       trigger_(triggers.min_dihedral > 0 ? dihedral_decision(triggers.min_dihedral) : kNever),
+      good_from_(std::max(trigger_, std::numeric_limits<double>::denorm_min())),
       asks_more_(!triggers.metrics.empty() || triggers.jacobian_ratio > 0 || triggers.indicator ||
                  !triggers.indicator_field.empty()) {}
 
@@ -39,8 +46,6 @@ void CellWatch::forget_looks() {
   quality_.assign(n, 0.0);
   bad_.assign(n, 0);
   has_bad_ = true;
-  stamp_.assign(n, 0);
-  stamp_now_ = 0;
 }
 
 void CellWatch::reset() {
@@ -106,6 +111,23 @@ void CellWatch::update(CellHandle c, double value) {
   excused_[i] = static_cast<std::uint8_t>(excused);
 }
 
+/// Likewise; what it counts as.
+CellWatch::Totals CellWatch::judged(CellHandle c, double value) {
+  if (stays_good(c, value)) {
+    quality_[c.idx()] = value;
+    return {};
+  }
+  update(c, value);
+  return totals_of(c);
+}
+
+/// Whether any of n cells from `first` on was bad, or is excused.
+bool CellWatch::knows_bad(std::size_t first, std::size_t n) const {
+  unsigned bits = 0;
+  for (std::size_t i = first; i < first + n; ++i) bits |= static_cast<unsigned>(bad_[i] | excused_[i]);
+  return bits != 0;
+}
+
 CellWatch::Totals CellWatch::totals_of(CellHandle c) const {
   const std::uint8_t bits = bad_[c.idx()];
   unsigned active = bits & ~static_cast<unsigned>(excused_[c.idx()]);
@@ -133,85 +155,156 @@ void CellWatch::find_indicator_field() {
   HFR_REQUIRE(is_indicated_, "trigger by field: cells have no field '" + name + "' of single numbers");
 }
 
-void CellWatch::look_at_all() {
+std::size_t CellWatch::look_at_all() {
   find_indicator_field();
-  const std::size_t n = mesh_.n_cells();
+  const std::size_t n = mesh_.n_cells(), n_blocks = (n + kBlock - 1) / kBlock;
   const int n_parts = par::thread_count(policy_, n);
-  partial_.assign(static_cast<std::size_t>(n_parts), {});
+  parts_.assign(static_cast<std::size_t>(n_parts), {});
+  block_worst_.resize(n_blocks);
+  stale_.assign(n_blocks, 0);
   const bool had_bad = has_bad_;
   par::parts(n_parts, [&](int part) {
     Totals mine;
-    for_decisions(mesh_, MinDihedral{}, par::part_begin(n, n_parts, part),
-                  par::part_begin(n, n_parts, part + 1), [&](std::size_t i, double value) {
-                    if (had_bad ? stays_good(CellHandle(i), value) : is_plainly_good(value)) {
-                      quality_[i] = value;
-                      return;
-                    }
-                    update(CellHandle(i), value);
-                    mine += totals_of(CellHandle(i));
-                  });
-    partial_[static_cast<std::size_t>(part)] = mine;
+    const std::size_t end = par::part_begin(n_blocks, n_parts, part + 1);
+    for (std::size_t block = par::part_begin(n_blocks, n_parts, part); block < end; ++block) {
+      double worst = kNone;
+      for_decision_blocks(mesh_, MinDihedral{}, block * kBlock, std::min(n, (block + 1) * kBlock),
+                          [&](std::size_t first, const CornerBlock::Lane& values, std::size_t size) {
+                            const Floor floor = floor_of(values.data(), values.size(), good_from_);
+                            worst = std::min(worst, floor.least);
+                            if (floor.holds && !asks_more_ && !(had_bad && knows_bad(first, size)))
+                              std::copy_n(values.data(), size, &quality_[first]);
+                            else
+                              for (std::size_t i = 0; i < size; ++i)
+                                mine += judged(CellHandle(first + i), values[i]);
+                          });
+      block_worst_[block] = worst;
+    }
+    parts_[static_cast<std::size_t>(part)].totals = mine;
   });
   totals_ = {};
-  for (const Totals& part : partial_) totals_ += part;
+  for (const Part& part : parts_) totals_ += part.totals;
   has_bad_ = totals_.any;
+  find_worst(false);
+  return n;
 }
 
-void CellWatch::look_at(std::span<const CellHandle> cells) {
-  find_indicator_field();
-  CornerBlock block;
-  CornerBlock::Lane values{};
-  for (std::size_t first = 0; first < cells.size(); first += CornerBlock::kSize) {
-    const auto some = cells.subspan(first, std::min(CornerBlock::kSize, cells.size() - first));
-    for (std::size_t i = 0; i < some.size(); ++i) {
-      const auto& v = mesh_.cell_vertices(some[i]);
-      block.set(i, mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3]));
-    }
-    block_decisions(MinDihedral{}, block, values);
-    for (std::size_t i = 0; i < some.size(); ++i) take(some[i], values[i]);
+/// The smallest of quality_, of blocks that are stale or of all.
+void CellWatch::find_worst(bool in_all_blocks) {
+  const std::size_t n = quality_.size(), n_blocks = (n + kBlock - 1) / kBlock;
+  if (in_all_blocks) {
+    block_worst_.resize(n_blocks);
+    stale_.assign(n_blocks, 1);
   }
+  par::Policy policy = policy_;
+  if (!in_all_blocks) policy.serial_below *= 4;  // few are stale
+  par::for_ranges(policy, n_blocks, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t block = begin; block < end; ++block) {
+      if (!stale_[block]) continue;
+      double worst = kNone;
+      for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i)
+        worst = std::min(worst, quality_[i]);
+      block_worst_[block] = worst;
+      stale_[block] = 0;
+    }
+  });
+  worst_ = kNone;
+  for (const double worst : block_worst_) worst_ = std::min(worst_, worst);
+}
+
+/// Cells that are to be looked at, in vectors.
+class CellWatch::Batch {
+ public:
+  explicit Batch(CellWatch& watch) : watch_(watch) {}
+
+  void add(CellHandle c) {
+    cells_[size_++] = c;
+    if (size_ == CornerBlock::kSize) look();
+  }
+  void look() {
+    const TetMesh& mesh = watch_.mesh_;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const auto& v = mesh.cell_vertices(cells_[i]);
+      block_.set(i, mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+    }
+    block_decisions(MinDihedral{}, block_, values_);
+    for (std::size_t i = 0; i < size_; ++i) watch_.take(cells_[i], values_[i], found_.totals);
+    found_.n_cells += size_;
+    size_ = 0;
+  }
+  const Part& found() const { return found_; }
+
+ private:
+  CellWatch& watch_;
+  CornerBlock block_;
+  CornerBlock::Lane values_{};
+  std::array<CellHandle, CornerBlock::kSize> cells_;
+  std::size_t size_ = 0;
+  Part found_;
+};
+
+/// look(i, batch) adds cells for each i in [0, n), each cell once in all.
+void CellWatch::look_in_parts(std::size_t n, double nanoseconds, const auto& look) {
+  find_indicator_field();
+  const int n_parts = par::thread_count(policy_.for_items_of(nanoseconds), n);
+  parts_.assign(static_cast<std::size_t>(n_parts), {});
+  par::parts(n_parts, [&](int part) {
+    Batch batch(*this);
+    const std::size_t end = par::part_begin(n, n_parts, part + 1);
+    for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i) look(i, batch);
+    batch.look();
+    parts_[static_cast<std::size_t>(part)] = batch.found();
+  });
+  for (const Part& part : parts_) totals_.change({}, part.totals);
+  has_bad_ = has_bad_ || totals_.any;
   if (totals_.active == 0) totals_.bits = 0;
 }
 
+void CellWatch::look_at(std::span<const CellHandle> cells) {
+  look_in_parts(cells.size(), kNanosecondsACell, [&](std::size_t i, Batch& batch) { batch.add(cells[i]); });
+}
+
 /// Of a cell that was counted as what it was.
-void CellWatch::take(CellHandle c, double value) {
+void CellWatch::take(CellHandle c, double value, Totals& changes) {
+  const std::size_t i = c.idx();
+  const double block_worst = block_worst_[i / kBlock];
+  if (value < block_worst || quality_[i] <= block_worst) {
+    par::before_shared_access();
+    par::atomic(stale_[i / kBlock]).store(1, std::memory_order_relaxed);
+  }
   if (stays_good(c, value)) {
-    quality_[c.idx()] = value;
+    quality_[i] = value;
     return;
   }
   const Totals was = totals_of(c);
   update(c, value);
-  has_bad_ = has_bad_ || bad_[c.idx()] != 0;
-  const Totals is = totals_of(c);
-  totals_.active += is.active - was.active;
-  totals_.inverted += is.inverted - was.inverted;
-  totals_.bits |= is.bits;
+  changes.change(was, totals_of(c));
 }
 
-std::size_t CellWatch::look_at_cells_of(std::span<const VertexHandle> vertices) {
-  if (vertices.size() * kManyMoved >= mesh_.n_vertices()) {
-    look_at_all();
-    return mesh_.n_cells();
-  }
-  if (++stamp_now_ == 0) {
-    std::fill(stamp_.begin(), stamp_.end(), 0U);
-    stamp_now_ = 1;
-  }
-  cells_.clear();
-  Star star;
-  const auto add = [&](CellHandle c) {
-    if (stamp_[c.idx()] == stamp_now_) return;
-    stamp_[c.idx()] = stamp_now_;
-    cells_.push_back(c);
-  };
-  for (VertexHandle v : vertices) {
+std::size_t CellWatch::look_at_cells_of(const MovedVertices& moved) {
+  const std::span<const VertexHandle> vertices = moved.list();
+  look_in_parts(vertices.size(), kNanosecondsAStar, [&](std::size_t i, Batch& batch) {
+    const VertexHandle v = vertices[i];
+    if (i + kAhead < vertices.size()) {
+      const CellHandle next = mesh_.incident_cell(vertices[i + kAhead]);
+      if (next.is_valid()) __builtin_prefetch(&mesh_.cell(next));
+    }
+    // A cell with several of them is looked at from the smallest.
+    const auto add = [&](CellHandle c) {
+      for (const VertexHandle w : mesh_.cell_vertices(c))
+        if (w < v && moved.has(w)) return;
+      batch.add(c);
+    };
+    Star star;
     if (mesh_.gather_star(v, star))
-      for (int i = 0; i < star.size; ++i) add(star.cells[static_cast<std::size_t>(i)]);
+      for (int k = 0; k < star.size; ++k) add(star.cells[static_cast<std::size_t>(k)]);
     else if (mesh_.incident_cell(v).is_valid())
       for (CellHandle c : mesh_.vertex_cells(v)) add(c);
-  }
-  look_at(cells_);
-  return cells_.size();
+  });
+  find_worst(false);
+  std::size_t n = 0;
+  for (const Part& part : parts_) n += part.n_cells;
+  return n;
 }
 
 void CellWatch::follow(const Edits& edits, bool was_cut_short) {
@@ -224,13 +317,15 @@ void CellWatch::follow(const Edits& edits, bool was_cut_short) {
   if (has_excused_) forget_excuses();
   excused_.resize(n, 0);
   left_.resize(n, kNever);
-  stamp_.resize(n, 0);  // an old stamp is no more than another cell's old one
   totals_ = {};
   has_bad_ = true;
   for_bad([&](CellHandle c) { totals_ += totals_of(c); });
   cells_ = edits.moved_cells;
   for (const CreatedCell& c : edits.created_cells) cells_.push_back(c.cell);
+  block_worst_.assign((n + kBlock - 1) / kBlock, kNone);
+  stale_.assign(block_worst_.size(), 1);
   look_at(cells_);
+  find_worst(true);
   has_bad_ = std::any_of(bad_.begin(), bad_.end(), [](std::uint8_t bits) { return bits != 0; });
   if (!was_cut_short) excuse();
 }
@@ -255,10 +350,8 @@ void CellWatch::excuse() {
 
 std::optional<Survey> CellWatch::survey() const {
   constexpr double kSurelyPositive = 1e-30;  // sin²: far from where the test of volumes is in doubt
-  double worst = std::numeric_limits<double>::infinity();
-  for (const double q : quality_) worst = std::min(worst, q);
-  if (!(worst > kSurelyPositive)) return {};
-  return Survey{worst, 0};
+  if (!(worst_ > kSurelyPositive)) return {};
+  return Survey{worst_, 0};
 }
 
 RepairCause CellWatch::cause() const {
@@ -278,9 +371,7 @@ std::vector<CellHandle> CellWatch::inverted() const {
 }
 
 double CellWatch::min_dihedral() const {
-  double worst = kRegularDihedral;
-  for (const double q : quality_) worst = std::min(worst, q);
-  return report_value(Metric::kMinDihedral, worst);
+  return report_value(Metric::kMinDihedral, std::min(kRegularDihedral, worst_));
 }
 
 }  // namespace hfr

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Remesh/MovedVertices.hh"
 #include "Remesh/Remesher.hh"
 #include "Remesh/Survey.hh"
 
@@ -46,9 +47,10 @@ class CellWatch {
   /// The mesh is another one: nothing is known of it, nothing is excused, and cells have the volumes at rest
   /// that they have now. Looks at every cell.
   void reset();
-  void look_at_all();
-  /// Looks at the cells of these vertices; returns how many there are.
-  std::size_t look_at_cells_of(std::span<const VertexHandle> vertices);
+  std::size_t look_at_all();  ///< returns how many there are
+  /// Looks at the cells of the vertices, which are not many; returns how many these are. A walk round each
+  /// vertex comes to all its cells.
+  std::size_t look_at_cells_of(const MovedVertices& moved);
   /// After a repair: looks at what it has made and moved. What is bad then, and not inverted, will have to
   /// become worse before it calls for the next repair, unless this one was cut short.
   void follow(const Edits& edits, bool was_cut_short);
@@ -92,16 +94,27 @@ class CellWatch {
       any = any || o.any;
       return *this;
     }
+    /// The cell that gave `was` gives `is`. Totals of such changes alone count modulo 2⁶⁴.
+    void change(const Totals& was, const Totals& is) {
+      active += is.active - was.active;
+      inverted += is.inverted - was.inverted;
+      bits |= is.bits;
+      any = any || is.any;
+    }
   };
+  class Batch;
 
   void find_indicator_field();
   void look_at(std::span<const CellHandle> cells);
-  void take(CellHandle c, double value);
+  void look_in_parts(std::size_t n, double nanoseconds, const auto& look);
+  void take(CellHandle c, double value, Totals& changes);
+  void find_worst(bool in_all_blocks);
   void update(CellHandle c, double value);
-  bool is_plainly_good(double value) const { return value >= trigger_ && value > 0 && !asks_more_; }
+  Totals judged(CellHandle c, double value);
+  bool knows_bad(std::size_t first, std::size_t n) const;
   /// Neither was it bad, nor is it.
   bool stays_good(CellHandle c, double value) const {
-    return (bad_[c.idx()] | excused_[c.idx()]) == 0 && is_plainly_good(value);
+    return value >= good_from_ && !asks_more_ && (bad_[c.idx()] | excused_[c.idx()]) == 0;
   }
   Totals totals_of(CellHandle c) const;
   std::uint8_t badness(CellHandle c) const;
@@ -114,8 +127,9 @@ class CellWatch {
   const TetMesh& mesh_;
   const RepairTriggers& triggers_;
   par::Policy policy_;
-  double trigger_;  // decision value of triggers.min_dihedral
-  bool asks_more_;  // triggers look at more of a cell than its dihedrals
+  double trigger_;    // decision value of triggers.min_dihedral
+  double good_from_;  // a decision value of this or more is above 0 and not below trigger_
+  bool asks_more_;    // triggers look at more of a cell than its dihedrals
   /// Whether triggers.indicator_field is not 0, by number of the cell; for one look, since storage may move.
   std::function<bool(std::size_t)> is_indicated_;
 
@@ -128,11 +142,19 @@ class CellWatch {
   bool has_excused_ = false;           // some entry of excused_ may not be 0
   Totals totals_;
 
+  // The smallest of quality_, and of each block of kBlock cells; a block that is stale may have another.
+  static constexpr std::size_t kBlock = 256;
+  double worst_ = 0;
+  std::vector<double> block_worst_;
+  std::vector<std::uint8_t> stale_;  // by block
+
   // Of the last look; kept for their memory.
+  struct Part {
+    Totals totals;
+    std::size_t n_cells = 0;
+  };
   std::vector<CellHandle> cells_;
-  std::vector<std::uint32_t> stamp_;  // by cell
-  std::uint32_t stamp_now_ = 0;
-  std::vector<Totals> partial_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace hfr

@@ -13,6 +13,7 @@
 #include "Remesh/Coordinates.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/MeshMotion.hh"
+#include "Remesh/MovedVertices.hh"
 #include "Remesh/RunMemory.hh"
 #include "Remesh/Strategy.hh"
 
@@ -100,8 +101,7 @@ class Remesher::State {
   /// All that a step may have to take back, but for the points that its first move has changed.
   struct Before {
     std::shared_ptr<const TetMesh> mesh;
-    std::vector<VertexHandle> moved;
-    std::vector<Vec3> points;
+    MovedVertices moved;
     CellWatch::Memory cells;
     std::vector<double> travelled, travelled_before;
     std::vector<std::uint64_t> vertex_ids, cell_ids;
@@ -111,8 +111,9 @@ class Remesher::State {
   void prepare();
   void forget_mesh();
   std::span<const Vec3> followed(std::span<const Vec3> displacement);
-  void list_moved(std::span<const Vec3> displacement);
-  void set_points(std::span<const Vec3> displacement, double fraction);
+  void remember_mesh();
+  std::size_t look_at_moved();
+  void move_points(std::span<const Vec3> displacement);
   void put_points_back();
   MoveResult take(std::span<const Vec3> displacement, OnInversion on_inversion);
   void note_motion(std::span<const Vec3> displacement, double fraction);
@@ -137,8 +138,7 @@ class Remesher::State {
   int steps_ = 0;        // since the last repair
 
   // Of the move that was done last; kept for their memory.
-  std::vector<VertexHandle> moved_;
-  std::vector<Vec3> was_;
+  MovedVertices moved_;
   std::vector<double> travelled_before_;  // of moved_, where asked for
   std::vector<std::uint8_t> known_;
   std::vector<Vec3> follow_;
@@ -181,9 +181,13 @@ void Remesher::State::prepare() {
   constexpr std::size_t kRoom = 16;  // cells for each that a repair may add
   mesh_.reserve_cells(mesh_.n_cells() + mesh_.n_cells() / kRoom);
   before_ = std::make_shared<TetMesh>(mesh_);
+  remember_mesh();
+  memory_.is_folded = !folded_faces(mesh_, policy_).empty();
+}
+
+void Remesher::State::remember_mesh() {
   memory_.work.attach(mesh_, policy_);
   memory_.knows_stars = true;
-  memory_.is_folded = !folded_faces(mesh_, policy_).empty();
 }
 
 /// The mesh is another one than repairs remember.
@@ -208,14 +212,12 @@ void Remesher::State::require_displacement(std::span<const Vec3> displacement) {
   HFR_REQUIRE(displacement.size() == mesh_.n_vertices(),
               "displacement: has " + std::to_string(displacement.size()) + " entries for " +
                   std::to_string(mesh_.n_vertices()) + " vertices");
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    const Vec3 d = displacement[i];
-    HFR_REQUIRE(std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.z),
-                "displacement: that of vertex " + std::to_string(i) + " is not finite");
-  }
+  const std::size_t first = moved_.find(displacement, policy_);
+  HFR_REQUIRE(first == displacement.size(),
+              "displacement: that of vertex " + std::to_string(first) + " is not finite");
 }
 
-/// The displacement of all vertices: as it is given, or with inner ones made to follow.
+/// The displacement of all vertices, which moved_ knows: as it is given, or with inner ones made to follow.
 std::span<const Vec3> Remesher::State::followed(std::span<const Vec3> displacement) {
   if (options_.motion == Motion::kGiven) return displacement;
   known_.assign(mesh_.n_vertices(), 0);
@@ -225,45 +227,50 @@ std::span<const Vec3> Remesher::State::followed(std::span<const Vec3> displaceme
     if (mesh_.is_fixed(v)) known_[v.idx()] = 1;
   follow_.assign(displacement.begin(), displacement.end());
   follow(mesh_, known_, options_.motion == Motion::kElastic, follow_);
+  moved_.find(follow_, policy_);
   return follow_;
 }
 
-void Remesher::State::list_moved(std::span<const Vec3> displacement) {
-  moved_.clear();
-  was_.clear();
+void Remesher::State::move_points(std::span<const Vec3> displacement) {
   travelled_before_.clear();
-  for (std::size_t i = 0; i < displacement.size(); ++i) {
-    if (displacement[i] == Vec3{}) continue;
-    if (!memory_.knows_stars || memory_.work.frozen[i]) memory_.is_folded.reset();
-    moved_.push_back(VertexHandle(i));
-    was_.push_back(mesh_.point(VertexHandle(i)));
-    if (!travelled_.empty()) travelled_before_.push_back(travelled_[i]);
-  }
-}
-
-void Remesher::State::set_points(std::span<const Vec3> displacement, double fraction) {
+  const auto is_frozen = [&](VertexHandle v) { return !memory_.knows_stars || memory_.work.frozen[v.idx()]; };
+  if (memory_.is_folded && moved_.find_if(is_frozen)) memory_.is_folded.reset();
+  if (!travelled_.empty())
+    moved_.find_if([&](VertexHandle v) {
+      travelled_before_.push_back(travelled_[v.idx()]);
+      return false;
+    });
+  moved_.move(mesh_, displacement, policy_);
   has_moved_ = true;
-  par::for_each(policy_, moved_.size(), [&](std::size_t i) {
-    const Vec3 d = displacement[moved_[i].idx()];
-    mesh_.set_point(moved_[i], was_[i] + (fraction == 1 ? d : fraction * d));
-  });
 }
 
 void Remesher::State::put_points_back() {
-  for (std::size_t i = 0; i < moved_.size(); ++i) {
-    mesh_.set_point(moved_[i], was_[i]);
-    if (!travelled_.empty()) travelled_[moved_[i].idx()] = travelled_before_[i];
-  }
+  moved_.put_back(mesh_, policy_);
+  if (travelled_.empty()) return;
+  moved_.find_if([&, i = std::size_t{0}](VertexHandle v) mutable {
+    travelled_[v.idx()] = travelled_before_[i++];
+    return false;
+  });
 }
 
+std::size_t Remesher::State::look_at_moved() {
+  if (moved_.are_many()) return watch_.look_at_all();
+  if (!memory_.knows_stars) remember_mesh();
+  const std::vector<std::uint8_t>& pinched = memory_.work.pinched;
+  // A walk round such a vertex does not come to all its cells.
+  if (!pinched.empty() && moved_.find_if([&](VertexHandle v) { return pinched[v.idx()] != 0; }))
+    return watch_.look_at_all();
+  return watch_.look_at_cells_of(moved_);
+}
+
+/// Of the displacement that moved_ knows.
 MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion on_inversion) {
   MoveResult result;
-  list_moved(displacement);
   result.n_moved = moved_.size();
-  if (moved_.empty()) return result;
+  if (moved_.size() == 0) return result;
   const std::size_t inverted_before = watch_.n_inverted();
-  set_points(displacement, 1);
-  result.n_looked_at = watch_.look_at_cells_of(moved_);
+  move_points(displacement);
+  result.n_looked_at = look_at_moved();
   if (on_inversion == OnInversion::kRepair || watch_.n_inverted() <= inverted_before) {
     note_motion(displacement, 1);
     return result;
@@ -271,19 +278,21 @@ MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion
   if (on_inversion == OnInversion::kRefuse) {
     result.refused = watch_.inverted();
     put_points_back();
-    watch_.look_at_cells_of(moved_);
+    look_at_moved();
     result.fraction = 0;
     return result;
   }
+  const auto put_at = [&](double fraction) {
+    moved_.put(mesh_, displacement, fraction, policy_);
+    look_at_moved();
+  };
   double safe = 0, unsafe = 1;
   for (int i = 0; i < kStepEffort.halvings; ++i) {
     const double middle = 0.5 * (safe + unsafe);
-    set_points(displacement, middle);
-    watch_.look_at_cells_of(moved_);
+    put_at(middle);
     (watch_.n_inverted() <= inverted_before ? safe : unsafe) = middle;
   }
-  set_points(displacement, safe);
-  watch_.look_at_cells_of(moved_);
+  put_at(safe);
   result.fraction = safe;
   note_motion(displacement, safe);
   return result;
@@ -291,10 +300,11 @@ MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion
 
 void Remesher::State::note_motion(std::span<const Vec3> displacement, double fraction) {
   if (travelled_.empty()) return;
-  for (VertexHandle v : moved_) {
+  moved_.find_if([&](VertexHandle v) {
     travelled_[v.idx()] += fraction * norm(displacement[v.idx()]);
     farthest_ = std::max(farthest_, travelled_[v.idx()]);
-  }
+    return false;
+  });
 }
 
 MoveResult Remesher::State::move(std::span<const Vec3> displacement) {
@@ -369,7 +379,6 @@ bool Remesher::State::repair_in_step(std::span<const FieldTransfer> fields, Step
   if (!undo_) {
     undo_ = Before{.mesh = nullptr,
                    .moved = moved_,
-                   .points = was_,
                    .cells = watch_.memory(),
                    .travelled = travelled_,
                    .travelled_before = travelled_before_,
@@ -409,6 +418,7 @@ void Remesher::State::run_step(std::span<const Vec3> displacement, StepResult& r
     rest.assign(left.values().begin(), left.values().end());
     mesh_.properties().vertices.remove(kRest);
     if (!finished) return;
+    moved_.find(rest, policy_);
     if (move.fraction == 0 && result.repairs.back().edits.empty()) i = options_.max_substeps - 1;
   }
   ++steps_;
@@ -423,7 +433,6 @@ void Remesher::State::undo() {
   }
   if (undo_) {
     moved_ = std::move(undo_->moved);
-    was_ = std::move(undo_->points);
     watch_.restore(std::move(undo_->cells));
     travelled_ = std::move(undo_->travelled);
     travelled_before_ = std::move(undo_->travelled_before);
@@ -449,9 +458,6 @@ StepResult Remesher::State::step(std::span<const Vec3> displacement) {
   transfer();
   undo_.reset();
   has_moved_ = false;
-  moved_.clear();
-  was_.clear();
-  travelled_before_.clear();
   steps_before_ = steps_;
   const std::size_t inverted_before = watch_.n_inverted();
   StepResult result;

@@ -19,6 +19,8 @@ constexpr double kNoVolume = 1e-12;
 // A cell of which less than this is missing is covered.
 constexpr double kCovered = 1e-7;
 
+constexpr double kNanoseconds = 3'000;  // a new cell, about
+
 struct Box {
   Vec3 low, high;
 
@@ -36,8 +38,34 @@ struct Box {
   }
 };
 
+/// Boxes by where they begin along x.
+class ByX {
+ public:
+  ByX() = default;
+  ByX(std::span<const Box> boxes, std::span<const Index> numbers) {
+    by_x_.reserve(numbers.size());
+    for (const Index i : numbers) {
+      by_x_.emplace_back(boxes[i].low.x, i);
+      widest_ = std::max(widest_, boxes[i].high.x - boxes[i].low.x);
+    }
+    std::sort(by_x_.begin(), by_x_.end());
+  }
+  /// visit(number) for those that may meet the box, until it returns true; whether it did.
+  template <class Visit>
+  bool find_near(const Box& box, Visit&& visit) const {
+    auto at = std::lower_bound(by_x_.begin(), by_x_.end(), std::pair(box.low.x - widest_, Index(0)));
+    for (; at != by_x_.end() && at->first <= box.high.x; ++at)
+      if (visit(at->second)) return true;
+    return false;
+  }
+
+ private:
+  std::vector<std::pair<double, Index>> by_x_;
+  double widest_ = 0;
+};
+
 /// The old cells in question, numbered in the order that they are given in: each with its box and planes,
-/// with which others it shares a face, and by vertex and by where it begins along x.
+/// with which others it shares a face, and by vertex.
 class Candidates {
  public:
   static constexpr Index kNone = std::numeric_limits<Index>::max();
@@ -57,12 +85,14 @@ class Candidates {
       }
     });
     list_by_vertex(mesh);
-    by_x_.reserve(cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      by_x_.emplace_back(boxes_[i].low.x, static_cast<Index>(i));
-      widest_ = std::max(widest_, boxes_[i].high.x - boxes_[i].low.x);
-    }
-    std::sort(by_x_.begin(), by_x_.end());
+    inverted_ = ByX(boxes_, par::compact<Index>(policy, cells.size(),
+                                                [&](std::size_t i) { return shapes_[i].is_inverted; }));
+  }
+  /// For near().
+  void sort_by_x() {
+    std::vector<Index> all(cells_.size());
+    std::iota(all.begin(), all.end(), Index{0});
+    all_ = ByX(boxes_, all);
   }
   struct Shape {
     TetPoints points;
@@ -85,8 +115,13 @@ class Candidates {
   /// Those that may meet the box.
   template <class Visit>
   void near(const Box& box, Visit&& visit) const {
-    auto at = std::lower_bound(by_x_.begin(), by_x_.end(), std::pair(box.low.x - widest_, Index(0)));
-    for (; at != by_x_.end() && at->first <= box.high.x; ++at) visit(at->second);
+    all_.find_near(box, [&](Index i) {
+      visit(i);
+      return false;
+    });
+  }
+  bool is_near_an_inverted_one(const Box& box) const {
+    return inverted_.find_near(box, [&](Index i) { return box.meets(boxes_[i]); });
   }
 
  private:
@@ -104,8 +139,7 @@ class Candidates {
   std::vector<Box> boxes_;
   std::vector<Shape> shapes_;
   std::vector<Index> first_of_, of_;  // by vertex: where its candidates begin, and these
-  std::vector<std::pair<double, Index>> by_x_;
-  double widest_ = 0;
+  ByX inverted_, all_;
 };
 
 /// Candidates that a search has seen; one list serves many searches.
@@ -134,6 +168,32 @@ class Search {
     seen_.forget();
     parts_.clear();
   }
+  /// Looks from a candidate on at those that the cell reaches into, from face to face: from the one that has
+  /// the middle of the cell, or where a walk to it ends, from `first`. True when any were found: all there
+  /// are where they cover the cell and no inverted candidate, which overlaps others, is near.
+  bool look_along_faces(Index first) {
+    if (first == Candidates::kNone) return false;
+    const Index middle = with_middle(first);
+    const Index start = middle == Candidates::kNone ? first : middle;
+    if (!seen_.add(start)) return false;
+    queue_.push_back(start);
+    while (!queue_.empty()) {
+      const Index at = queue_.back();
+      queue_.pop_back();
+      const Candidates::Shape& old = candidates_.shape(at);
+      if (planes_.is_apart_from(old.points)) continue;
+      const Shared shared = share(cell_, old.planes);
+      add_if_counts(at, shared.volume);
+      if (shared.volume == 0 && old.planes.whole() != 0) continue;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Index next = old.neighbours[k];
+        if (next == Candidates::kNone || !shared.reaches_beyond[k] || !seen_.add(next)) continue;
+        if (box_.meets(candidates_.box(next))) queue_.push_back(next);
+      }
+    }
+    return !parts_.empty();
+  }
+  bool is_near_an_inverted_one() const { return candidates_.is_near_an_inverted_one(box_); }
   /// Looks at a candidate and, where it is near, at its neighbours, and so on.
   void look_from(Index first) {
     if (first == Candidates::kNone || !seen_.add(first)) return;
@@ -156,7 +216,7 @@ class Search {
     for (const Overlap& part : parts_) covered += part.volume;
     return std::abs(covered - volume_) <= kCovered * volume_;
   }
-  std::vector<Overlap> take() {
+  const std::vector<Overlap>& found() {
     std::sort(parts_.begin(), parts_.end(),
               [](const Overlap& a, const Overlap& b) { return a.old_cell < b.old_cell; });
     return parts_;
@@ -167,11 +227,28 @@ class Search {
   bool look_at(Index i) {
     if (!box_.meets(candidates_.box(i))) return false;
     const Candidates::Shape& old = candidates_.shape(i);
-    if (planes_.is_apart_from(old.points)) return true;
-    const double shared = shared_volume(cell_, old.planes);
+    if (!planes_.is_apart_from(old.points)) add_if_counts(i, shared_volume(cell_, old.planes));
+    return true;
+  }
+  void add_if_counts(Index i, double shared) {
+    const Candidates::Shape& old = candidates_.shape(i);
     if (shared > kNoVolume * std::min(volume_, old.planes.whole() / 6))
       parts_.push_back({candidates_.cell(i), old.is_inverted ? -shared : shared});
-    return true;
+  }
+  /// The candidate that has the middle of the cell, by a walk from the first one; kNone where that ends.
+  Index with_middle(Index first) const {
+    constexpr int kFarthest = 32;  // cells; those of a cavity lie near one another
+    const Vec3 middle = 0.25 * (cell_[0] + cell_[1] + cell_[2] + cell_[3]);
+    Index at = first;
+    for (int i = 0; i < kFarthest && at != Candidates::kNone; ++i) {
+      const Candidates::Shape& old = candidates_.shape(at);
+      if (old.planes.whole() == 0) return Candidates::kNone;
+      const std::array<double, 4> u = old.planes.coordinates(middle);
+      const auto least = static_cast<std::size_t>(std::min_element(u.begin(), u.end()) - u.begin());
+      if (u[least] >= 0) return at;
+      at = old.neighbours[least];
+    }
+    return Candidates::kNone;
   }
 
   const Candidates& candidates_;
@@ -184,42 +261,104 @@ class Search {
   std::vector<Overlap> parts_;
 };
 
+/// What searches for some of the new cells have found.
+struct Found {
+  std::vector<std::size_t> n;  ///< by cell
+  std::vector<Overlap> parts;
+};
+
+/// Reads what was found cell by cell.
+class Reader {
+ public:
+  explicit Reader(const std::vector<Found>& found) : found_(found) {}
+
+  std::span<const Overlap> next() {
+    while (cell_ == found_[list_].n.size()) {
+      ++list_;
+      cell_ = part_ = 0;
+    }
+    const Overlap* begin = found_[list_].parts.data() + part_;
+    const std::size_t n = found_[list_].n[cell_++];
+    part_ += n;
+    return {begin, n};
+  }
+
+ private:
+  const std::vector<Found>& found_;
+  std::size_t list_ = 0, cell_ = 0, part_ = 0;
+};
+
+/// `again`: of the cells that are open, instead of what was found first.
+Overlaps joined(const std::vector<Found>& found, std::span<const std::uint8_t> is_open,
+                const std::vector<Found>& again) {
+  Reader first(found), second(again);
+  Overlaps all;
+  all.first.reserve(is_open.size() + 1);
+  all.first.push_back(0);
+  for (const std::uint8_t open : is_open) {
+    std::span<const Overlap> parts = first.next();
+    if (open != 0) parts = second.next();
+    all.parts.insert(all.parts.end(), parts.begin(), parts.end());
+    all.first.push_back(all.parts.size());
+  }
+  return all;
+}
+
 }  // namespace
 
 Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edits,
                        std::span<const CellHandle> new_cells, std::span<const CellHandle> old_cells,
                        par::Policy policy) {
-  const Candidates candidates(old, old_cells, policy);
+  Candidates candidates(old, old_cells, policy);
   std::unordered_map<Index, CellHandle> place;
   for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
     for (const PlacedVertex& v : *list)
       if (v.old_cell.is_valid()) place.emplace(v.vertex.idx(), v.old_cell);
-  std::vector<std::vector<Overlap>> found(new_cells.size());
-  constexpr double kNanoseconds = 10'000;  // a cell, about
-  par::for_ranges(policy.for_items_of(kNanoseconds), new_cells.size(),
-                  [&](std::size_t begin, std::size_t end) {
-                    Search search(candidates);
-                    for (std::size_t i = begin; i < end; ++i) {
-                      search.begin(points_of(now, new_cells[i]));
-                      for (VertexHandle v : now.cell_vertices(new_cells[i])) {
-                        const auto at = place.find(v.idx());
-                        if (at != place.end()) search.look_from(candidates.number(at->second));
-                        const VertexHandle source = edits.maps.sources[v.idx()];
-                        if (!source.is_valid()) continue;
-                        for (const Index near : candidates.of(source)) search.look_from(near);
-                      }
-                      if (!search.is_covered()) search.look_everywhere();
-                      found[i] = search.take();
-                    }
-                  });
-  Overlaps all;
-  all.first.reserve(new_cells.size() + 1);
-  all.first.push_back(0);
-  for (const auto& parts : found) {
-    all.parts.insert(all.parts.end(), parts.begin(), parts.end());
-    all.first.push_back(all.parts.size());
-  }
-  return all;
+  /// visit(candidate) for those that may have something of the cell, until it returns true.
+  const auto for_near_corners = [&](CellHandle c, auto&& visit) {
+    for (VertexHandle v : now.cell_vertices(c)) {
+      const auto at = place.find(v.idx());
+      if (at != place.end() && visit(candidates.number(at->second))) return;
+      const VertexHandle source = edits.maps.sources[v.idx()];
+      if (!source.is_valid()) continue;
+      for (const Index near : candidates.of(source))
+        if (visit(near)) return;
+    }
+  };
+  const auto search_all = [&](std::size_t n, double nanoseconds, auto&& search_one) {
+    const int n_parts = par::thread_count(policy.for_items_of(nanoseconds), n);
+    std::vector<Found> found(static_cast<std::size_t>(n_parts));
+    par::parts(n_parts, [&](int part) {
+      Search search(candidates);
+      Found& mine = found[static_cast<std::size_t>(part)];
+      const std::size_t end = par::part_begin(n, n_parts, part + 1);
+      for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i) {
+        search_one(i, search);
+        const std::vector<Overlap>& parts = search.found();
+        mine.n.push_back(parts.size());
+        mine.parts.insert(mine.parts.end(), parts.begin(), parts.end());
+      }
+    });
+    return found;
+  };
+  std::vector<std::uint8_t> is_open(new_cells.size(), 0);
+  const std::vector<Found> first = search_all(new_cells.size(), kNanoseconds, [&](std::size_t i, Search& s) {
+    s.begin(points_of(now, new_cells[i]));
+    for_near_corners(new_cells[i], [&](Index near) { return s.look_along_faces(near); });
+    is_open[i] = !s.is_covered() || s.is_near_an_inverted_one();
+  });
+  const std::vector<Index> open =
+      par::compact<Index>(policy, new_cells.size(), [&](std::size_t i) { return is_open[i] != 0; });
+  if (!open.empty()) candidates.sort_by_x();
+  const std::vector<Found> second = search_all(open.size(), kNanoseconds, [&](std::size_t i, Search& s) {
+    s.begin(points_of(now, new_cells[open[i]]));
+    for_near_corners(new_cells[open[i]], [&](Index near) {
+      s.look_from(near);
+      return false;
+    });
+    if (!s.is_covered()) s.look_everywhere();
+  });
+  return joined(first, is_open, second);
 }
 
 std::vector<CellHandle> changed_old_cells(const Edits& edits) {

@@ -120,6 +120,20 @@ bool TetPlanes::is_apart_from(const TetPoints& other) const {
   return is_outside_of_a_plane(in_coordinates(*this, other));
 }
 
+Shared share(const TetPoints& a, const TetPlanes& b) {
+  Shared shared;
+  if (b.whole() == 0) {
+    shared.reaches_beyond.fill(true);
+    return shared;
+  }
+  const Piece piece = in_coordinates(b, a);
+  for (std::size_t k = 0; k < 4; ++k)
+    shared.reaches_beyond[k] =
+        std::min(std::min(piece[0][k], piece[1][k]), std::min(piece[2][k], piece[3][k])) < 0;
+  if (!is_outside_of_a_plane(piece)) shared.volume = volume_inside(piece, 0) / (6 * b.whole() * b.whole());
+  return shared;
+}
+
 double shared_volume(const TetPoints& a, const TetPlanes& b) {
   if (b.whole() == 0) return 0;
   const Piece piece = in_coordinates(b, a);

@@ -42,6 +42,13 @@ class TetPlanes {
   double whole_ = 0;
 };
 
+/// What a tetrahedron shares with another one, `b`: a volume, and whether it reaches beyond the plane of `b`
+/// opposite each corner. Beyond none that it does not reach beyond lies anything of it.
+struct Shared {
+  double volume = 0;
+  std::array<bool, 4> reaches_beyond{};
+};
+Shared share(const TetPoints& a, const TetPlanes& b);
 /// Volume that two tetrahedra have in common; 0 where one is flat. Exact but for rounding: `a` is cut by the
 /// four planes of `b` in turn, each into at most three pieces.
 double shared_volume(const TetPoints& a, const TetPlanes& b);

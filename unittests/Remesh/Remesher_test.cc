@@ -97,6 +97,73 @@ TEST(Remesher, StepsThatRepairNothingAllocateNothing) {
   EXPECT_EQ(n_allocations(), before);
 }
 
+TEST(Remesher, WhatItKnowsOfAllCellsIsWhatAFirstLookFinds) {
+  for (const int threads : {1, 2, 7}) {
+    TetMesh mesh = box(9);
+    RemesherOptions options = options_for(15, 0);
+    options.triggers.inverted = false;
+    options.improve.policy = {.threads = threads, .serial_below = 0};
+    Remesher remesher(mesh, options);
+    Engine engine(3);
+    std::vector<Vec3> d;
+    std::size_t n_inverted = 0, n_raised = 0;
+    double before = remesher.min_dihedral();
+    for (int i = 0; i < 120; ++i) {
+      // Few and many, far and near; every other step takes the one before it back.
+      if (i % 2 == 1)
+        for (Vec3& x : d) x = -x;
+      else {
+        d.assign(mesh.n_vertices(), {});
+        const double far = i % 3 == 0 ? 0.12 : 0.03;
+        for (Vec3& x : d)
+          if (engine() % (i % 8 == 0 ? 2 : 40) == 0) x = random_point(engine, -far, far);
+      }
+      const StepResult step = remesher.step(d);
+      ASSERT_FALSE(step.changed);
+      TetMesh copy = mesh;
+      const Remesher fresh(copy, options);
+      ASSERT_EQ(step.min_dihedral, fresh.min_dihedral()) << "step " << i;
+      ASSERT_EQ(step.n_inverted, inverted_cells(mesh)) << "step " << i;
+      n_inverted += step.n_inverted > 0 ? 1 : 0;
+      n_raised += step.min_dihedral > before ? 1 : 0;
+      before = step.min_dihedral;
+    }
+    EXPECT_GT(n_inverted, 20U);
+    EXPECT_GT(n_raised, 20U);
+  }
+}
+
+TEST(Remesher, CellsThatAWalkRoundAVertexMissesAreLookedAt) {
+  // Two boxes that share a corner: no walk comes from one to the other.
+  TetMesh one = built(generate::box({4, 4, 4}));
+  std::vector<Vec3> points(one.points().begin(), one.points().end());
+  std::vector<std::array<Index, 4>> cells;
+  const auto n = static_cast<Index>(points.size());
+  for (CellHandle c : one.cells()) {
+    const auto& v = one.cell_vertices(c);
+    cells.push_back({v[0].idx(), v[1].idx(), v[2].idx(), v[3].idx()});
+  }
+  const std::size_t n_cells = cells.size();
+  for (std::size_t i = 0; i < n_cells; ++i) {
+    std::array<Index, 4> other = cells[i];
+    for (Index& v : other) v = v == 0 ? n - 1 : n + v - 1;
+    cells.push_back(other);
+  }
+  for (Index i = 1; i < n; ++i) points.push_back(one.point(V(i)) + Vec3{1, 1, 1});
+  for (const double towards : {0.6, -0.6}) {
+    TetMesh mesh = build(points, cells);
+    ASSERT_EQ(mesh.point(V(n - 1)), (Vec3{1, 1, 1}));
+    Remesher remesher(mesh, options_for());
+    std::vector<Vec3> d(mesh.n_vertices());
+    d[n - 1] = {towards, towards, towards};
+    const MoveResult move = remesher.move(d);
+    EXPECT_GT(inverted_cells(mesh), 0U);
+    EXPECT_EQ(remesher.n_inverted(), inverted_cells(mesh));
+    EXPECT_EQ(remesher.needs_repair(), RepairCause::kInverted);
+    EXPECT_EQ(move.n_moved, 1U);
+  }
+}
+
 TEST(Remesher, TurningBodyIsRepairedStepByStepAndEditsFollowTheMesh) {
   TetMesh mesh = box(8);
   RemesherOptions options = options_for();

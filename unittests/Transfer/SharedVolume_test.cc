@@ -79,5 +79,31 @@ TEST(SharedVolumeProperty, PartsInTheCellsOfAMeshAddUpToTheCell) {
   }
 }
 
+TEST(SharedVolumeProperty, NothingLiesBeyondAPlaneThatTheCellDoesNotReachBeyond) {
+  const generate::Arrays box = generate::jittered_box({4, 4, 4}, 0.1, 3);
+  const TetMesh mesh = build(box.points, box.cells);
+  RandomTets random(13);
+  int n_reached = 0, n_not = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Tet t = random.next();
+    for (CellHandle c : mesh.cells()) {
+      const Shared shared = share(t, TetPlanes(points_of(mesh, c)));
+      ASSERT_EQ(shared.volume, shared_volume(t, points_of(mesh, c)));
+      for (int k = 0; k < 4; ++k) {
+        const HalfFaceHandle beyond = mesh.opposite_halfface(halfface_of(c, k));
+        if (!beyond.is_valid()) continue;
+        ++(shared.reaches_beyond[static_cast<std::size_t>(k)] ? n_reached : n_not);
+        if (!shared.reaches_beyond[static_cast<std::size_t>(k)]) {
+          ASSERT_EQ(shared_volume(t, points_of(mesh, cell_of(beyond))), 0);
+        }
+      }
+    }
+  }
+  EXPECT_GT(n_reached, 1000);
+  EXPECT_GT(n_not, 1000);
+  const Tet flat = {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{1, 1, 0}};
+  for (const bool reaches : share(random.next(), TetPlanes(flat)).reaches_beyond) EXPECT_TRUE(reaches);
+}
+
 }  // namespace
 }  // namespace hfr::test
