@@ -18,7 +18,7 @@ CONTENTS = {
     "Start": ["start", "tutorials", "gallery/README", "coming-from", "about"],
     "Use": ["tool", "surface", "simulation", "file-formats", "reports", "json", "exit-codes", "opencl", "install", "building"],
     "Programs": ["library", "half-face-kernel", "python", "c-api", "petsc"],
-    "How it works": ["architecture", "pipeline", "quality", "operators", "scheduler", "distributed", "untangling", "determinism"],
+    "How it works": ["architecture", "pipeline", "ablation", "quality", "operators", "scheduler", "distributed", "untangling", "determinism"],
     "Figures": ["performance", "worst-angles", "peers", "paper-tables", "fuzzing"],
     "Project": ["versions", "contributing", "changelog"],
 }

@@ -14,14 +14,13 @@ bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
                             double degrees) {
   if (!effort) return false;
   const double decision = dihedral_decision(degrees);
-  const FewCells few{.to_dig = effort->few, .to_search = effort->few};
   for (const NeighbourhoodEffort::Try& attempt : effort->tries) {
     const std::vector<CellHandle> left = cells_below(run.mesh, degrees, run.policy());
     if (left.empty()) return true;
     if (left.size() > effort->few || run.control.stopped()) return false;
     const auto around = vertices_within(run.mesh, left, attempt.layers);
     PassRunner<MinSine2> runner(run, MinSine2{}, "neighbourhoods");
-    const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, effort->largest)), around};
+    const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, kLargestGoal)), around};
     for (int i = 1; i <= effort->iterations && !run.control.stopped(); ++i) {
       const Turn turn{i, focus};
       std::size_t changes = runner.iterate(turn);
@@ -30,7 +29,7 @@ bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
       if (changes == 0) break;
     }
     runner.look_again();
-    iterate_below(runner, run.strategy.polish, decision, few);
+    iterate_below(runner, run.strategy.polish, decision, effort->few);
   }
   return cells_below(run.mesh, degrees, run.policy()).empty();
 }

@@ -27,6 +27,9 @@ namespace hfr {
 namespace {
 
 constexpr double kTryNanoseconds = 1e6;
+/// Gain of a new vertex that may leave cells as poor as it likes, but valid: the polish of the try mends
+/// them.
+constexpr double kAnyLoss = 0;
 
 struct Outcome {
   std::optional<TetMesh> mesh;
@@ -91,7 +94,7 @@ bool put_row(const Run& run, const PatchTrial& rules, double share, double goal)
   for (const auto& vertices : needles) {
     const HalfFaceHandle face = mesh.find_halfface(vertices);  // in whatever cell lies on it by now
     if (!face.is_valid()) continue;                            // where the patch is pinched at all three
-    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, rules.any_loss};
+    VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kAnyLoss};
     insertion.only_place = detail::Needle(detail::points_of(mesh, face)).place(share, rules.row_height);
     if (!apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(cell_of(face)))) continue;
     changed = true;
@@ -119,7 +122,7 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
       return true;
     }
     case Try::kVertex: {
-      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, rules.loss};
+      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kAnyLoss};
       insertion.only_site = static_cast<int>(attempt.number);
       return apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)));
     }
@@ -128,7 +131,7 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
       if (!has(run.strategy.pass.ops, Ops::kNode) || v.idx() >= mesh.n_vertices() ||
           work.frozen[v.idx()] != 0)
         return false;
-      const std::vector<double> nothing_to_lose(mesh.n_cells(), rules.flat);
+      const std::vector<double> nothing_to_lose(mesh.n_cells(), 0);
       return apply(VertexCollapse<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
     }
   }
@@ -159,7 +162,7 @@ class PatchTries {
         worst_(survey(patch.mesh(), strategy_.pass.policy).worst),
         least_(rules().rise * worst_),
         enough_(dihedral_decision(goal)),
-        worked_for_(std::min(rules().ahead * goal, rules().largest)) {}
+        worked_for_(std::min(rules().ahead * goal, kLargestGoal)) {}
 
   /// Whether there is something to be done, for few cells.
   bool is_worth_trying(std::size_t few) const {

@@ -192,7 +192,7 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
     const UntangleEffort& effort = *strategy.untangle;
     lines.add("untangle", say(found.n_invalid, " cells: vertices moved together within ",
                               effort.widths.front().layers, " to ", effort.widths.back().layers,
-                              " layers, then reconnected, ", effort.restarts, " times"));
+                              " layers, then reconnected, again while fewer are left"));
   }
   if (strategy.goal && !std::isfinite(strategy.goal->many_miss)) {
     lines.add("all cells", "not before the goal was worked for");

@@ -8,8 +8,7 @@
 
 namespace hfr {
 template <class Metric>
-bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, double decision,
-                   const FewCells& few) {
+bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, double decision, std::size_t few) {
   RunControl& control = runner.run().control;
   std::size_t n_poor = runner.n_below(decision);
   double worst = runner.worst();
@@ -37,7 +36,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     // the last ones have not paid, more of them would only fill the place with poor cells.
     const bool pays =
         !has_dug || 10 * n_poor <= effort.dig_again_tenths * n_poor_dug || worst > worst_dug * effort.gain;
-    if (n_poor <= few.to_dig && pays) {
+    if (n_poor <= few && pays) {
       has_dug = true;
       n_poor_dug = n_poor;
       worst_dug = worst;
@@ -46,22 +45,20 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
         continue;
       }
     }
-    if (n_poor > few.to_search || runner.pass(PassKind::kCluster, turn) == 0) break;
+    if (n_poor > few || runner.pass(PassKind::kCluster, turn) == 0) break;
     idle = effort.idle - 1;
   }
   return n_poor == 0;
 }
-template bool iterate_below(PassRunner<MinSine2>&, const PolishEffort&, double, const FewCells&);
-template bool iterate_below(PassRunner<MinDihedral>&, const PolishEffort&, double, const FewCells&);
+template bool iterate_below(PassRunner<MinSine2>&, const PolishEffort&, double, std::size_t);
+template bool iterate_below(PassRunner<MinDihedral>&, const PolishEffort&, double, std::size_t);
 
 bool polish(const Run& run, const PolishEffort& effort, double degrees, double largest_share) {
   return polish_to(run, effort, dihedral_decision(degrees), largest_share);
 }
 
 bool polish_to(const Run& run, const PolishEffort& effort, double decision, double largest_share) {
-  FewCells few;
-  few.to_dig = std::max(effort.few_to_dig, run.mesh.n_logical_cells() / effort.dig_share);
-  few.to_search = effort.few_to_search > 0 ? effort.few_to_search : few.to_dig;
+  const std::size_t few = std::max(effort.few_to_dig, run.mesh.n_logical_cells() / effort.dig_share);
   {
     PassRunner<MinSine2> runner(run, MinSine2{}, "polish", effort.selection);
     const auto n_poor = static_cast<double>(runner.n_below(decision));

@@ -16,16 +16,11 @@ bool polish(const Run& run, const PolishEffort& effort, double degrees, double l
 /// The same towards a decision value of MinDihedral, which may be that of an inverted cell.
 bool polish_to(const Run& run, const PolishEffort& effort, double decision, double largest_share = 1);
 
-/// Poor cells up to which a dear operator is worth it.
-struct FewCells {
-  std::size_t to_dig = 0;     ///< a new vertex for each
-  std::size_t to_search = 0;  ///< a search of all clusters round each
-};
-/// Iterates on cells below a decision value while that helps. True when there are none any more. For MinSine2
-/// and MinDihedral.
+/// Iterates on cells below a decision value while that helps. Where they are no more than `few`, each is
+/// worth what is dear: a new vertex, then a search of all clusters round it. True when there are none any
+/// more. For MinSine2 and MinDihedral.
 template <class Metric>
-bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, double decision,
-                   const FewCells& few);
+bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, double decision, std::size_t few);
 
 }  // namespace hfr
 

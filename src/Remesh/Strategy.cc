@@ -102,7 +102,6 @@ PolishEffort polish_effort(const Asked& asked, bool any_cost) {
     polish.dig_share = 4;
   else if (asked.is_free())
     polish.dig_share = 32;
-  if (any_cost || asked.has_goal()) polish.few_to_search = 0;
   polish.selection = selection_of(asked);
   return polish;
 }
@@ -308,7 +307,6 @@ Strategy strategy_of_patch(const Strategy& whole) {
   if (!whole.patch.has_surface) patch.pass.promise_of_many = 0.5;
   patch.polish.iterations = whole.patch.iterations;
   patch.polish.dig_share = 4;  // as many vertices as it takes
-  patch.polish.few_to_search = 0;
   patch.polish.selection = patch.pass.selection;
   return patch;
 }

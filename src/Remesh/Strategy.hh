@@ -125,7 +125,6 @@ struct UntangleEffort {
   std::array<double, 4> focus = {1e-4, 1e-2, 0.1, 0.3};
   int iterations = 40;  ///< at all of them together
   int idle = 2;         ///< iterations without fewer invalid cells or a better worst one
-  int restarts = 6;     ///< of reconnection after moving
 };
 
 /// All cells in one metric. Shown by --runs default, percentiles and seconds, the cavities first;
@@ -161,7 +160,8 @@ struct PolishEffort {
   std::size_t least_fewer = 10;
   /// FanMerge counts as gain where it merges one in so many of these: each merger takes several cells.
   std::size_t fan_of = 4;
-  /// Poor cells up to which vertices are inserted for them: `few_to_dig`, or one cell in `dig_share`.
+  /// Poor cells up to which vertices are inserted for them, and clusters searched: `few_to_dig`, or one cell
+  /// in `dig_share`.
   std::size_t few_to_dig = 50;
   std::size_t dig_share = 48;
   /// Insertion for more than PassEffort::few_seeds cells ends after a round in which fewer than one in so
@@ -170,8 +170,6 @@ struct PolishEffort {
   /// Tenths of the poor cells of the last insertion that may be left for the next one, unless the worst has
   /// risen: more vertices would only fill the place with poor cells.
   std::size_t dig_again_tenths = 9;
-  /// Poor cells up to which clusters are searched; 0: as many as vertices are inserted for.
-  std::size_t few_to_search = 100;
   Selection selection = Selection::kMixedOnAngles;
 };
 
@@ -242,7 +240,6 @@ struct NeighbourhoodEffort {
   std::array<Try, 4> tries = {{{2, 2.5}, {2, 5}, {4, 2.5}, {4, 5}}};
   std::size_t few = 12;  ///< cells at most
   int iterations = 4;    ///< of each try
-  double largest = 60;   ///< degrees that are worked for
   /// Poor cells up to which vertices are inserted: where the surface may change its shape and there are more,
   /// those that are put in for the sake of room go to the wrong places, at most of the cost.
   std::size_t few_to_dig = kNoLimit;
@@ -280,14 +277,10 @@ inline constexpr std::array<PatchEffort, 3> kAllEfforts = {
 
 /// What holds for each try on a patch.
 struct PatchTrial {
-  bool enabled = true;     ///< not without insertion, nor where iterations are limited
-  double loss = 0.02;      ///< of sin² of the worst cell, that a new vertex may leave at first
-  double any_loss = 1e-4;  ///< the same for vertices that count together only
-  double flat = 1e-5;      ///< sin² of a cell that is all but flat, which removal may leave at first
-  double rise = 1.002;     ///< times sin² of the worst cell of a patch: less is not worth its cells
-  double ahead = 1.05;     ///< times the target, which is worked for
-  double largest = 60;     ///< degrees that are worked for
-  int iterations = 8;      ///< of the polish of one try: more found no more
+  bool enabled = true;  ///< not without insertion, nor where iterations are limited
+  double rise = 1.002;  ///< times sin² of the worst cell of a patch: less is not worth its cells
+  double ahead = 1.05;  ///< times the target, which is worked for
+  int iterations = 8;   ///< of the polish of one try: more found no more
   /// Where over each needle an apex of its own is put, as a share of the way from the short side to the tip,
   /// one try each, and how high, as a share of what would be best for a lone one; see detail::Needle.
   std::array<double, kNeedleRows> row_shares = {0.37, 1.0 / 3.0};

@@ -235,7 +235,7 @@ void untangle(const Run& run, const UntangleEffort& effort) {
                           run.work.holds_damage ? run.work.floor : kNoFloor};
   // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
   if (moves && unfold_by_moving(run, effort, 1) == 0) return;
-  for (int restart = 1; restart <= effort.restarts && !run.control.stopped(); ++restart) {
+  for (int restart = 1; !run.control.stopped(); ++restart) {
     PassRunner<Untangling> runner(run, metric, "untangle");
     const std::size_t n_at_start = runner.n_invalid();
     reconnect(runner, run, effort);
