@@ -141,6 +141,10 @@ class GridPart {
         for (Index u : v) edges[u] = std::min(edges[u], step);
       });
     std::vector<std::array<Index, 4>> cells;
+    std::size_t n_cells = 0;
+    for_cells([&](std::uint64_t, const auto& v) { n_cells += nearest(edges, v) <= kEdges ? 1 : 0; });
+    cells.reserve(n_cells);
+    piece.cell_number.reserve(n_cells);
     for_cells([&](std::uint64_t number, const auto& v) {
       if (nearest(edges, v) > kEdges) return;
       cells.push_back(v);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the cells of pieces to parts with their layers. A cell goes to the owners of its vertices first: then each rank
-// has all cells of its own vertices, and knows whose vertices are one edge away. To these go the cells of its vertices,
-// and with what comes each knows who is two edges away, to whom they go, too.
+// From the cells of pieces to parts with their layers. A cell goes to the owners of its vertices first: then
+// each rank has all cells of its own vertices, and knows whose vertices are one edge away. To these go the
+// cells of its vertices, and with what comes each knows who is two edges away, to whom they go, too.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,7 +32,8 @@ struct CornerRecord {
 };
 
 std::string unescaped(std::string text) {
-  for (const auto& [code, c] : {std::pair{"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}, {"&amp;", '&'}})
+  for (const auto& [code, c] :
+       {std::pair{"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}, {"&amp;", '&'}})
     for (std::size_t at = 0; (at = text.find(code, at)) != std::string::npos; ++at)
       text.replace(at, std::string_view(code).size(), 1, c);
   return text;
@@ -62,7 +63,8 @@ std::vector<std::filesystem::path> pieces_of(const std::filesystem::path& path) 
   return pieces;
 }
 
-std::vector<std::uint64_t> numbers_of(const std::filesystem::path& path, const std::vector<io::Field>& fields) {
+std::vector<std::uint64_t> numbers_of(const std::filesystem::path& path,
+                                      const std::vector<io::Field>& fields) {
   constexpr double kMost = 9007199254740992.0;  // whole numbers up to here are exact
   for (const io::Field& field : fields) {
     if (field.name != "number" || field.components != 1) continue;
@@ -75,8 +77,9 @@ std::vector<std::uint64_t> numbers_of(const std::filesystem::path& path, const s
     }
     return numbers;
   }
-  throw InvalidInput(path.string() + ": points and cells need a \"number\" in the whole each, as write_pvtu() gives "
-                                     "them");
+  throw InvalidInput(path.string() +
+                     ": points and cells need a \"number\" in the whole each, as write_pvtu() gives "
+                     "them");
 }
 
 /// What this rank knows of the mesh while it comes in.
@@ -86,14 +89,18 @@ class Incoming {
 
   void read(const std::filesystem::path& path) {
     io::MeshData data = io::read_mesh(path);
-    if (!data.triangles.empty() || !data.edges.empty() || !data.vertex_labels.empty() || !data.fixed_vertices.empty())
-      throw InvalidInput(path.string() + ": meshes in parts do not have labelled or fixed faces, edges and vertices yet");
+    if (!data.triangles.empty() || !data.edges.empty() || !data.vertex_labels.empty() ||
+        !data.fixed_vertices.empty())
+      throw InvalidInput(path.string() +
+                         ": meshes in parts do not have labelled or fixed faces, edges and vertices yet");
     const auto points = numbers_of(path, data.point_fields), cells = numbers_of(path, data.cell_fields);
-    for (std::size_t i = 0; i < points.size(); ++i) points_.push_back({points[i], data.points[i], comm_.rank()});
+    for (std::size_t i = 0; i < points.size(); ++i)
+      points_.push_back({points[i], data.points[i], comm_.rank()});
     for (std::size_t i = 0; i < cells.size(); ++i) {
       CornerRecord one{cells[i], {}, data.regions.empty() ? 0 : data.regions[i]};
       for (std::size_t k = 0; k < 4; ++k) {
-        HFR_REQUIRE(data.cells[i][k] < points.size(), path.string() + ": a cell has a point that is not there");
+        HFR_REQUIRE(data.cells[i][k] < points.size(),
+                    path.string() + ": a cell has a point that is not there");
         one.v[k] = points[data.cells[i][k]];
       }
       cells_.push_back(one);
@@ -151,7 +158,8 @@ class Incoming {
   /// Points and cells by number, each once.
   void unite() {
     const auto by_number = [](auto& items) {
-      std::stable_sort(items.begin(), items.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+      std::stable_sort(items.begin(), items.end(),
+                       [](const auto& a, const auto& b) { return a.number < b.number; });
       items.erase(std::unique(items.begin(), items.end(),
                               [](const auto& a, const auto& b) { return a.number == b.number; }),
                   items.end());
@@ -162,7 +170,8 @@ class Incoming {
   std::size_t place(std::uint64_t number) const {
     const auto at = std::lower_bound(points_.begin(), points_.end(), number,
                                      [](const PointRecord& p, std::uint64_t n) { return p.number < n; });
-    if (at == points_.end() || at->number != number) throw InternalError("a point of a cell has not come along");
+    if (at == points_.end() || at->number != number)
+      throw InternalError("a point of a cell has not come along");
     return static_cast<std::size_t>(at - points_.begin());
   }
   int owner(std::uint64_t number) const { return points_[place(number)].owner; }
@@ -172,8 +181,8 @@ class Incoming {
     return static_cast<std::uint64_t>(-comm_.min(-static_cast<double>(mine)));
   }
 
-  /// The first rank that has a point owns it. Each rank answers for a range of numbers; that it has seen all of them
-  /// says that there are no gaps.
+  /// The first rank that has a point owns it. Each rank answers for a range of numbers; that it has seen all
+  /// of them says that there are no gaps.
   void find_owners() {
     n_points_ = end_of(points_.empty() ? 0 : points_.back().number + 1);
     n_cells_ = end_of(cells_.empty() ? 0 : cells_.back().number + 1);
@@ -240,8 +249,8 @@ class Incoming {
     unite();
   }
 
-  /// Of own vertices that have others within so many edges: the owners of these. One edge less round own vertices
-  /// all cells are here.
+  /// Of own vertices that have others within so many edges: the owners of these. One edge less round own
+  /// vertices all cells are here.
   std::unordered_map<std::uint64_t, std::vector<int>> near_own(int edges) const {
     using Sets = std::unordered_map<std::uint64_t, std::vector<int>>;
     const auto add = [](std::vector<int>& set, int r) {

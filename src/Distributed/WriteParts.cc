@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of a mesh in parts. What is written has numbers without gaps, as after TetMesh::collect_garbage(): each rank
-// knows which vertices and slots of the whole are gone, and so how many are below a number.
+// Files of a mesh in parts. What is written has numbers without gaps, as after TetMesh::collect_garbage():
+// each rank knows which vertices and slots of the whole are gone, and so how many are below a number.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -28,7 +28,8 @@ class Numbering {
   explicit Numbering(DistributedMesh& mesh) : mesh_(mesh), slots_(mesh.free_slots()) {
     std::vector<std::uint64_t> gone;
     for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i)
-      if (const VertexHandle v(i); mesh.is_own(v) && mesh.part().is_deleted(v)) gone.push_back(mesh.number(v));
+      if (const VertexHandle v(i); mesh.is_own(v) && mesh.part().is_deleted(v))
+        gone.push_back(mesh.number(v));
     vertices_ = mesh.comm().all_gather(std::span<const std::uint64_t>(gone));
     std::sort(vertices_.begin(), vertices_.end());
     std::sort(slots_.begin(), slots_.end());
@@ -41,7 +42,8 @@ class Numbering {
 
  private:
   static std::uint64_t without(const std::vector<std::uint64_t>& gone, std::uint64_t number) {
-    return number - static_cast<std::uint64_t>(std::lower_bound(gone.begin(), gone.end(), number) - gone.begin());
+    return number -
+           static_cast<std::uint64_t>(std::lower_bound(gone.begin(), gone.end(), number) - gone.begin());
   }
 
   const DistributedMesh& mesh_;
@@ -61,7 +63,8 @@ std::vector<CellHandle> own_cells(const DistributedMesh& mesh) {
   for (std::size_t i = 0; i < mesh.part().n_cells(); ++i)
     if (const CellHandle c(i); !mesh.part().is_deleted(c) && mesh.is_own(c)) cells.push_back(c);
   const auto by_number = [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); };
-  if (!std::is_sorted(cells.begin(), cells.end(), by_number)) std::sort(cells.begin(), cells.end(), by_number);
+  if (!std::is_sorted(cells.begin(), cells.end(), by_number))
+    std::sort(cells.begin(), cells.end(), by_number);
   return cells;
 }
 
@@ -127,12 +130,17 @@ void write_index(const std::filesystem::path& path, int n_ranks, bool with_regio
   out.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"");
   out.text(std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian");
   out.text("\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n");
-  out.text("<PPointData>\n<PDataArray type=\"Float64\" Name=\"number\" NumberOfComponents=\"1\"/>\n</PPointData>\n");
+  out.text(
+      "<PPointData>\n<PDataArray type=\"Float64\" Name=\"number\" "
+      "NumberOfComponents=\"1\"/>\n</PPointData>\n");
   out.text("<PCellData>\n");
   if (with_regions)
-    out.text("<PDataArray type=\"Int32\" Name=\"").text(io::kVtkRegionArray).text("\" NumberOfComponents=\"1\"/>\n");
+    out.text("<PDataArray type=\"Int32\" Name=\"")
+        .text(io::kVtkRegionArray)
+        .text("\" NumberOfComponents=\"1\"/>\n");
   out.text("<PDataArray type=\"Float64\" Name=\"number\" NumberOfComponents=\"1\"/>\n</PCellData>\n");
-  out.text("<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n");
+  out.text(
+      "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n");
   for (int r = 0; r < n_ranks; ++r)
     out.text("<Piece Source=\"").text(escaped(piece_name(path, r))).text("\"/>\n");
   out.text("</PUnstructuredGrid>\n</VTKFile>\n");
@@ -214,8 +222,8 @@ class VtuLayout {
     regions = {"CellData", io::kVtkRegionArray, "Int32", 1, with_regions ? n_cells : 0, 4};
     head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"";
     head_ += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    head_ += "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(n_points) +
-             "\" NumberOfCells=\"" + std::to_string(n_cells) + "\">\n";
+    head_ += "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
+             std::to_string(n_points) + "\" NumberOfCells=\"" + std::to_string(n_cells) + "\">\n";
     std::vector<Array*> there = arrays();
     if (!with_regions) there.pop_back();
     std::uint64_t offset = 0;
@@ -286,9 +294,8 @@ class VtuShare {
   }
   template <class T>
   void write_ends() {
-    for_slice([&](std::uint64_t c) {
-      file_.put(layout_.ends.begin + sizeof(T) * c, static_cast<T>(4 * (c + 1)));
-    });
+    for_slice(
+        [&](std::uint64_t c) { file_.put(layout_.ends.begin + sizeof(T) * c, static_cast<T>(4 * (c + 1))); });
   }
   template <class Body>
   void for_slice(Body&& body) {
