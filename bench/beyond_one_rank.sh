@@ -10,7 +10,7 @@
 set -euo pipefail
 build=$1 cubes=${2:-150} ranks=${3:-4} limit=${4:-1500} degrees=${5:-15}
 mpi=$build/apps/hfremesh/hfremesh-mpi tool=$build/apps/hfremesh/hfremesh
-grid=(--generate "$cubes" "$cubes" "$cubes" --jitter 0.22)
+grid=(--generate "$cubes" "$cubes" "$cubes" --jitter 0.2)
 if [ "$(id -u)" -eq 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
 out=${OUT:-$(mktemp -d)}
 [ -n "${OUT:-}" ] || trap 'rm -rf "$out"' EXIT
@@ -33,7 +33,7 @@ fails() {
 fails "one rank" limited 1 "${grid[@]}" -o "$out/alone.vtu" --min-dihedral "$degrees"
 fails hfremesh bash -c "ulimit -v $((limit * 1000)); \"\$@\" && \"$tool\" \"$out/alone.vtu\" -o \"$out/alone.vtu\" \
   --min-dihedral $degrees --polish-only --no-insert --threads 1" _ \
-  "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.22 -o "$out/alone.vtu" --quiet
+  "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.2 -o "$out/alone.vtu" --quiet
 rm -f "$out/alone.vtu"
 echo "--- $ranks ranks, $limit MB each: generate and write"
 limited "$ranks" "${grid[@]}" -o "$out/bad.pvtu"
@@ -43,7 +43,7 @@ echo "--- $ranks ranks, $limit MB each: generate, improve, check, write one file
 limited "$ranks" "${grid[@]}" -o "$out/good.vtu" --min-dihedral "$degrees"
 if [ "${COMPARE:-0}" = 1 ]; then
   echo "--- hfremesh without a limit"
-  "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.22 -o "$out/whole.vtu" --quiet
+  "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.2 -o "$out/whole.vtu" --quiet
   "$tool" "$out/whole.vtu" -o "$out/whole.vtu" --min-dihedral "$degrees" --polish-only --no-insert --threads 1 --quiet
   cmp "$out/whole.vtu" "$out/good.vtu"
   echo "beyond_one_rank: the same bytes"

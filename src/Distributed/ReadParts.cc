@@ -9,7 +9,6 @@
 #include <limits>
 #include <sstream>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -110,15 +109,13 @@ class Incoming {
   void distribute() {
     unite();
     find_owners();
-    send([&](const CornerRecord& c, std::vector<int>& to) {
-      for (std::uint64_t v : c.v) to.push_back(owner(v));
+    send([&](const CornerRecord&, const Places& at, std::vector<int>& to) {
+      for (Index i : at) to.push_back(owner(i));
     });
     for (int edges = 1; edges <= 2; ++edges) {
-      const auto near = near_own(edges);
-      send([&](const CornerRecord& c, std::vector<int>& to) {
-        for (std::uint64_t v : c.v)
-          if (const auto at = near.find(v); at != near.end())
-            to.insert(to.end(), at->second.begin(), at->second.end());
+      const Sets near = near_own(edges);
+      send([&](const CornerRecord&, const Places& at, std::vector<int>& to) {
+        for (Index v : at) to.insert(to.end(), near[v].begin(), near[v].end());
       });
     }
   }
@@ -137,12 +134,12 @@ class Incoming {
       points.push_back(p.point);
     }
     bool has_regions = false;
-    for (const CornerRecord& c : cells_) {
+    cells.reserve(cells_.size());
+    for_cells([&](const CornerRecord& c, const Places& at) {
       piece.cell_number.push_back(c.number);
-      auto& corners = cells.emplace_back();
-      for (std::size_t k = 0; k < 4; ++k) corners[k] = static_cast<Index>(place(c.v[k]));
+      cells.push_back(at);
       has_regions = has_regions || c.region != 0;
-    }
+    });
     points_ = {};
     piece.mesh = build(std::move(points), cells);
     for (std::size_t c = 0; c < cells.size(); ++c)
@@ -167,14 +164,33 @@ class Incoming {
     by_number(points_);
     by_number(cells_);
   }
-  std::size_t place(std::uint64_t number) const {
-    const auto at = std::lower_bound(points_.begin(), points_.end(), number,
+  /// Of a number among the points. Corners of one cell after the other lie near each other, so the search begins
+  /// where the last one has ended.
+  std::size_t place(std::uint64_t number, std::size_t hint) const {
+    std::size_t low = std::min(hint, points_.size() - 1), high = low, step = 1;
+    if (points_[low].number <= number)
+      for (; high < points_.size() && points_[high].number <= number; step *= 2) low = high, high += step;
+    else
+      for (; low > 0 && points_[low].number > number; step *= 2) high = low, low -= std::min(low, step);
+    const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(low);
+    const auto end = points_.begin() + static_cast<std::ptrdiff_t>(std::min(high + 1, points_.size()));
+    const auto at = std::lower_bound(begin, end, number,
                                      [](const PointRecord& p, std::uint64_t n) { return p.number < n; });
-    if (at == points_.end() || at->number != number)
-      throw InternalError("a point of a cell has not come along");
+    if (at == end || at->number != number) throw InternalError("a point of a cell has not come along");
     return static_cast<std::size_t>(at - points_.begin());
   }
-  int owner(std::uint64_t number) const { return points_[place(number)].owner; }
+  using Places = std::array<Index, 4>;
+  /// body(cell, places of its corners) for all cells.
+  template <class Body>
+  void for_cells(Body&& body) const {
+    std::size_t hint = 0;
+    for (const CornerRecord& c : cells_) {
+      Places at{};
+      for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(hint = place(c.v[k], hint));
+      body(c, at);
+    }
+  }
+  int owner(Index at) const { return points_[at].owner; }
 
   /// One more than the largest number of all.
   std::uint64_t end_of(std::uint64_t mine) const {
@@ -219,14 +235,14 @@ class Incoming {
   void send(Receivers&& receivers) {
     std::vector<std::vector<CornerRecord>> cells(comm_.n_ranks());
     std::vector<int> list;
-    for (const CornerRecord& c : cells_) {
+    for_cells([&](const CornerRecord& c, const Places& at) {
       list.clear();
-      receivers(c, list);
+      receivers(c, at, list);
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
       for (int r : list)
         if (r != comm_.rank()) cells[static_cast<std::size_t>(r)].push_back(c);
-    }
+    });
     std::vector<Packer> to(comm_.n_ranks());
     for (std::size_t r = 0; r < cells.size(); ++r) {
       if (cells[r].empty()) continue;
@@ -235,7 +251,7 @@ class Incoming {
       std::sort(numbers.begin(), numbers.end());
       numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
       std::vector<PointRecord> points;
-      for (std::uint64_t number : numbers) points.push_back(points_[place(number)]);
+      for (std::size_t at = 0; std::uint64_t number : numbers) points.push_back(points_[at = place(number, at)]);
       to[r].put_all(points);
       to[r].put_all(std::exchange(cells[r], {}));
     }
@@ -249,29 +265,43 @@ class Incoming {
     unite();
   }
 
-  /// Of own vertices that have others within so many edges: the owners of these. One edge less round own
-  /// vertices all cells are here.
-  std::unordered_map<std::uint64_t, std::vector<int>> near_own(int edges) const {
-    using Sets = std::unordered_map<std::uint64_t, std::vector<int>>;
-    const auto add = [](std::vector<int>& set, int r) {
+  /// A set of ranks for some points, by place.
+  struct Sets {
+    static constexpr Index kNone = VertexHandle::kInvalid;
+    std::vector<Index> of;
+    std::vector<std::vector<int>> ranks;
+
+    void add(Index at, int r) {
+      if (of[at] == kNone) {
+        of[at] = static_cast<Index>(ranks.size());
+        ranks.emplace_back();
+      }
+      auto& set = ranks[of[at]];
       if (std::find(set.begin(), set.end(), r) == set.end()) set.push_back(r);
-    };
-    Sets one;  // of any vertex: owners of its neighbours, where some are not its own owner's
-    for (const CornerRecord& c : cells_) {
-      std::array<int, 4> owners{};
-      for (std::size_t k = 0; k < 4; ++k) owners[k] = owner(c.v[k]);
-      if (std::all_of(owners.begin(), owners.end(), [&](int r) { return r == owners[0]; })) continue;
-      for (std::uint64_t v : c.v)
-        for (int r : owners) add(one[v], r);
     }
+    std::span<const int> operator[](Index at) const {
+      return of[at] == kNone ? std::span<const int>() : std::span<const int>(ranks[of[at]]);
+    }
+  };
+
+  /// Of own vertices that have others' within so many edges: the owners of these. One edge less round own vertices
+  /// all cells are here.
+  Sets near_own(int edges) const {
+    Sets one{std::vector<Index>(points_.size(), Sets::kNone), {}};  // of any vertex: owners of its neighbours
+    for_cells([&](const CornerRecord&, const Places& at) {
+      if (std::all_of(at.begin(), at.end(), [&](Index i) { return owner(i) == owner(at[0]); })) return;
+      for (Index v : at)
+        for (Index w : at) one.add(v, owner(w));
+    });
     Sets two = one;
     if (edges == 2)
-      for (const CornerRecord& c : cells_)
-        for (std::uint64_t w : c.v)
-          if (const auto at = one.find(w); at != one.end())
-            for (std::uint64_t v : c.v)
-              for (int r : at->second) add(two[v], r);
-    std::erase_if(two, [&](const auto& entry) { return owner(entry.first) != comm_.rank(); });
+      for_cells([&](const CornerRecord&, const Places& at) {
+        for (Index w : at)
+          for (int r : one[w])
+            for (Index v : at) two.add(v, r);
+      });
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (points_[i].owner != comm_.rank()) two.of[i] = Sets::kNone;
     return two;
   }
 
@@ -281,28 +311,26 @@ class Incoming {
     std::vector<std::uint8_t> edges(points_.size(), kFar);
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (points_[i].owner == comm_.rank()) edges[i] = 0;
-    const auto places = [&](const CornerRecord& c) {
-      std::array<std::size_t, 4> at{};
-      for (std::size_t k = 0; k < 4; ++k) at[k] = place(c.v[k]);
-      return at;
-    };
-    const auto nearest = [&](const std::array<std::size_t, 4>& at) {
+    const auto nearest = [&](const Places& at) {
       return std::min(std::min(edges[at[0]], edges[at[1]]), std::min(edges[at[2]], edges[at[3]]));
     };
     for (std::uint8_t step = 1; step < kFar; ++step)
-      for (const CornerRecord& c : cells_) {
-        const auto at = places(c);
-        if (nearest(at) == step - 1)
-          for (std::size_t i : at) edges[i] = std::min(edges[i], step);
-      }
+      for_cells([&](const CornerRecord&, const Places& at) {
+        if (nearest(at) != step - 1) return;
+        for (Index i : at) edges[i] = std::min(edges[i], step);
+      });
     std::vector<std::uint8_t> stays(points_.size(), 0);
     for (std::size_t i = 0; i < points_.size(); ++i) stays[i] = edges[i] == 0 ? 1 : 0;
-    std::erase_if(cells_, [&](const CornerRecord& c) {
-      const auto at = places(c);
-      if (nearest(at) == kFar) return true;
-      for (std::size_t i : at) stays[i] = 1;
-      return false;
+    std::size_t n_cells = 0;
+    std::vector<std::uint8_t> is_near(cells_.size(), 0);
+    for_cells([&](const CornerRecord& c, const Places& at) {
+      if (nearest(at) == kFar) return;
+      for (Index i : at) stays[i] = 1;
+      is_near[static_cast<std::size_t>(&c - cells_.data())] = 1;
     });
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      if (is_near[c]) cells_[n_cells++] = cells_[c];
+    cells_.resize(n_cells);
     std::size_t n = 0;
     for (std::size_t i = 0; i < points_.size(); ++i)
       if (stays[i]) points_[n++] = points_[i];
