@@ -155,8 +155,11 @@ class Incoming {
   /// Points and cells by number, each once.
   void unite() {
     const auto by_number = [](auto& items) {
-      std::stable_sort(items.begin(), items.end(),
-                       [](const auto& a, const auto& b) { return a.number < b.number; });
+      const auto less = [](const auto& a, const auto& b) { return a.number < b.number; };
+      const auto middle =
+          std::is_sorted_until(items.begin(), items.end(), less);  // what has come stands behind
+      std::sort(middle, items.end(), less);
+      std::inplace_merge(items.begin(), middle, items.end(), less);
       items.erase(std::unique(items.begin(), items.end(),
                               [](const auto& a, const auto& b) { return a.number == b.number; }),
                   items.end());
@@ -164,8 +167,8 @@ class Incoming {
     by_number(points_);
     by_number(cells_);
   }
-  /// Of a number among the points. Corners of one cell after the other lie near each other, so the search begins
-  /// where the last one has ended.
+  /// Of a number among the points. Corners of one cell after the other lie near each other, so the search
+  /// begins where the last one has ended.
   std::size_t place(std::uint64_t number, std::size_t hint) const {
     std::size_t low = std::min(hint, points_.size() - 1), high = low, step = 1;
     if (points_[low].number <= number)
@@ -251,7 +254,8 @@ class Incoming {
       std::sort(numbers.begin(), numbers.end());
       numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
       std::vector<PointRecord> points;
-      for (std::size_t at = 0; std::uint64_t number : numbers) points.push_back(points_[at = place(number, at)]);
+      for (std::size_t at = 0; std::uint64_t number : numbers)
+        points.push_back(points_[at = place(number, at)]);
       to[r].put_all(points);
       to[r].put_all(std::exchange(cells[r], {}));
     }
@@ -284,8 +288,8 @@ class Incoming {
     }
   };
 
-  /// Of own vertices that have others' within so many edges: the owners of these. One edge less round own vertices
-  /// all cells are here.
+  /// Of own vertices that have others' within so many edges: the owners of these. One edge less round own
+  /// vertices all cells are here.
   Sets near_own(int edges) const {
     Sets one{std::vector<Index>(points_.size(), Sets::kNone), {}};  // of any vertex: owners of its neighbours
     for_cells([&](const CornerRecord&, const Places& at) {
