@@ -99,6 +99,8 @@ TEST(InParts, ThePolishHasTheBitsOfSharedMemory) {
       TetMesh mesh = whole_of(grid_options);
       const Result shared = hfr::improve(mesh, polish_towards(goal));
       EXPECT_EQ(check(mesh), Ok);
+      for (const PassReport& pass : shared.passes)
+        EXPECT_TRUE(pass.stage == "polish" || pass.stage == "finish") << pass.stage << " is no polish";
       EXPECT_TRUE(identical(mesh, whole.mesh)) << goal;
       EXPECT_EQ(shared.goal_reached, result.goal_reached);
       EXPECT_EQ(shared.goal_reached, goal < 20);
