@@ -23,6 +23,7 @@
 #include "Report.hh"
 #include "hfremesh/Distributed/InParts.hh"
 #include "hfremesh/HalfFace/Config.hh"
+#include "hfremesh/HalfFace/Errors.hh"
 
 namespace hfr::app {
 namespace {
@@ -106,6 +107,11 @@ class PartsRun {
     mpi::InParts found = mpi::survey(mesh_, line_.min_dihedral, policy());
     say_found(line_.input.empty() ? "generated" : "read", found);
     bool goal_reached = true;
+    if (found.n_invalid > 0 && line_.min_dihedral > 0)
+      throw Failure(ExitCode::kInvalidCells,
+                    fmt::format("meshes in parts do not have untangling yet, and this one has "
+                                "{} inverted or flat cells; nothing was written",
+                                grouped(found.n_invalid)));
     if (line_.min_dihedral > 0) {
       const mpi::PartsResult result = improve();
       found = result.after;
@@ -131,9 +137,21 @@ class PartsRun {
     return std::chrono::duration<double>(now - std::exchange(since_, now)).count();
   }
 
+  /// What the library finds wrong with a file ends the run with this code, as in the tool.
+  template <class Use>
+  static void reporting(ExitCode code, Use&& use) {
+    try {
+      use();
+    } catch (const InvalidInput& error) {
+      throw Failure(code, error.what());
+    } catch (const IoError& error) {
+      throw Failure(code, error.what());
+    }
+  }
+
   void begin() {
     if (!line_.input.empty()) {
-      mpi::read_pvtu(mesh_, line_.input);
+      reporting(ExitCode::kCannotRead, [&] { mpi::read_pvtu(mesh_, line_.input); });
       return;
     }
     mpi::GridOptions grid;
@@ -169,10 +187,12 @@ class PartsRun {
   }
 
   void write() {
-    if (std::filesystem::path(line_.output).extension() == ".pvtu")
-      mpi::write_pvtu(mesh_, line_.output);
-    else
-      mpi::write_vtu(mesh_, line_.output);
+    reporting(ExitCode::kUsage, [&] {
+      if (std::filesystem::path(line_.output).extension() == ".pvtu")
+        mpi::write_pvtu(mesh_, line_.output);
+      else
+        mpi::write_vtu(mesh_, line_.output);
+    });
     say("written {}, {:.2f} s", line_.output, seconds());
   }
 

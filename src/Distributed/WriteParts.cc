@@ -324,7 +324,7 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const bool with_regions = has_regions(mesh);
   const std::filesystem::path piece = path.parent_path() / piece_name(path, mesh.comm().rank());
   std::error_code error;
-  std::filesystem::create_directories(piece.parent_path(), error);  // by whoever comes first
+  std::filesystem::create_directory(piece.parent_path(), error);  // by whoever comes first
   io::write_mesh(piece, piece_of(mesh, numbering, with_regions));
   mesh.comm().sum(0);  // all pieces are there, or a rank has failed
   if (mesh.comm().rank() == 0) write_index(path, mesh.comm().size(), with_regions);
