@@ -88,6 +88,9 @@ void add_method_options(Command command, ImproveLine& line) {
       .shows_default();
   command.flag("--bulk-nodes", line.improve.bulk_nodes,
                "Remove vertices in the bulk stage, too: fewer cells, and a lower worst angle on most meshes");
+  command.flag(
+      "--polish-only", line.improve.polish_only,
+      "With --min-dihedral: work on the cells that miss it until nothing helps any more, and no further");
   command.option("--metric", line.metric, "Quality metric of the bulk passes; an unknown name lists them")
       .type_name("NAME")
       .shows_default("volume-length");
@@ -235,6 +238,7 @@ Json options_json(const ImproveLine& line, const ImproveOptions& options) {
   json["device"] = line.device.empty() ? "cpu" : line.device;
   json["hybrid"] = options.hybrid;
   json["bulk_nodes"] = options.bulk_nodes;
+  json["polish_only"] = options.polish_only;
   json["seed"] = options.seed;
   json["ignore_labels"] = line.ignore_labels;
   json["dry_run"] = line.dry_run;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "InParts.hh"
 #include "Numbers.hh"
 #include "PrintFigures.hh"
 #include "Tool.hh"
@@ -45,6 +46,7 @@ struct OwnOptions {
 void add_own_options(hfr::app::Command command, OwnOptions& own) {
   command.example("mpirun -n 4 hfremesh-mpi bad.mesh -o good.mesh --min-dihedral 15",
                   "on four ranks, with the output of one");
+  command.example("mpirun -n 4 hfremesh-mpi parts --help", "meshes that no rank holds alone");
   command.group("Several ranks");
   command
       .option("--share-from", own.share_from,
@@ -121,7 +123,10 @@ int main(int argc, char** argv) {
   {
     hfr::mpi::Comm comm(MPI_COMM_WORLD);
     const int cores = hfr::mpi::lend_cores(comm);
-    code = comm.rank() == 0 ? lead(argc, argv, comm, cores) : follow(comm);
+    if (hfr::app::is_in_parts(argc, argv))
+      code = hfr::app::run_in_parts(argc, argv, comm);
+    else
+      code = comm.rank() == 0 ? lead(argc, argv, comm, cores) : follow(comm);
   }
   MPI_Finalize();
   return code;

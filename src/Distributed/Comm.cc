@@ -20,6 +20,9 @@ constexpr int kCodes = 256;
 constexpr int kTags = 16'384;
 constexpr std::size_t kLongestMessage = 512;          // of a rank that fails
 constexpr std::size_t kPiece = std::size_t{1} << 30;  // of a block
+/// Bytes from which a message goes out in many pieces, one with each call of MPI: who sleeps between them
+/// holds it up.
+constexpr std::size_t kManyPieces = std::size_t{1} << 20;
 
 /// Gives way to other processes while there is nothing to do: ranks may share a core. Who sleeps is woken
 /// before those who only give way: on a busy machine that is what counts. Sleeps for a sixteenth of the time
@@ -153,6 +156,7 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
   tag_ = (tag_ + 1) % kTags;
   std::vector<Message> came;
   std::vector<MPI_Request> sends;
+  std::size_t longest = 0;
   for (int r = 0; r < size_; ++r) {
     auto& bytes = to[static_cast<std::size_t>(r)].bytes();
     if (bytes.empty()) continue;
@@ -162,6 +166,7 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
     }
     ++counts().messages;
     counts().bytes += bytes.size();
+    longest = std::max(longest, bytes.size());
     sends.emplace_back();
     require(MPI_Issend(bytes.data(), to_count(bytes.size()), MPI_BYTE, r, tag_, comm_, &sends.back()));
   }
@@ -190,7 +195,10 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
         in_barrier = true;
       }
     }
-    patience.pause();
+    if (longest >= kManyPieces && !in_barrier)
+      std::this_thread::yield();
+    else
+      patience.pause();
   }
   std::sort(came.begin(), came.end(), [](const Message& a, const Message& b) { return a.from < b.from; });
   return came;

@@ -68,6 +68,7 @@ Block Cut::message(int rank) {
   header.n_slots = mesh_.n_cells();
   header.n_free = mesh_.free_cells().size();
   header.n_vertices = vertices.size();
+  header.n_vertices_of_whole = mesh_.n_vertices();
   header.n_cells = cells.size();
   header.floor = work_.floor;
   header.clock = work_.clock;

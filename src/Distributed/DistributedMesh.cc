@@ -48,6 +48,7 @@ void DistributedMesh::build_part(Block& block, par::Policy policy) {
   const PartHeader header = PartArrays::header_of(block);
   const PartArrays in = PartArrays::in(block);
   n_slots_ = header.n_slots;
+  n_vertices_ = header.n_vertices_of_whole;
   free_.assign(in.free.begin(), in.free.end());
   work_ = Workspace();
   clock_at_scatter_ = work_.clock = header.clock;
@@ -84,6 +85,33 @@ void DistributedMesh::build_part(Block& block, par::Policy policy) {
   for (Index c : rim_)  // at the edge of the part the incident cell may be one that is not here
     for (VertexHandle v : mesh_.cell(CellHandle(c)).v)
       if (!mesh_.incident_cell(v).is_valid()) writer.set_incident_cell(v, CellHandle(c));
+}
+
+void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells) {
+  n_slots_ = n_cells;
+  n_vertices_ = n_vertices;
+  free_.clear();
+  mesh_ = std::move(piece.mesh);
+  vertex_number_ = std::move(piece.vertex_number);
+  cell_number_ = std::move(piece.cell_number);
+  owner_ = std::move(piece.owner);
+  later_.clear();
+  n_sorted_ = cell_number_.size();
+  work_ = Workspace();
+  clock_at_scatter_ = work_.clock;
+  // Of vertices within two edges of own ones all cells are here, and the rest is not asked about.
+  work_.star_size = star_sizes(mesh_);
+  work_.changed.assign(mesh_.n_vertices(), work_.clock);
+  work_.frozen = constrained_vertices(mesh_, {});
+  work_.quality.assign(mesh_.n_cells(), 0.0);
+  work_.pending.assign(mesh_.n_cells(), 0xff);
+  work_.claim.assign(mesh_.n_cells(), kUnclaimed);
+  start_zone();
+  const std::vector<std::uint8_t> pinched = pinched_vertices(mesh_, work_.star_size, {});
+  for (std::size_t v = 0; v < pinched.size(); ++v)
+    HFR_REQUIRE(!pinched[v] || !is_own(VertexHandle(v)),
+                "vertex " + std::to_string(vertex_number_[v]) +
+                    ": its cells do not connect through faces; a mesh in parts cannot have that yet");
 }
 
 VertexHandle DistributedMesh::vertex_at(std::uint64_t number) const {
@@ -169,6 +197,7 @@ void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<co
     if (!r.of_owner) continue;
     work_.star_size[v.idx()] = r.star_size;
     work_.changed[v.idx()] = r.changed;
+    work_.frozen[v.idx()] = r.frozen;
     const CellHandle c = r.incident == kNoNumber ? CellHandle() : cell_at(r.incident);
     if (c.is_valid() && !mesh_.is_deleted(c)) writer.set_incident_cell(v, c);
   }

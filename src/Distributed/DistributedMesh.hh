@@ -9,11 +9,11 @@
 #include <unordered_map>
 #include <vector>
 
-#include "Distributed/Comm.hh"
-#include "Distributed/Partition.hh"
-#include "Distributed/RankSets.hh"
-#include "HalfFace/TetMesh.hh"
-#include "Scheduler/Workspace.hh"
+#include "hfremesh/Distributed/Comm.hh"
+#include "hfremesh/Distributed/Partition.hh"
+#include "hfremesh/Distributed/RankSets.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr::mpi {
 
@@ -45,6 +45,18 @@ class DistributedMesh {
   void scatter(const TetMesh* mesh, const Workspace* work, std::span<const int> owner,
                par::Policy policy = {});
 
+  /// What one rank has of a mesh that comes into being in parts: all cells with a vertex within two edges of
+  /// an own one, and no others. Vertices and cells ascend by number; vertices may be more than the cells
+  /// have.
+  struct Piece {
+    TetMesh mesh;
+    std::vector<std::uint64_t> vertex_number, cell_number;
+    std::vector<int> owner;  ///< of each vertex
+  };
+  /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
+  /// qualities yet. Throws InvalidInput where cells of a vertex do not connect through faces.
+  void assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
+
   /// What gather() brings.
   enum class Gather : std::uint8_t {
     kChanged,    ///< what has changed since scatter(), into the mesh that was handed out
@@ -74,6 +86,8 @@ class DistributedMesh {
   CellHandle cell_at(std::uint64_t number) const;
   /// Slots and cells of the whole mesh.
   std::uint64_t n_slots() const { return n_slots_; }
+  /// Vertices of the whole when it was cut or assembled; some may be deleted.
+  std::uint64_t n_vertices() const { return n_vertices_; }
   std::uint64_t n_cells() const { return n_slots_ - free_.size(); }
 
   // --- for rounds and passes ---
@@ -160,7 +174,7 @@ class DistributedMesh {
   std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
   std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
   std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
-  std::uint64_t n_slots_ = 0;
+  std::uint64_t n_slots_ = 0, n_vertices_ = 0;
   std::vector<std::uint64_t> free_;
   std::uint32_t clock_at_scatter_ = 0;
 };

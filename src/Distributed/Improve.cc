@@ -6,22 +6,14 @@
 #endif
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "Distributed/DistributedMesh.hh"
-#include "Distributed/PartRound.hh"
-#include "Distributed/PartSeeds.hh"
-#include "Distributed/PartSmoothing.hh"
-#include "Operators/EdgeRemoval.hh"
-#include "Operators/FaceSwap.hh"
-#include "Operators/MultiFaceRemoval.hh"
-#include "Operators/SmoothMaxMin.hh"
-#include "Operators/VertexCollapse.hh"
+#include "Distributed/PartPasses.hh"
 #include "Remesh/PassState.hh"
 #include "Remesh/Ranks.hh"
 #include "Remesh/RunMemory.hh"
-#include "Scheduler/PoorCells.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -54,8 +46,9 @@ class Worker {
 
   /// `mesh` and `work`: on rank 0 those of the run.
   void take(Partition how, const TetMesh* mesh, const Workspace* work, par::Policy policy) {
+    passes_.reset();
     parts_ = std::make_unique<DistributedMesh>(comm_);
-    poor_ = {};
+    passes_.emplace(*parts_, figures_.n_rounds);
     std::vector<int> owner;
     {
       const Comm::InPhase phase(comm_, Phase::kCut);
@@ -69,32 +62,12 @@ class Worker {
   void bring_back(TetMesh* mesh, Workspace* work, par::Policy policy) {
     const Comm::InPhase phase(comm_, Phase::kPutTogether);
     parts_->gather(mesh, work, DistributedMesh::Gather::kChanged, policy);
+    passes_.reset();
     parts_.reset();
   }
 
-  Ranks::Tally tally(double below) {
-    const Comm::InPhase phase(comm_, Phase::kTally);
-    std::array<std::uint64_t, 2> sums = {0, 0};
-    double worst = std::numeric_limits<double>::infinity();
-    const TetMesh& part = parts_->part();
-    for (std::size_t i = 0; i < part.n_cells(); ++i) {
-      const double q = parts_->work().quality[i];
-      // Deleted ones and most others are nowhere near.
-      if (q > 0 && !(q < below) && !(q < worst)) continue;
-      const CellHandle c(i);
-      if (part.is_deleted(c) || !parts_->is_own(c)) continue;
-      sums[0] += q > 0 ? 0 : 1;
-      sums[1] += q < below ? 1 : 0;
-      worst = std::min(worst, q);
-    }
-    worst = comm_.sum_and_min(sums, worst);
-    return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), worst};
-  }
-
-  RoundCounts pass(const Ranks::Look& look) {
-    const Comm::InPhase phase(comm_, Phase::kEvaluate);
-    return look.metric == Metric::kMinSine ? pass(look, MinSine2{}) : pass(look, MinDihedral{});
-  }
+  Ranks::Tally tally(double below) { return passes_->tally(below); }
+  RoundCounts pass(const Ranks::Look& look) { return passes_->run(look); }
 
   std::size_t n_cells() const { return static_cast<std::size_t>(parts_->n_cells()); }
 
@@ -115,76 +88,9 @@ class Worker {
     for (std::size_t c = 0; c < part.n_cells(); ++c) figures_.n_own += parts_->is_own(CellHandle(c)) ? 1 : 0;
   }
 
-  template <class M>
-  RoundCounts pass(const Ranks::Look& look, const M& metric) {
-    const TetMesh& part = parts_->part();
-    Workspace& work = parts_->work();
-    const par::Policy policy{look.threads};
-    const Worklist list(part, policy, poor_.below(look.below, work, policy), [&](CellHandle c) {
-      const auto& v = part.cell(c).v;
-      return std::any_of(v.begin(), v.end(),
-                         [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
-    });
-    std::array<std::uint64_t, 2> listed = {list.cells().size(), 0};
-    if (look.kind == PassKind::kEdge) listed[1] = n_own(list.cells());
-    comm_.sum(listed);
-    if (listed[0] == 0) return {};
-    ++figures_.n_rounds;
-    switch (look.kind) {
-      case PassKind::kEdge:
-        return round<EdgeRemoval<M>>(look, {metric, work.quality}, list, listed[1] > look.first_edge_beyond);
-      case PassKind::kFace:
-        return round<FaceSwap<M>>(look, {metric, work.quality}, list);
-      case PassKind::kMultiFace:
-        return round<MultiFaceRemoval<M>>(look, {metric, work.quality}, list);
-      case PassKind::kNode: {
-        using Op = VertexCollapse<M>;
-        PartRound place(*parts_);
-        Round<Op> round(parts_->part(), work, options(look, place));
-        return round.run(Op{metric, work.quality, work.frozen}, removable_seeds(*parts_, list, policy));
-      }
-      default: {
-        const auto vertices = vertex_seeds(part, list, work.frozen, policy);
-        const auto n_own = std::count_if(vertices.begin(), vertices.end(),
-                                         [&](VertexHandle v) { return parts_->is_own(v); });
-        if (comm_.sum(static_cast<std::uint64_t>(n_own)) == 0) return {};
-        const Comm::InPhase phase(comm_, Phase::kSmooth);
-        return smooth_parts(*parts_, MaxMinSearch{}, metric, vertices, policy);
-      }
-    }
-  }
-
-  static RoundOptions options(const Ranks::Look& look, PartRound& place) {
-    RoundOptions options{par::Policy{look.threads}, /*check_links=*/false, look.seed};
-    options.may_lose = static_cast<std::size_t>(look.may_lose);
-    options.may_gain = static_cast<std::size_t>(look.may_gain);
-    return place.options(options);
-  }
-
-  template <class Op>
-  RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does = false) {
-    PartRound place(*parts_);
-    Round<Op> round(parts_->part(), parts_->work(), options(look, place));
-    return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
-      const CellHandle c(list.cells()[i]);
-      if constexpr (!std::is_same_v<typename Op::Seed, EdgeHandle>)
-        visit_face_seeds(*parts_, list, c, [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
-      else if (first_does)
-        visit_edge_seeds_until(*parts_, list, c, [&](EdgeHandle e) { return visit(e) >= look.below; });
-      else
-        visit_edge_seeds(*parts_, list, c, visit);
-    });
-  }
-
-  /// Of these cells of the part, how many are own ones.
-  std::uint64_t n_own(std::span<const Index> cells) const {
-    return static_cast<std::uint64_t>(
-        std::count_if(cells.begin(), cells.end(), [&](Index c) { return parts_->is_own(CellHandle(c)); }));
-  }
-
   Comm& comm_;
   std::unique_ptr<DistributedMesh> parts_;
-  PoorCells poor_;  // of the part
+  std::optional<PartPasses> passes_;
   RankFigures figures_;
 };
 
@@ -197,11 +103,7 @@ class Conductor : public Ranks {
   Conductor(Comm& comm, const Sharing& sharing, par::Policy alone)
       : comm_(comm), sharing_(sharing), alone_(alone), worker_(comm) {}
 
-  bool can_do(PassKind kind, Metric metric) const override {
-    return (metric == Metric::kMinSine || metric == Metric::kMinDihedral) &&
-           (kind == PassKind::kEdge || kind == PassKind::kFace || kind == PassKind::kMultiFace ||
-            kind == PassKind::kNode || kind == PassKind::kSmooth);
-  }
+  bool can_do(PassKind kind, Metric metric) const override { return PartPasses::can_do(kind, metric); }
   bool can_take(const TetMesh& mesh, const Workspace& work) const override {
     return DistributedMesh::reason_against(mesh, work).empty();
   }

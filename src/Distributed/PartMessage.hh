@@ -16,6 +16,7 @@ namespace hfr::mpi {
 /// 4 a free slot of the whole, with handles of 32 bits. Numbers are handles in the mesh of rank 0.
 struct PartHeader {
   std::uint64_t n_slots = 0, n_free = 0, n_vertices = 0, n_cells = 0;
+  std::uint64_t n_vertices_of_whole = 0;
   double floor = 0;
   std::uint32_t clock = 0;
   std::uint8_t holds_damage = 0, has_regions = 0;

@@ -70,6 +70,8 @@ bool PartRound::announce(std::span<const Candidate> candidates) {
     entry.own = i;
     entry.home = comm_.rank();
     entry.seed = candidate.seed;
+    entry.seed_number = candidate.seed.cell.is_valid() ? mesh_.number(candidate.seed.cell)
+                                                       : mesh_.number(candidate.seed.vertex);
     entry.told = RankSet(words);
     for (CellHandle c : candidate.scope)
       for (VertexHandle v : part.cell(c).v) entry.told.add(mesh_.near(v));
@@ -92,10 +94,14 @@ bool PartRound::announce(std::span<const Candidate> candidates) {
   }
   const Comm::Exchanged came = comm_.exchange(to, 0);
   for (const Comm::Message& message : came.messages) hear(message);
+  // Two seeds may have one name where both find the same: then the first in the order of numbers comes first,
+  // as it does where all cells are in one mesh.
   const auto by_rank = [](const Entry& a, const Entry& b) {
-    return std::tie(a.key, a.name) < std::tie(b.key, b.name);
+    return std::tie(a.key, a.name, a.seed_number, a.seed.place) <
+           std::tie(b.key, b.name, b.seed_number, b.seed.place);
   };
   const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates.size());
+  if (!std::is_sorted(entries_.begin(), middle, by_rank)) std::sort(entries_.begin(), middle, by_rank);
   std::sort(middle, entries_.end(), by_rank);
   std::inplace_merge(entries_.begin(), middle, entries_.end(), by_rank);
   return came.n_messages > 0;
@@ -111,6 +117,7 @@ void PartRound::hear(const Comm::Message& message) {
     entry.home = message.from;
     entry.number_at_home = a.number;
     entry.seed.place = a.seed_place;
+    entry.seed_number = a.seed_cell != kNoNumber ? a.seed_cell : a.seed_vertex;
     if (a.seed_cell != kNoNumber) entry.seed.cell = mesh_.cell_at(a.seed_cell);
     if (a.seed_vertex != kNoNumber) entry.seed.vertex = mesh_.vertex_at(a.seed_vertex);
     for (std::uint32_t i = 0; i < a.n_cells; ++i) {

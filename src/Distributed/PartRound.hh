@@ -43,6 +43,7 @@ class PartRound : public RoundPlace {
   struct Entry {
     std::uint64_t key = 0;
     SeedName name{};
+    std::uint64_t seed_number = 0;        // of its cell or vertex
     std::size_t own = Winner::kOfOthers;  // number among the candidates
     int home = 0;
     std::uint32_t number_at_home = 0;
@@ -104,7 +105,7 @@ class PartRound : public RoundPlace {
 
   DistributedMesh& mesh_;
   Comm& comm_;
-  std::vector<Entry> entries_;  // by key, then name
+  std::vector<Entry> entries_;  // by key, then name, then seed
   std::vector<std::size_t> undecided_;
   std::vector<Pending> pending_;
   std::vector<std::uint64_t> dropped_;  // entries given up for the number of cells

@@ -36,10 +36,6 @@ void require_box(Counts n, Vec3 low, Vec3 high) {
   require_countable(6.0 * static_cast<double>(n[0]) * static_cast<double>(n[1]) * static_cast<double>(n[2]));
 }
 
-/// Corners of the six cells of a cube as bits (x = 1, y = 2, z = 4).
-constexpr std::array<std::array<unsigned, 4>, 6> kKuhn = {
-    {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 1, 7, 5}, {0, 4, 7, 6}, {0, 2, 7, 3}}};
-
 /// Cells of the cubes (i, j, k) with has_cube(j, k), of which there are n_cubes.
 template <class HasCube>
 std::vector<Tet> kuhn_cells(Counts n, std::size_t n_cubes, HasCube&& has_cube) {
@@ -51,7 +47,7 @@ std::vector<Tet> kuhn_cells(Counts n, std::size_t n_cubes, HasCube&& has_cube) {
     for (Index j = 0; j < n[1]; ++j) {
       if (!has_cube(j, k)) continue;
       for (Index i = 0; i < n[0]; ++i)
-        for (const auto& corners : kKuhn) {
+        for (const auto& corners : kCubeCells) {
           Tet& cell = cells.emplace_back();
           for (std::size_t c = 0; c < 4; ++c) {
             const unsigned bits = corners[c];
@@ -171,6 +167,25 @@ double random_unit(std::uint64_t seed, std::uint64_t index) {
 
 Arrays box(Counts counts, Vec3 low, Vec3 high) { return jittered_box(counts, 0, 0, low, high); }
 
+Vec3 jittered_point(Counts counts, Counts at, double jitter, std::uint64_t seed, Vec3 low, Vec3 high) {
+  const std::uint64_t v =
+      (std::uint64_t{at[2]} * (std::uint64_t{counts[1]} + 1) + at[1]) * (std::uint64_t{counts[0]} + 1) +
+      at[0];
+  Vec3 p;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const int axis = static_cast<int>(d);
+    const auto n = static_cast<double>(counts[d]);
+    if (at[d] == 0 || at[d] == counts[d]) {
+      p[axis] = at[d] == 0 ? low[axis] : high[axis];
+      continue;
+    }
+    double x = static_cast<double>(at[d]) / n;
+    if (jitter != 0) x += jitter / n * (2 * random_unit(seed, 3 * v + d) - 1);
+    p[axis] = low[axis] + (high[axis] - low[axis]) * x;
+  }
+  return p;
+}
+
 Arrays jittered_box(Counts counts, double jitter, std::uint64_t seed, Vec3 low, Vec3 high) {
   require_box(counts, low, high);
   HFR_REQUIRE(std::isfinite(jitter), "the jitter must be a finite number");
@@ -179,23 +194,8 @@ Arrays jittered_box(Counts counts, double jitter, std::uint64_t seed, Vec3 low, 
                       (std::size_t{counts[2]} + 1));
   for (Index k = 0; k <= counts[2]; ++k)
     for (Index j = 0; j <= counts[1]; ++j)
-      for (Index i = 0; i <= counts[0]; ++i) {
-        const Counts at = {i, j, k};
-        const std::uint64_t v = mesh.points.size();
-        Vec3 p;
-        for (std::size_t d = 0; d < 3; ++d) {
-          const int axis = static_cast<int>(d);
-          const auto n = static_cast<double>(counts[d]);
-          if (at[d] == 0 || at[d] == counts[d]) {
-            p[axis] = at[d] == 0 ? low[axis] : high[axis];
-            continue;
-          }
-          double x = static_cast<double>(at[d]) / n;
-          if (jitter != 0) x += jitter / n * (2 * random_unit(seed, 3 * v + d) - 1);
-          p[axis] = low[axis] + (high[axis] - low[axis]) * x;
-        }
-        mesh.points.push_back(p);
-      }
+      for (Index i = 0; i <= counts[0]; ++i)
+        mesh.points.push_back(jittered_point(counts, {i, j, k}, jitter, seed, low, high));
   mesh.cells =
       kuhn_cells(counts, std::size_t{counts[0]} * counts[1] * counts[2], [](Index, Index) { return true; });
   return mesh;

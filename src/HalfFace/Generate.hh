@@ -28,6 +28,12 @@ using Counts = std::array<Index, 3>;
 /// Number `index` of the splitmix64 sequence of `seed`, as a double in [0, 1) with 53 random bits.
 double random_unit(std::uint64_t seed, std::uint64_t index);
 
+/// Corners of the six cells of a cube as bits (x = 1, y = 2, z = 4).
+inline constexpr std::array<std::array<unsigned, 4>, 6> kCubeCells = {
+    {{0, 1, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 1, 7, 5}, {0, 4, 7, 6}, {0, 2, 7, 3}}};
+/// Vertex `at` of jittered_box(), of which there may be more than an index can count.
+Vec3 jittered_point(Counts counts, Counts at, double jitter, std::uint64_t seed, Vec3 low, Vec3 high);
+
 /// A box of counts[0]×counts[1]×counts[2] cubes, each cut into 6 cells round its main diagonal (Kuhn's cut).
 /// Vertex (i, j, k) has index (k(counts[1]+1) + j)(counts[0]+1) + i.
 Arrays box(Counts counts, Vec3 low = {0, 0, 0}, Vec3 high = {1, 1, 1});

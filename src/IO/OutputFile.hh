@@ -38,6 +38,9 @@ class OutputFile {
     return text({reinterpret_cast<const char*>(&value), sizeof value});
   }
   void commit();  ///< flush, fsync, rename
+  /// The file that is to become the target, for other processes that write to it behind what this one does.
+  /// Empty where the target is written to directly.
+  const std::filesystem::path& temporary() const { return temporary_; }
 
  private:
   int open_beside();

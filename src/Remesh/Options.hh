@@ -66,6 +66,11 @@ struct ImproveOptions {
   /// Instead of a goal: raise the smallest dihedral as far as it goes, whatever it costs in time.
   bool raise_min_dihedral = false;
   int iterations = 0;  ///< limit of bulk iterations, or of all with a goal; 0 = until little is gained
+  /// With min_dihedral: the polish alone, after untangling where that is needed. Edges, faces and vertices of
+  /// the cells that miss the goal are worked on until nothing helps any more, and new vertices put in where
+  /// `ops` has them; no other targets, patches or neighbourhoods, and not all cells. hfr::mpi::improve() of a
+  /// mesh in parts does the same with the same bits.
+  bool polish_only = false;
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
   Ops ops = Ops::kDefault;
   Metric metric = Metric::kVolumeLength;  ///< of the bulk passes

@@ -123,6 +123,10 @@ std::size_t PassRunner<Metric>::pass(PassKind kind, const Turn& turn) {
 template <class Metric>
 std::size_t PassRunner<Metric>::insert(const Turn& turn, double gain) {
   if (!has(effort().ops, Ops::kInsert)) return 0;
+  if (run().is_part()) {
+    run().ranks->leave_out(PassKind::kInsert);
+    return 0;
+  }
   this->to_host();
   if (gain != insert_gain_) {  // what has been refused may now do
     insert_gain_ = gain;

@@ -67,6 +67,12 @@ std::span<const Index> PassState::poor(double value) {
 }
 
 void PassState::count(const Focus& focus) {
+  if (run_.is_part()) {
+    const Ranks::Tally tally = run_.ranks->tally(focus.below);
+    n_invalid_ = tally.n_invalid;
+    worst_ = tally.worst;
+    return;
+  }
   to_host();
   struct Sum {
     std::size_t invalid = 0;

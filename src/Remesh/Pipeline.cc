@@ -41,6 +41,7 @@ void mend_invalid(const Run& run) {
 
 bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   mend_invalid(run);
+  if (goal.polish_only) return polish(run, run.strategy.polish, goal.degrees);
   if (share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss)
     return reach_goal(run, goal, /*cells_are_untouched=*/true);
   Trial trial(run, goal.degrees);

@@ -194,6 +194,12 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
                               effort.widths.front().layers, " to ", effort.widths.back().layers,
                               " layers, then reconnected, again while fewer are left"));
   }
+  if (strategy.goal && strategy.goal->polish_only) {
+    const PolishEffort& polish = strategy.polish;
+    lines.add("goal", say("the polish of cells below ", strategy.goal->degrees, " degrees alone, ",
+                          polish.iterations, " iterations; ", polish.idle, " idle ones end it"));
+    return lines.text();
+  }
   if (strategy.goal && !std::isfinite(strategy.goal->many_miss)) {
     lines.add("all cells", "not before the goal was worked for");
   } else {

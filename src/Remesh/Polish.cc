@@ -58,11 +58,11 @@ bool polish(const Run& run, const PolishEffort& effort, double degrees, double l
 }
 
 bool polish_to(const Run& run, const PolishEffort& effort, double decision, double largest_share) {
-  const std::size_t few = std::max(effort.few_to_dig, run.mesh.n_logical_cells() / effort.dig_share);
+  const std::size_t few = std::max(effort.few_to_dig, run.n_cells() / effort.dig_share);
   {
     PassRunner<MinSine2> runner(run, MinSine2{}, "polish", effort.selection);
     const auto n_poor = static_cast<double>(runner.n_below(decision));
-    if (n_poor > largest_share * static_cast<double>(run.mesh.n_logical_cells())) return false;
+    if (n_poor > largest_share * static_cast<double>(run.n_cells())) return false;
     if (iterate_below(runner, effort, decision, few)) return true;
   }
   // What is left may be obtuse only, or give way once obtuse angles do not count.

@@ -9,6 +9,7 @@ namespace hfr {
 RankPasses::RankPasses(PassState& state, Metric metric)
     : state_(state), metric_(metric), n_exceptions_(std::uncaught_exceptions()) {
   state_.ranks_ = this;
+  is_resident_ = state_.run_.is_part();
 }
 
 RankPasses::~RankPasses() noexcept(false) {
@@ -30,6 +31,10 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
 std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, const Turn& turn) {
   Run& run = state_.run_;
   if (!takes(kind, turn)) {
+    if (run.is_part()) {
+      run.ranks->leave_out(kind);
+      return 0;
+    }
     bring_back();
     return std::nullopt;
   }
@@ -49,7 +54,7 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
     look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
     const RoundCounts counts = run.ranks->pass(look);
     if (counts.rounds == 0) break;
-    ++run.work.clock;
+    if (!run.is_part()) ++run.work.clock;  // the round has, of its own workspace
     if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
     total += counts;
     if (r == 0) first = counts.winners;
@@ -63,8 +68,8 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
 }
 
 void RankPasses::bring_back() {
-  if (!std::exchange(is_resident_, false)) return;
   Run& run = state_.run_;
+  if (run.is_part() || !std::exchange(is_resident_, false)) return;
   const double start = run.control.seconds();
   run.ranks->bring_back(run.mesh, run.work);
   PassReport pass;

@@ -20,7 +20,8 @@ class RankPasses {
   RankPasses(const RankPasses&) = delete;
   RankPasses& operator=(const RankPasses&) = delete;
 
-  /// Changes that a pass has committed; nothing where it does not run there: then the mesh is here.
+  /// Changes that a pass has committed; nothing where it does not run there: then the mesh is here. 0 where
+  /// it is left out; see Ranks::keep_mesh().
   std::optional<std::size_t> run(PassKind kind, const char* name, const Turn& turn);
   bool is_resident() const { return is_resident_; }
   void bring_back();

@@ -39,6 +39,11 @@ class Ranks {
   };
 
   virtual ~Ranks() = default;
+  /// Whether the mesh is theirs from the beginning of the run to its end, and that of the run the part of one
+  /// of them: then each of them runs the same stages at the same time, and what they cannot do is left out.
+  virtual bool keep_mesh() const { return false; }
+  /// A pass was left out for that.
+  virtual void leave_out(PassKind) {}
   /// Whether they can do passes of this kind in this metric, over a mesh like this one.
   virtual bool can_do(PassKind kind, Metric metric) const = 0;
   virtual bool can_take(const TetMesh& mesh, const Workspace& work) const = 0;

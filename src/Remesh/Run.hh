@@ -5,13 +5,13 @@
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Checkpoint.hh"
 #include "Remesh/DeviceSession.hh"
+#include "Remesh/Ranks.hh"
 #include "Remesh/RunControl.hh"
 #include "Remesh/Strategy.hh"
 #include "Scheduler/Workspace.hh"
 
 namespace hfr {
 
-class Ranks;
 class SurfaceMesh;
 
 /// What a run finds out on its way.
@@ -52,10 +52,12 @@ struct Run {
   Ranks* ranks = nullptr;  ///< that may do passes, too; null: all is done here
 
   par::Policy policy() const { return strategy.pass.policy; }
+  /// Whether this mesh is a part of that of the run; see Ranks::keep_mesh().
+  bool is_part() const { return ranks && ranks->keep_mesh(); }
+  /// Of the whole.
+  std::size_t n_cells() const { return is_part() ? ranks->n_cells() : mesh.n_logical_cells(); }
   /// Whether the bound on cells leaves room for those of another vertex.
-  bool has_room() const {
-    return bounds.max == 0 || mesh.n_logical_cells() + strategy.pass.cells_of_vertex <= bounds.max;
-  }
+  bool has_room() const { return bounds.max == 0 || n_cells() + strategy.pass.cells_of_vertex <= bounds.max; }
   /// The same run within other bounds on cells.
   Run within(CellBounds other) const {
     Run run = *this;

@@ -184,6 +184,7 @@ LastCellsEffort last_cells_effort(const Asked& asked) {
 GoalEffort goal_effort(const Asked& asked) {
   GoalEffort goal;
   goal.degrees = *asked.options().min_dihedral;
+  goal.polish_only = asked.options().polish_only;
   if (asked.limits_iterations()) {
     goal.many_miss = std::numeric_limits<double>::infinity();
     goal.goes_on = false;
@@ -223,6 +224,8 @@ void validate(const ImproveOptions& options) {
       !options.min_dihedral || !options.raise_min_dihedral,
       "raise_min_dihedral asks for the largest angle that can be had, min_dihedral for a certain one: "
       "give one of them");
+  HFR_REQUIRE(!options.polish_only || options.min_dihedral,
+              "polish_only is for runs with a goal: give min_dihedral, too");
   HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
   HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
   HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");

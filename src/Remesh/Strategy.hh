@@ -313,7 +313,8 @@ struct GoalEffort {
   double many_miss = 0.2;
   /// Where no larger share is left in the end, a frozen surface holds them, whatever is done to others.
   double few_miss = 0.01;
-  bool goes_on = true;  ///< with all cells where the goal was missed; not where iterations are limited
+  bool polish_only = false;  ///< nothing but the polish, whatever it leaves
+  bool goes_on = true;       ///< with all cells where the goal was missed; not where iterations are limited
   /// Share of its 1st and 5th percentile that a default run may lose for what it claims.
   double may_fall = 0.03;
   /// Times the cells of the input that it may make for that; so many times again, while the worst angle rises

@@ -2,6 +2,7 @@
 #ifndef HFR_SCHEDULER_SEED_ADDRESS_HH
 #define HFR_SCHEDULER_SEED_ADDRESS_HH
 
+#include <concepts>
 #include <cstdint>
 #include <type_traits>
 
@@ -31,6 +32,17 @@ template <class Seed>
 requires requires(const Seed& seed) { seed.halfface; }
 SeedAddress address_of(const Seed& seed) { return address_of(seed.halfface); }
 
+/// Seeds at a local edge of a cell, as those of FanMerge.
+template <class Seed>
+concept IsCellAndEdge = requires(const Seed& seed) {
+  { seed.cell } -> std::convertible_to<CellHandle>;
+  { seed.edge } -> std::convertible_to<std::uint8_t>;
+};
+template <IsCellAndEdge Seed>
+SeedAddress address_of(const Seed& seed) {
+  return {seed.cell, {}, seed.edge};
+}
+
 template <class Seed>
 concept HasAddress = requires(const Seed& seed) {
   { address_of(seed) } -> std::same_as<SeedAddress>;
@@ -45,6 +57,8 @@ Seed seed_at(const SeedAddress& at) {
     return EdgeHandle(6 * at.cell.idx() + static_cast<Index>(at.place));
   else if constexpr (std::is_same_v<Seed, HalfFaceHandle>)
     return halfface_of(at.cell, static_cast<int>(at.place));
+  else if constexpr (IsCellAndEdge<Seed>)
+    return Seed{at.cell, static_cast<std::uint8_t>(at.place)};
   else
     return Seed(halfface_of(at.cell, static_cast<int>(at.place)));
 }

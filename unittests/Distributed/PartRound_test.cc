@@ -11,6 +11,7 @@
 #include "HalfFace/Check.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
+#include "Operators/FanMerge.hh"
 #include "Operators/MultiFaceRemoval.hh"
 #include "Operators/SmoothCandidates.hh"
 #include "Operators/SmoothMaxMin.hh"
@@ -34,7 +35,9 @@ RoundCounts edge_round(Whole& w, std::uint8_t bit, Make&& make, RoundOptions opt
   const Worklist list = pending(w.mesh, w.work, bit);
   Round<Op> round(w.mesh, w.work, options);
   return round.run(make(w.work), list.cells().size(), [&](std::size_t i, auto&& visit) {
-    if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
+    if constexpr (IsCellAndEdge<typename Op::Seed>)
+      for (std::uint8_t e = 0; e < 6; ++e) visit(typename Op::Seed{C(list.cells()[i]), e, 0, 0});
+    else if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
       visit_edge_seeds(w.mesh, list, C(list.cells()[i]), visit);
     else
       visit_face_seeds(w.mesh, list, C(list.cells()[i]),
@@ -48,7 +51,10 @@ RoundCounts edge_round(mpi::DistributedMesh& m, std::uint8_t bit, Make&& make, R
   mpi::PartRound place(m);
   Round<Op> round(m.part(), m.work(), place.options(options));
   return round.run(make(m.work()), list.cells().size(), [&](std::size_t i, auto&& visit) {
-    if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
+    if constexpr (IsCellAndEdge<typename Op::Seed>) {
+      if (const CellHandle c = C(list.cells()[i]); m.is_own(c))
+        for (std::uint8_t e = 0; e < 6; ++e) visit(typename Op::Seed{c, e, 0, 0});
+    } else if constexpr (std::is_same_v<typename Op::Seed, EdgeHandle>)
       mpi::visit_edge_seeds(m, list, C(list.cells()[i]), visit);
     else
       mpi::visit_face_seeds(m, list, C(list.cells()[i]),
@@ -162,6 +168,20 @@ TEST(PartRound, MultiFaceRemovalIsThatOfSharedMemory) {
     expect_same_for_parts(valid_box(7, 0.45, seed), MinSine2{}, 6, 100, [&](auto& mesh) {
       return edge_round<Op>(
           mesh, 2,
+          [](const Workspace& w) {
+            return Op{{}, w.quality};
+          },
+          options(seed));
+    });
+}
+
+/// Two cells of a row name the same merger, so that candidates of two ranks may have one name.
+TEST(PartRound, FanMergeIsThatOfSharedMemory) {
+  using Op = FanMerge<MinSine2>;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U})
+    expect_same_for_parts(valid_box(10, 0.6, seed), MinSine2{}, 3, 12, [&](auto& mesh) {
+      return edge_round<Op>(
+          mesh, 4,
           [](const Workspace& w) {
             return Op{{}, w.quality};
           },

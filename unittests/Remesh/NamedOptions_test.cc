@@ -65,9 +65,9 @@ const std::map<std::string, std::string> kGood = {
     {"min_dihedral", "20"}, {"iterations", "3"},     {"time_limit", "1.5"},  {"surface", "free"},
     {"hausdorff", "0.1"},   {"feature_angle", "30"}, {"fix", "patch:1"},     {"periodic", "1:2"},
     {"min_cells", "10"},    {"max_cells", "20"},     {"coarsen", "1"},       {"metric", "mean-ratio"},
-    {"ops", "edge"},        {"no_insert", "on"},     {"bulk_nodes", "true"}, {"rounds", "mixed"},
-    {"smoother", "taubin"}, {"compat", "jpdc2013"},  {"seed", "5"},          {"threads", "2"},
-    {"device", "auto"},     {"hybrid", "true"},      {"work_group", "64"}};
+    {"ops", "edge"},        {"no_insert", "on"},     {"bulk_nodes", "true"}, {"polish_only", "true"},
+    {"rounds", "mixed"},    {"smoother", "taubin"},  {"compat", "jpdc2013"}, {"seed", "5"},
+    {"threads", "2"},       {"device", "auto"},      {"hybrid", "true"},     {"work_group", "64"}};
 
 TEST(NamedOptions, EveryOptionTakesItsTextAndRefusesAnother) {
   for (const NamedOption& option : named_options()) {

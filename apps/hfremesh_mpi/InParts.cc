@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// hfremesh-mpi parts: a mesh that is in parts from beginning to end, generated or read, improved, checked,
+// written.
+#include "InParts.hh"
+
+#include <fmt/format.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#ifdef __unix__
+#include <sys/resource.h>
+#endif
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ExitCode.hh"
+#include "Numbers.hh"
+#include "Parser.hh"
+#include "Report.hh"
+#include "hfremesh/Distributed/InParts.hh"
+#include "hfremesh/HalfFace/Config.hh"
+#include "hfremesh/HalfFace/Errors.hh"
+
+namespace hfr::app {
+namespace {
+
+struct PartsLine {
+  std::string input, output;
+  std::vector<Index> counts;  ///< of the grid, where one is to be generated
+  double jitter = 0.2;
+  double amplitude = 0;
+  double min_dihedral = 0;
+  std::uint64_t seed = 2013;
+  int threads_each = 1;
+  std::string partition = "coordinates";
+};
+
+void add_options(Command command, PartsLine& line) {
+  command.example("mpirun -n 4 hfremesh-mpi parts --generate 150 150 150 -o bad.pvtu", "20 million cells");
+  command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.pvtu --min-dihedral 15",
+                  "with the bits of hfremesh --polish-only --no-insert");
+  command.option("IN", line.input, "Index of pieces to read (.pvtu)");
+  command
+      .option(
+          "-o,--output", line.output,
+          "What to write: .pvtu, with a piece for each rank, or .vtu, one file with the bytes of hfremesh")
+      .type_name("FILE");
+  command
+      .option(
+          "--min-dihedral", line.min_dihedral,
+          "Goal for the smallest dihedral angle: the cells that miss it are worked on by edge removal, face "
+          "swaps, vertex collapse and smoothing")
+      .type_name("DEG")
+      .check(real_number(0, 70.5, false));
+  command.option("--threads-each", line.threads_each, "Threads of each rank")
+      .type_name("N")
+      .shows_default()
+      .check(whole_number(1, 1024));
+  command.group("A grid instead of IN, as hfremesh generate cavity makes it");
+  command.option("--generate", line.counts, "Cubes along x, y and z, of 6 cells each")
+      .type_name("NX NY NZ")
+      .expected(3)
+      .check(whole_number(1, std::numeric_limits<Index>::max() - 1));
+  command.option("--jitter", line.jitter, "Random move of inner coordinates, in cube widths")
+      .type_name("X")
+      .shows_default()
+      .check(real_number());
+  command.option("--amplitude", line.amplitude, "Strength of the deformation; 0 for none")
+      .type_name("X")
+      .shows_default()
+      .check(real_number());
+  command.option("--seed", line.seed, "Seed of the jitter")
+      .type_name("N")
+      .shows_default()
+      .check(whole_number());
+  command.option("--partition", line.partition, "How the grid is cut: blocks, or slices by number")
+      .type_name("HOW")
+      .shows_default()
+      .one_of({"coordinates", "numbers"});
+}
+
+/// Throws Failure for what no run can have.
+void require_sound(const PartsLine& line) {
+  const auto extension = [](const std::string& name) {
+    return std::filesystem::path(name).extension().string();
+  };
+  const auto refuse = [](const std::string& why) { throw Failure(ExitCode::kUsage, "parts: " + why); };
+  if (line.input.empty() == line.counts.empty()) refuse("give either IN or --generate NX NY NZ");
+  if (!line.input.empty() && extension(line.input) != ".pvtu")
+    refuse(line.input +
+           ": meshes in parts are read from .pvtu; hfremesh-mpi without 'parts' reads other formats");
+  const std::string out = extension(line.output);
+  if (!line.output.empty() && out != ".pvtu" && out != ".vtu")
+    refuse(line.output + ": meshes in parts are written as .pvtu or .vtu");
+}
+
+class PartsRun {
+ public:
+  PartsRun(const PartsLine& line, mpi::Comm& comm) : line_(line), comm_(comm), mesh_(comm) {}
+
+  ExitCode run() {
+    begin();
+    mpi::InParts found = mpi::survey(mesh_, line_.min_dihedral, policy());
+    say_found(line_.input.empty() ? "generated" : "read", found);
+    bool goal_reached = true;
+    if (found.n_invalid > 0 && line_.min_dihedral > 0)
+      throw Failure(ExitCode::kInvalidCells,
+                    fmt::format("meshes in parts do not have untangling yet, and this one has "
+                                "{} inverted or flat cells; nothing was written",
+                                grouped(found.n_invalid)));
+    if (line_.min_dihedral > 0) {
+      const mpi::PartsResult result = improve();
+      found = result.after;
+      goal_reached = result.goal_reached;
+    }
+    check();
+    if (!line_.output.empty()) write();
+    say_memory();
+    if (found.n_invalid > 0) return ExitCode::kInvalidCells;
+    return goal_reached ? ExitCode::kDone : ExitCode::kGoalMissed;
+  }
+
+ private:
+  par::Policy policy() const { return par::Policy{line_.threads_each}; }
+  template <class... Values>
+  void say(fmt::format_string<Values...> text, Values&&... values) const {
+    if (comm_.rank() != 0) return;
+    fmt::print("{}\n", fmt::format(text, std::forward<Values>(values)...));
+    std::fflush(stdout);
+  }
+  double seconds() {
+    const auto now = Clock::now();
+    return std::chrono::duration<double>(now - std::exchange(since_, now)).count();
+  }
+
+  /// What the library finds wrong with a file ends the run with this code, as in the tool.
+  template <class Use>
+  static void reporting(ExitCode code, Use&& use) {
+    try {
+      use();
+    } catch (const InvalidInput& error) {
+      throw Failure(code, error.what());
+    } catch (const IoError& error) {
+      throw Failure(code, error.what());
+    }
+  }
+
+  void begin() {
+    if (!line_.input.empty()) {
+      reporting(ExitCode::kCannotRead, [&] { mpi::read_pvtu(mesh_, line_.input); });
+      return;
+    }
+    mpi::GridOptions grid;
+    grid.cavity.counts = {line_.counts[0], line_.counts[1], line_.counts[2]};
+    grid.cavity.jitter = line_.jitter;
+    grid.cavity.amplitude = line_.amplitude;
+    grid.cavity.seed = line_.seed;
+    mpi::generate_in_parts(
+        mesh_, grid, line_.partition == "numbers" ? mpi::Partition::kNumbers : mpi::Partition::kCoordinates);
+  }
+
+  mpi::PartsResult improve() {
+    ImproveOptions options;
+    options.min_dihedral = line_.min_dihedral;
+    options.polish_only = true;
+    options.policy = policy();
+    const mpi::PartsResult result = mpi::improve(mesh_, options);
+    say_found("improved", result.after);
+    if (!result.goal_reached)
+      say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), line_.min_dihedral);
+    for (const std::string& name : result.left_out)
+      say("  left out, since meshes in parts do not have it yet: {}", name);
+    if (result.has_fallen) say("  the smallest angle has fallen; hfremesh would have put the input back");
+    return result;
+  }
+
+  void check() {
+    const mpi::PartsCheck checked = mpi::check(mesh_);
+    if (!checked.is_good)
+      throw Failure(ExitCode::kInternal,
+                    fmt::format("the check of rank {} has found: {}", checked.rank, checked.message));
+    say("checked on {} ranks: no fault, {:.2f} s", comm_.size(), seconds());
+  }
+
+  void write() {
+    reporting(ExitCode::kUsage, [&] {
+      if (std::filesystem::path(line_.output).extension() == ".pvtu")
+        mpi::write_pvtu(mesh_, line_.output);
+      else
+        mpi::write_vtu(mesh_, line_.output);
+    });
+    say("written {}, {:.2f} s", line_.output, seconds());
+  }
+
+  void say_found(const char* what, const mpi::InParts& found) {
+    std::string below;
+    for (std::size_t k = 0; k < found.n_below.size(); ++k)
+      below +=
+          fmt::format("{}{} below {:g}", k > 0 ? ", " : "", grouped(found.n_below[k]), mpi::kCountedBelow[k]);
+    say("{}: {} cells, {} vertices, {} boundary faces, {:.2f} s", what, grouped(found.n_cells),
+        grouped(found.n_vertices), grouped(found.n_boundary_faces), seconds());
+    say("  smallest dihedral {:.6g} degrees; {} invalid, {}", found.min_dihedral, grouped(found.n_invalid),
+        below);
+    say("  a rank holds {} cells at most", grouped(found.most_held));
+  }
+
+  void say_memory() {
+#ifdef __unix__
+    rusage usage{};
+    if (getrusage(RUSAGE_SELF, &usage) != 0) usage.ru_maxrss = 0;
+    const auto mine = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+    std::uint64_t sum = comm_.sum(mine);
+    const double most = -comm_.min(-static_cast<double>(mine));
+    say("memory: {:.0f} MB on the rank that took most, {:.0f} MB on all", most / 1e6,
+        static_cast<double>(sum) / 1e6);
+#endif
+  }
+
+  using Clock = std::chrono::steady_clock;
+
+  const PartsLine& line_;
+  mpi::Comm& comm_;
+  mpi::DistributedMesh mesh_;
+  Clock::time_point since_ = Clock::now();
+};
+
+/// Nothing where help was asked for. All ranks have the same line; the first one prints what is wrong with
+/// it.
+std::optional<PartsLine> parse(int argc, char** argv) {
+  PartsLine line;
+  Parser parser("hfremesh-mpi", "Meshes in parts, on all ranks", "hfremesh-mpi " + std::string(HFR_VERSION));
+  Command command = parser.program().subcommand(
+      "parts", "A mesh that no rank holds alone: generate or read, improve, check, write");
+  add_options(command, line);
+  if (!parser.parse({argv + 1, argv + argc})) return std::nullopt;
+  require_sound(line);
+  return line;
+}
+
+}  // namespace
+
+bool is_in_parts(int argc, char** argv) { return argc > 1 && std::string_view(argv[1]) == "parts"; }
+
+int run_in_parts(int argc, char** argv, mpi::Comm& comm) {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);  // as the tool does; see Tool.cc
+#endif
+  const auto end = [&](const mpi::RankFailed& failed) {
+    if (comm.rank() == 0) fmt::print(stderr, "hfremesh-mpi: {}\n", failed.what());
+    return failed.code();
+  };
+  try {
+    std::optional<PartsLine> line;
+    int code = 0;
+    if (comm.rank() == 0) try {
+        line = parse(argc, argv);
+      } catch (const Failure& failure) {
+        fmt::print(stderr, "hfremesh-mpi: {}\n", failure.what());
+        code = static_cast<int>(failure.code());
+      }
+    const std::array<int, 2> said = comm.from_first(std::array<int, 2>{line ? 1 : 0, code});
+    if (said[0] == 0) return said[1];
+    if (comm.rank() != 0) line = parse(argc, argv);
+    return static_cast<int>(PartsRun(*line, comm).run());
+  } catch (const mpi::RankFailed& failed) {
+    return end(failed);
+  } catch (const std::exception& error) {
+    return end(comm.fail(static_cast<int>(exit_code_of(error)), message_of(error)));
+  }
+}
+
+}  // namespace hfr::app

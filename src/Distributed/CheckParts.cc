@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The rules of HalfFace/Check.hh where the mesh is in parts. All cells of a rank's own vertices are held by
+// it, so each looks at what is round its own ones; what cannot be seen from there is asked of others.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "Distributed/InParts.hh"
+
+namespace hfr::mpi {
+namespace {
+
+using Fault = std::optional<std::string>;
+
+/// The cells of each own vertex.
+class Stars {
+ public:
+  explicit Stars(const DistributedMesh& mesh) : begin_(mesh.part().n_vertices() + 1, 0) {
+    const TetMesh& part = mesh.part();
+    const auto for_corners = [&](auto&& body) {
+      for (std::size_t i = 0; i < part.n_cells(); ++i) {
+        if (part.is_deleted(CellHandle(i))) continue;
+        for (VertexHandle v : part.cell(CellHandle(i)).v)
+          if (mesh.is_own(v)) body(v, CellHandle(i));
+      }
+    };
+    for_corners([&](VertexHandle v, CellHandle) { ++begin_[v.idx() + 1]; });
+    for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
+    cells_.resize(begin_.back());
+    std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
+    for_corners([&](VertexHandle v, CellHandle c) { cells_[at[v.idx()]++] = c; });
+  }
+  std::span<const CellHandle> operator[](VertexHandle v) const {
+    return {cells_.data() + begin_[v.idx()], begin_[v.idx() + 1] - begin_[v.idx()]};
+  }
+
+ private:
+  std::vector<std::uint32_t> begin_;
+  std::vector<CellHandle> cells_;  // ascending for each vertex
+};
+
+/// Looks at one rank's part.
+class PartCheck {
+ public:
+  explicit PartCheck(const DistributedMesh& mesh) : mesh_(mesh), part_(mesh.part()) {}
+
+  Fault run() const {
+    for (std::size_t i = 0; i < part_.n_cells(); ++i)
+      if (!part_.is_deleted(CellHandle(i)))
+        if (Fault fault = look_at(CellHandle(i))) return fault;
+    const Stars stars(mesh_);
+    for (std::size_t i = 0; i < part_.n_vertices(); ++i)
+      if (const VertexHandle v(i); mesh_.is_own(v))
+        if (Fault fault = look_at(v, stars[v])) return fault;
+    return {};
+  }
+
+ private:
+  std::string name(CellHandle c) const { return "cell " + std::to_string(mesh_.number(c)); }
+  std::string name(VertexHandle v) const { return "vertex " + std::to_string(mesh_.number(v)); }
+
+  Fault look_at(CellHandle c) const {
+    const Cell& cell = part_.cell(c);
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!cell.v[k].is_valid() || cell.v[k].idx() >= part_.n_vertices() || part_.is_deleted(cell.v[k]))
+        return name(c) + ": a vertex of it is not there";
+      for (std::size_t j = 0; j < k; ++j)
+        if (cell.v[j] == cell.v[k]) return name(c) + ": a vertex of it appears twice";
+    }
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(c, k), m = part_.opposite_halfface(h);
+      if (!m.is_valid()) continue;
+      if (m.idx() / 4 >= part_.n_cells() || part_.is_deleted(cell_of(m)) || cell_of(m) == c ||
+          part_.opposite_halfface(m) != h)
+        return name(c) + ": a face of it and its mate do not name each other";
+      const auto a = part_.halfface_vertices(h), b = part_.halfface_vertices(m);
+      const auto at = std::find(b.begin(), b.end(), a[0]) - b.begin();
+      if (at == 3 || a[1] != b[static_cast<std::size_t>(at + 2) % 3] ||
+          a[2] != b[static_cast<std::size_t>(at + 1) % 3])
+        return name(c) + ": it and a neighbour see their face in the same order, or other vertices of it";
+    }
+    return {};
+  }
+
+  Fault look_at(VertexHandle v, std::span<const CellHandle> star) const {
+    const CellHandle incident = part_.incident_cell(v);
+    if (part_.is_deleted(v)) return star.empty() ? Fault{} : name(v) + ": it is deleted, and has cells";
+    if (star.empty()) return incident.is_valid() ? name(v) + ": its incident cell is none of it" : Fault{};
+    if (!std::binary_search(star.begin(), star.end(), incident))
+      return name(v) + ": its incident cell is none of it";
+    if (mesh_.work().star_size[v.idx()] != star.size()) return name(v) + ": it has another number of cells";
+    if (Fault fault = look_at_faces(v, star)) return fault;
+    return look_at_links(v, star);
+  }
+
+  /// No face of v has two cells that are not mates.
+  Fault look_at_faces(VertexHandle v, std::span<const CellHandle> star) const {
+    std::vector<std::pair<std::array<VertexHandle, 2>, HalfFaceHandle>> faces;
+    for (CellHandle c : star)
+      for (int k = 0; k < 4; ++k) {
+        const HalfFaceHandle h = halfface_of(c, k);
+        std::array<VertexHandle, 2> others;
+        std::size_t n = 0;
+        for (VertexHandle u : part_.halfface_vertices(h))
+          if (u != v && n < 2) others[n++] = u;
+        if (part_.cell(c).v[static_cast<std::size_t>(k)] == v) continue;
+        std::sort(others.begin(), others.end());
+        faces.emplace_back(others, h);
+      }
+    std::sort(faces.begin(), faces.end());
+    for (std::size_t i = 1; i < faces.size(); ++i)
+      if (faces[i].first == faces[i - 1].first &&
+          part_.opposite_halfface(faces[i].second) != faces[i - 1].second)
+        return name(v) + ": a face of it has two cells that are not each other's neighbours";
+    return {};
+  }
+
+  /// The cells of v connect through faces, and so do those of each edge of it.
+  Fault look_at_links(VertexHandle v, std::span<const CellHandle> star) const {
+    std::vector<std::uint8_t> seen(star.size(), 0);
+    std::vector<std::size_t> found = {0};
+    seen[0] = 1;
+    std::vector<std::pair<VertexHandle, std::uint32_t>> edges;  // by their other end: how many cells
+    for (CellHandle c : star)
+      for (VertexHandle u : part_.cell(c).v)
+        if (u != v) edges.emplace_back(u, c.idx());
+    for (std::size_t i = 0; i < found.size(); ++i)
+      for (HalfFaceHandle m : part_.cell(star[found[i]]).mate) {
+        if (!m.is_valid()) continue;
+        const auto at = std::lower_bound(star.begin(), star.end(), cell_of(m));
+        if (at == star.end() || *at != cell_of(m)) continue;
+        if (!std::exchange(seen[static_cast<std::size_t>(at - star.begin())], std::uint8_t{1}))
+          found.push_back(static_cast<std::size_t>(at - star.begin()));
+      }
+    if (found.size() != star.size()) return name(v) + ": its cells do not connect through faces";
+    std::sort(edges.begin(), edges.end());
+    for (std::size_t i = 0, n = 1; i < edges.size(); i += n) {
+      for (n = 1; i + n < edges.size() && edges[i + n].first == edges[i].first;) ++n;
+      if (n_connected(v, edges[i].first, CellHandle(edges[i].second), n) != n)
+        return "the edge of " + name(v) + " and " + name(edges[i].first) + " has more than one fan of cells";
+    }
+    return {};
+  }
+
+  /// Cells round the edge that connect to c; at most one more than `most`.
+  std::size_t n_connected(VertexHandle a, VertexHandle b, CellHandle c, std::size_t most) const {
+    const Cell& cell = part_.cell(c);
+    std::array<std::size_t, 2> off{};  // the corners that are not on the edge
+    std::size_t n_off = 0, n = 1;
+    for (std::size_t k = 0; k < 4; ++k)
+      if (cell.v[k] != a && cell.v[k] != b && n_off < 2) off[n_off++] = k;
+    for (std::size_t side = 0; side < 2; ++side) {
+      CellHandle at = c;
+      VertexHandle ahead = cell.v[off[1 - side]];  // goes on through the face that has it
+      for (HalfFaceHandle h = halfface_of(c, static_cast<int>(off[side])); n <= most;) {
+        const HalfFaceHandle m = part_.opposite_halfface(h);
+        if (!m.is_valid()) break;
+        at = cell_of(m);
+        if (at == c) return n;  // all the way round
+        ++n;
+        const VertexHandle next = part_.cell(at).v[static_cast<std::size_t>(corner_of(m))];
+        h = halfface_of(at, part_.cell(at).corner(ahead));
+        ahead = next;
+      }
+    }
+    return n;
+  }
+
+  const DistributedMesh& mesh_;
+  const TetMesh& part_;
+};
+
+/// What is held of a cell or vertex of another rank.
+struct HeldCell {
+  std::uint64_t number = 0;
+  std::array<std::uint64_t, 4> v{};
+  double quality = 0;
+};
+struct HeldVertex {
+  std::uint64_t number = 0;
+  Vec3 point;
+};
+
+HeldCell held(const DistributedMesh& mesh, CellHandle c) {
+  HeldCell one{mesh.number(c), {}, mesh.work().quality[c.idx()]};
+  for (std::size_t k = 0; k < 4; ++k) one.v[k] = mesh.number(mesh.part().cell(c).v[k]);
+  return one;
+}
+
+int owner_of(const DistributedMesh& mesh, CellHandle c) {
+  const auto& v = mesh.part().cell(c).v;
+  return mesh.owner(std::min(std::min(v[0], v[1]), std::min(v[2], v[3])));
+}
+
+/// What this rank holds for others is what they have.
+Fault compare_with_owners(DistributedMesh& mesh) {
+  const TetMesh& part = mesh.part();
+  const auto n_ranks = mesh.comm().n_ranks();
+  std::vector<std::vector<HeldCell>> cells(n_ranks);
+  std::vector<std::vector<HeldVertex>> vertices(n_ranks);
+  std::vector<std::uint8_t> has_cell(part.n_vertices(), 0);
+  for (std::size_t i = 0; i < part.n_cells(); ++i) {
+    const CellHandle c(i);
+    if (part.is_deleted(c)) continue;
+    for (VertexHandle v : part.cell(c).v) has_cell[v.idx()] = 1;
+    if (!mesh.is_own(c)) cells[static_cast<std::size_t>(owner_of(mesh, c))].push_back(held(mesh, c));
+  }
+  for (std::size_t i = 0; i < part.n_vertices(); ++i)
+    if (const VertexHandle v(i); has_cell[i] && !mesh.is_own(v))
+      vertices[static_cast<std::size_t>(mesh.owner(v))].push_back({mesh.number(v), part.point(v)});
+  std::vector<Packer> to(n_ranks);
+  for (std::size_t r = 0; r < n_ranks; ++r) {
+    if (cells[r].empty() && vertices[r].empty()) continue;
+    to[r].put_all(std::exchange(cells[r], {}));
+    to[r].put_all(std::exchange(vertices[r], {}));
+  }
+  Fault fault;
+  for (const Comm::Message& message : mesh.comm().exchange(to)) {
+    Unpacker in(message.bytes);
+    const auto say = [&](const std::string& what) {
+      if (!fault) fault = what + ", as rank " + std::to_string(message.from) + " holds it, is another here";
+    };
+    for (const HeldCell& theirs : in.get_all<HeldCell>()) {
+      const CellHandle c = mesh.cell_at(theirs.number);
+      if (!c.is_valid() || part.is_deleted(c) || !mesh.is_own(c)) {
+        say("cell " + std::to_string(theirs.number));
+        continue;
+      }
+      const HeldCell mine = held(mesh, c);
+      if (mine.v != theirs.v || mine.quality != theirs.quality) say("cell " + std::to_string(theirs.number));
+    }
+    for (const HeldVertex& theirs : in.get_all<HeldVertex>()) {
+      const VertexHandle v = mesh.vertex_at(theirs.number);
+      if (!v.is_valid() || !mesh.is_own(v) || part.is_deleted(v) || part.point(v) != theirs.point)
+        say("vertex " + std::to_string(theirs.number));
+    }
+  }
+  return fault;
+}
+
+/// Faces without a mate, each looked at by some rank: a face that comes from two cells is no boundary.
+Fault compare_boundaries(DistributedMesh& mesh) {
+  using Face = std::array<std::uint64_t, 3>;
+  const TetMesh& part = mesh.part();
+  std::vector<Packer> to(mesh.comm().n_ranks());
+  for (std::size_t i = 0; i < part.n_cells(); ++i) {
+    const CellHandle c(i);
+    if (part.is_deleted(c) || !mesh.is_own(c)) continue;
+    for (int k = 0; k < 4; ++k) {
+      const HalfFaceHandle h = halfface_of(c, k);
+      if (part.opposite_halfface(h).is_valid()) continue;
+      Face face{};
+      const auto v = part.halfface_vertices(h);
+      for (std::size_t j = 0; j < 3; ++j) face[j] = mesh.number(v[j]);
+      std::sort(face.begin(), face.end());
+      to[(face[0] + face[1] + face[2]) % to.size()].put(face);
+    }
+  }
+  std::vector<Face> faces;
+  for (const Comm::Message& message : mesh.comm().exchange(to))
+    for (Unpacker in(message.bytes); !in.at_end();) faces.push_back(in.get<Face>());
+  std::sort(faces.begin(), faces.end());
+  const auto twice = std::adjacent_find(faces.begin(), faces.end());
+  if (twice == faces.end()) return {};
+  return "the face of vertices " + std::to_string((*twice)[0]) + ", " + std::to_string((*twice)[1]) +
+         " and " + std::to_string((*twice)[2]) + " has two cells that are not each other's neighbours";
+}
+
+}  // namespace
+
+PartsCheck check(DistributedMesh& mesh) {
+  Comm& comm = mesh.comm();
+  const Comm::InPhase phase(comm, Phase::kTally);
+  Fault fault = PartCheck(mesh).run();
+  // What one rank finds is no reason for others to stop where all have to be asked.
+  for (const auto& compare : {compare_with_owners, compare_boundaries})
+    if (Fault another = compare(mesh); another && !fault) fault = std::move(another);
+  PartsCheck result;
+  const double first = comm.min(fault ? comm.rank() : comm.size());
+  result.rank = static_cast<int>(first);
+  result.is_good = result.rank == comm.size();
+  std::string mine = fault && result.rank == comm.rank() ? *fault : std::string();
+  const std::vector<char> said = comm.all_gather(std::span<const char>(mine.data(), mine.size()));
+  result.message.assign(said.begin(), said.end());
+  if (result.is_good) result.rank = 0;
+  return result;
+}
+
+}  // namespace hfr::mpi

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_IN_PARTS_HH
+#define HFR_DISTRIBUTED_IN_PARTS_HH
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hfremesh/Distributed/DistributedMesh.hh"
+#include "hfremesh/Distributed/Partition.hh"
+#include "hfremesh/HalfFace/Generate.hh"
+#include "hfremesh/Remesh/Improve.hh"
+
+/// Meshes that are in parts from beginning to end: no rank ever holds the whole, or an array of its size
+/// (docs/distributed.md says what goes to all ranks nevertheless). All ranks call each function at the same
+/// time, with the same arguments; where one throws, the others throw RankFailed with their next call.
+namespace hfr::mpi {
+
+/// generate::cavity() between two corners; with an amplitude of 0 generate::jittered_box().
+struct GridOptions {
+  generate::CavityOptions cavity;
+  Vec3 low = {0, 0, 0}, high = {1, 1, 1};
+};
+/// Makes the parts, each on its rank: the points, cells and numbers of the mesh that the function for shared
+/// memory makes, which may have more cells here than an index can count. `how`: kNumbers are slices, all else
+/// blocks. Throws InvalidInput for what that function refuses, and where most cells of a part are inverted.
+void generate_in_parts(DistributedMesh& mesh, const GridOptions& options,
+                       Partition how = Partition::kCoordinates);
+
+/// Degrees below which InParts counts cells.
+inline constexpr std::array<double, 6> kCountedBelow = {5, 10, 15, 20, 25, 30};
+/// What is known of the whole, the same on all ranks.
+struct InParts {
+  std::uint64_t n_vertices = 0, n_cells = 0, n_boundary_faces = 0;
+  std::uint64_t n_invalid = 0;  ///< cells whose volume is not positive beyond rounding
+  std::uint64_t n_below_goal = 0;
+  std::array<std::uint64_t, kCountedBelow.size()> n_below{};  ///< by kCountedBelow
+  double worst = 0;             ///< decision value of MinDihedral of the worst cell
+  double min_dihedral = 0;      ///< the same in degrees
+  std::uint64_t most_held = 0;  ///< cells that one rank holds, of others included; slots that are free, too
+};
+/// `goal`: degrees. O(part), and two reductions.
+InParts survey(DistributedMesh& mesh, double goal = 0, par::Policy policy = {});
+
+/// What improve() has done to a mesh in parts; the same on all ranks, but for seconds.
+struct PartsResult {
+  InParts before, after;
+  bool changed = false;
+  bool goal_reached = false;
+  /// The smallest angle is below that of the input, for which hfr::improve() would have put the input back.
+  /// Seen only where an obtuse angle was the worst.
+  bool has_fallen = false;
+  std::vector<PassReport> passes;
+  std::vector<std::string> left_out;  ///< names of passes that would have been asked for and are not there
+  double seconds = 0;
+};
+/// The polish towards options.min_dihedral: edge removal, removal of faces and of fans, vertex collapse and
+/// smoothing on the cells that miss it. With options.polish_only and without Ops::kInsert, hfr::improve() of
+/// the whole mesh gives the same bits, for each number of ranks and threads; new vertices are left out here
+/// and named in `left_out`.
+/// Throws InvalidInput, naming it, for what is not there in parts: runs without polish_only, a surface that
+/// may change, fixed things, devices, time limits, callbacks, maps, other smoothers, mixed rounds; and where
+/// the mesh has cells to untangle or a boundary that lies on itself.
+PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
+
+/// What check() of the parts has found.
+struct PartsCheck {
+  bool is_good = true;
+  int rank = 0;         ///< the first that found something
+  std::string message;  ///< one line; empty where nothing is wrong; that of that rank, on all
+};
+/// Each rank looks at its own cells and vertices by the rules of hfr::check(), orientation and manifold edges
+/// and vertices included; then cells that are held for others are compared with their owners', to the last
+/// bit, and faces of the boundary with those of all ranks, since none may be another's mate.
+PartsCheck check(DistributedMesh& mesh);
+
+/// `path`, an index of pieces (.pvtu), and beside it, in a folder of its name, one piece (.vtu, raw appended)
+/// for each rank: its own cells and all their points, each with its "number" in the whole. Numbers have no
+/// gaps: they are those of the mesh after hfr::improve(). The index is written last; every file is whole or
+/// not there.
+void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
+/// One .vtu with the bytes that io::write() writes of the whole. Each rank writes its own points and cells at
+/// their offsets in one temporary file, which is renamed in the end: all ranks see one file system.
+void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
+
+/// What write_pvtu() has written, by any number of ranks: piece i is read by rank i mod n, and points that
+/// several ranks have come to belong to the first of them. Throws InvalidInput where pieces have no "number",
+/// numbers have gaps, or there are other elements than tetrahedra; IoError where a file is missing.
+void read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
+
+}  // namespace hfr::mpi
+
+#endif

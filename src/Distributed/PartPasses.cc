@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/PartPasses.hh"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <type_traits>
+
+#include "Distributed/PartRound.hh"
+#include "Distributed/PartSeeds.hh"
+#include "Distributed/PartSmoothing.hh"
+#include "Operators/EdgeRemoval.hh"
+#include "Operators/FaceSwap.hh"
+#include "Operators/FanMerge.hh"
+#include "Operators/MultiFaceRemoval.hh"
+#include "Operators/SmoothMaxMin.hh"
+#include "Operators/VertexCollapse.hh"
+
+namespace hfr::mpi {
+namespace {
+
+RoundOptions options(const Ranks::Look& look, PartRound& place) {
+  RoundOptions options{par::Policy{look.threads}, /*check_links=*/false, look.seed};
+  options.may_lose = static_cast<std::size_t>(look.may_lose);
+  options.may_gain = static_cast<std::size_t>(look.may_gain);
+  return place.options(options);
+}
+
+}  // namespace
+
+bool PartPasses::can_do(PassKind kind, Metric metric) {
+  return (metric == Metric::kMinSine || metric == Metric::kMinDihedral) &&
+         (kind == PassKind::kEdge || kind == PassKind::kFace || kind == PassKind::kMultiFace ||
+          kind == PassKind::kNode || kind == PassKind::kSmooth || kind == PassKind::kFan);
+}
+
+Ranks::Tally PartPasses::tally(double below) {
+  const Comm::InPhase phase(parts_.comm(), Phase::kTally);
+  std::array<std::uint64_t, 2> sums = {0, 0};
+  double worst = std::numeric_limits<double>::infinity();
+  const TetMesh& part = parts_.part();
+  for (std::size_t i = 0; i < part.n_cells(); ++i) {
+    const double q = parts_.work().quality[i];
+    // Deleted ones and most others are nowhere near.
+    if (q > 0 && !(q < below) && !(q < worst)) continue;
+    const CellHandle c(i);
+    if (part.is_deleted(c) || !parts_.is_own(c)) continue;
+    sums[0] += q > 0 ? 0 : 1;
+    sums[1] += q < below ? 1 : 0;
+    worst = std::min(worst, q);
+  }
+  worst = parts_.comm().sum_and_min(sums, worst);
+  return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), worst};
+}
+
+RoundCounts PartPasses::run(const Ranks::Look& look) {
+  const Comm::InPhase phase(parts_.comm(), Phase::kEvaluate);
+  return look.metric == Metric::kMinSine ? pass(look, MinSine2{}) : pass(look, MinDihedral{});
+}
+
+template <class M>
+RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
+  const TetMesh& part = parts_.part();
+  Workspace& work = parts_.work();
+  const par::Policy policy{look.threads};
+  const Worklist list(part, policy, poor_.below(look.below, work, policy), [&](CellHandle c) {
+    const auto& v = part.cell(c).v;
+    return std::any_of(v.begin(), v.end(),
+                       [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
+  });
+  std::array<std::uint64_t, 2> listed = {list.cells().size(), 0};
+  if (look.kind == PassKind::kEdge) listed[1] = n_own(list.cells());
+  parts_.comm().sum(listed);
+  if (listed[0] == 0) return {};
+  ++n_rounds_;
+  switch (look.kind) {
+    case PassKind::kEdge:
+      return round<EdgeRemoval<M>>(look, {metric, work.quality}, list, listed[1] > look.first_edge_beyond);
+    case PassKind::kFace:
+      return round<FaceSwap<M>>(look, {metric, work.quality}, list);
+    case PassKind::kMultiFace:
+      return round<MultiFaceRemoval<M>>(look, {metric, work.quality}, list);
+    case PassKind::kFan:
+      return round<FanMerge<M>>(look, {metric, work.quality}, list);
+    case PassKind::kNode: {
+      using Op = VertexCollapse<M>;
+      PartRound place(parts_);
+      Round<Op> round(parts_.part(), work, options(look, place));
+      return round.run(Op{metric, work.quality, work.frozen}, removable_seeds(parts_, list, policy));
+    }
+    default: {
+      const auto vertices = vertex_seeds(part, list, work.frozen, policy);
+      const auto n_own =
+          std::count_if(vertices.begin(), vertices.end(), [&](VertexHandle v) { return parts_.is_own(v); });
+      if (parts_.comm().sum(static_cast<std::uint64_t>(n_own)) == 0) return {};
+      const Comm::InPhase phase(parts_.comm(), Phase::kSmooth);
+      return smooth_parts(parts_, MaxMinSearch{}, metric, vertices, policy);
+    }
+  }
+}
+
+template <class Op>
+RoundCounts PartPasses::round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does) {
+  PartRound place(parts_);
+  Round<Op> round(parts_.part(), parts_.work(), options(look, place));
+  return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
+    const CellHandle c(list.cells()[i]);
+    if constexpr (IsCellAndEdge<typename Op::Seed>) {
+      if (parts_.is_own(c))
+        for (std::uint8_t e = 0; e < 6; ++e) visit(typename Op::Seed{c, e, 0, 0});
+    } else if constexpr (!std::is_same_v<typename Op::Seed, EdgeHandle>)
+      visit_face_seeds(parts_, list, c, [&](HalfFaceHandle h) { visit(typename Op::Seed(h)); });
+    else if (first_does)
+      visit_edge_seeds_until(parts_, list, c, [&](EdgeHandle e) { return visit(e) >= look.below; });
+    else
+      visit_edge_seeds(parts_, list, c, visit);
+  });
+}
+
+/// Of these cells of the part, how many are own ones.
+std::uint64_t PartPasses::n_own(std::span<const Index> cells) const {
+  return static_cast<std::uint64_t>(
+      std::count_if(cells.begin(), cells.end(), [&](Index c) { return parts_.is_own(CellHandle(c)); }));
+}
+
+}  // namespace hfr::mpi

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_PART_PASSES_HH
+#define HFR_DISTRIBUTED_PART_PASSES_HH
+
+#include <cstdint>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Remesh/PassState.hh"
+#include "Remesh/Ranks.hh"
+#include "Scheduler/PoorCells.hh"
+
+namespace hfr::mpi {
+
+/// The passes of the polish over the parts of a mesh. All ranks call all of it in the same order.
+class PartPasses {
+ public:
+  /// `n_rounds`: counts rounds in which there was something to look at.
+  PartPasses(DistributedMesh& parts, std::uint64_t& n_rounds) : parts_(parts), n_rounds_(n_rounds) {}
+
+  static bool can_do(PassKind kind, Metric metric);
+  RoundCounts run(const Ranks::Look& look);
+  /// Of all cells of the whole.
+  Ranks::Tally tally(double below);
+
+ private:
+  template <class M>
+  RoundCounts pass(const Ranks::Look& look, const M& metric);
+  template <class Op>
+  RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does = false);
+  std::uint64_t n_own(std::span<const Index> cells) const;
+
+  DistributedMesh& parts_;
+  std::uint64_t& n_rounds_;
+  PoorCells poor_;  // of the part
+};
+
+}  // namespace hfr::mpi
+
+#endif

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/InParts.hh"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "Distributed/Parts.hh"
+#include "HalfFace/Check.hh"
+#include "IO/ReadWrite.hh"
+#include "Remesh/Survey.hh"
+#include "ScratchFolder.hh"
+
+namespace hfr::test {
+namespace {
+
+constexpr mpi::Partition kCuts[] = {mpi::Partition::kCoordinates, mpi::Partition::kNumbers};
+
+mpi::GridOptions grid(generate::Counts counts, double jitter, double amplitude = 0) {
+  mpi::GridOptions options;
+  options.cavity.counts = counts;
+  options.cavity.jitter = jitter;
+  options.cavity.amplitude = amplitude;
+  return options;
+}
+
+TetMesh whole_of(const mpi::GridOptions& options) {
+  const generate::Arrays arrays = generate::cavity(options.cavity);
+  return build(arrays.points, arrays.cells);
+}
+
+ImproveOptions polish_towards(double degrees) {
+  ImproveOptions options;
+  options.min_dihedral = degrees;
+  options.polish_only = true;
+  options.ops = without(options.ops, Ops::kInsert);
+  options.policy = {};
+  return options;
+}
+
+TEST(InParts, AGridComesAsInSharedMemoryWhateverTheParts) {
+  for (const mpi::Partition how : kCuts)
+    for (const double amplitude : {0.0, 0.02}) {
+      mpi::Comm comm(MPI_COMM_WORLD);
+      const mpi::GridOptions options = grid({9, 7, 8}, 0.2, amplitude);
+      mpi::DistributedMesh parts(comm);
+      mpi::generate_in_parts(parts, options, how);
+      Whole whole(whole_of(options), MinSine2{});
+      EXPECT_EQ(parts.n_cells(), whole.mesh.n_cells());
+      EXPECT_EQ(parts.n_vertices(), whole.mesh.n_vertices());
+      parts.work().set_qualities(parts.part(), MinSine2{}, {});
+      expect_part_of(parts, whole);
+      const Whole before = whole;
+      gather_from_nothing(parts, whole);
+      if (comm.rank() == 0) expect_same(before, whole);
+    }
+}
+
+TEST(InParts, WhatIsCountedIsWhatIsThere) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const mpi::GridOptions options = grid({6, 5, 7}, 0.3);
+  mpi::DistributedMesh parts(comm);
+  mpi::generate_in_parts(parts, options);
+  const TetMesh whole = whole_of(options);
+  const mpi::InParts found = mpi::survey(parts, 12);
+  EXPECT_EQ(found.n_cells, whole.n_cells());
+  EXPECT_EQ(found.n_vertices, whole.n_vertices());
+  EXPECT_EQ(found.n_boundary_faces,
+            static_cast<std::size_t>(std::ranges::distance(whole.boundary_halffaces())));
+  EXPECT_EQ(found.n_invalid, hfr::invalid_cells(whole, {}).size());
+  EXPECT_GT(found.n_invalid, 0U);
+  EXPECT_EQ(found.n_below_goal, hfr::n_below(whole, 12, {}));
+  EXPECT_EQ(found.n_below[1], hfr::n_below(whole, 10, {}));
+  EXPECT_EQ(found.min_dihedral, hfr::smallest_dihedral(whole, {}));
+}
+
+/// Towards goals that the polish reaches, and beyond: then it goes on as far as it does in shared memory.
+TEST(InParts, ThePolishHasTheBitsOfSharedMemory) {
+  for (const mpi::Partition how : kCuts)
+    for (const double goal : {12.0, 24.0}) {
+      mpi::Comm comm(MPI_COMM_WORLD);
+      const mpi::GridOptions grid_options = grid({10, 9, 11}, 0.22);
+      mpi::DistributedMesh parts(comm);
+      mpi::generate_in_parts(parts, grid_options, how);
+      const mpi::PartsResult result = mpi::improve(parts, polish_towards(goal));
+      EXPECT_TRUE(result.changed);
+      EXPECT_TRUE(result.left_out.empty());
+      EXPECT_FALSE(result.has_fallen);
+      const mpi::PartsCheck checked = mpi::check(parts);
+      EXPECT_TRUE(checked.is_good) << checked.message;
+      Whole whole(whole_of(grid_options), MinSine2{});
+      parts.gather(&whole.mesh, &whole.work, mpi::DistributedMesh::Gather::kEverything);
+      if (comm.rank() != 0) continue;
+      whole.mesh.collect_garbage();
+      TetMesh mesh = whole_of(grid_options);
+      const Result shared = hfr::improve(mesh, polish_towards(goal));
+      EXPECT_EQ(check(mesh), Ok);
+      for (const PassReport& pass : shared.passes)
+        EXPECT_TRUE(pass.stage == "polish" || pass.stage == "finish") << pass.stage << " is no polish";
+      EXPECT_TRUE(identical(mesh, whole.mesh)) << goal;
+      EXPECT_EQ(shared.goal_reached, result.goal_reached);
+      EXPECT_EQ(shared.goal_reached, goal < 20);
+      EXPECT_EQ(result.after.n_cells, mesh.n_cells());
+      EXPECT_EQ(result.after.n_vertices, mesh.n_vertices());
+      EXPECT_EQ(result.after.n_below_goal, hfr::n_below(mesh, goal, {}));
+    }
+}
+
+TEST(InParts, WhatIsNotThereIsNamed) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  mpi::DistributedMesh parts(comm);
+  mpi::generate_in_parts(parts, grid({6, 6, 6}, 0.22));
+  const auto refusal = [&](auto&& change) -> std::string {
+    ImproveOptions options = polish_towards(15);
+    change(options);
+    try {
+      mpi::improve(parts, options);
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal([](auto& o) { o.polish_only = false; }), HasSubstr("runs other than the polish"));
+  EXPECT_THAT(refusal([](auto& o) { o.surface.mode = SurfaceMode::kFlat; }),
+              HasSubstr("surfaces that may change"));
+  EXPECT_THAT(refusal([](auto& o) { o.time_limit = 1; }), HasSubstr("time limits"));
+  ImproveOptions options = polish_towards(24);
+  options.ops = Ops::kDefault;
+  EXPECT_THAT(mpi::improve(parts, options).left_out, testing::ElementsAre("insertion of vertices"));
+  mpi::generate_in_parts(parts, grid({6, 6, 6}, 0.5));
+  EXPECT_THAT(refusal([](auto&) {}), HasSubstr("untangling"));
+}
+
+/// Of a part in which something is spoilt on one rank, all ranks learn.
+TEST(InParts, ACheckFindsWhatOneRankHasWrong) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const int bad = comm.size() - 1;
+  const auto found_after = [&](auto&& spoil) {
+    mpi::DistributedMesh parts(comm);
+    mpi::generate_in_parts(parts, grid({7, 6, 8}, 0.1));
+    EXPECT_TRUE(mpi::check(parts).is_good);
+    if (comm.rank() == bad) spoil(parts);
+    const mpi::PartsCheck found = mpi::check(parts);
+    EXPECT_FALSE(found.is_good);
+    EXPECT_FALSE(found.message.empty());
+    EXPECT_LT(found.rank, comm.size());
+    return found.message;
+  };
+  const auto own_cell = [](const mpi::DistributedMesh& parts) {
+    for (std::size_t c = 0;; ++c) {
+      const auto& v = parts.part().cell(C(c)).v;
+      if (std::all_of(v.begin(), v.end(), [&](VertexHandle u) { return parts.is_own(u); })) return C(c);
+    }
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                auto& cell = TetMesh::Writer(parts.part()).cell(own_cell(parts));
+                std::swap(cell.v[0], cell.v[1]);
+              }),
+              HasSubstr("cell"));
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                parts.work().star_size[parts.part().cell(own_cell(parts)).v[0].idx()] += 1;
+              }),
+              HasSubstr("another number of cells"));
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                TetMesh::Writer writer(parts.part());
+                for (HalfFaceHandle h : parts.part().cell_halffaces(own_cell(parts)))
+                  if (const HalfFaceHandle m = parts.part().opposite_halfface(h); m.is_valid()) {
+                    writer.set_mate(h, {});
+                    writer.set_mate(m, {});
+                    return;
+                  }
+              }),
+              HasSubstr("not each other's neighbours"));
+  if (comm.size() == 1) return;
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                for (std::size_t v = 0; v < parts.part().n_vertices(); ++v)
+                  if (!parts.is_own(V(v)) && parts.part().incident_cell(V(v)).is_valid()) {
+                    parts.part().set_point(V(v), {-1, -1, -1});
+                    return;
+                  }
+              }),
+              HasSubstr("as rank " + std::to_string(bad) + " holds it"));
+}
+
+std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A folder that all ranks know; it goes with the object of rank 0.
+class SharedFolder {
+ public:
+  explicit SharedFolder(mpi::Comm& comm) : comm_(comm) {
+    std::string name;
+    if (comm.rank() == 0) name = mine_.emplace().path().string();
+    const auto all = comm.all_gather(std::span<const char>(name.data(), name.size()));
+    path_ = std::string(all.begin(), all.end());
+  }
+  ~SharedFolder() { comm_.sum(0); }  // others still look at it
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  mpi::Comm& comm_;
+  std::optional<ScratchFolder> mine_;
+  std::filesystem::path path_;
+};
+
+TEST(InParts, OneFileHasTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const mpi::GridOptions grid_options = grid({8, 9, 7}, 0.22);
+  for (const mpi::Partition how : kCuts) {
+    mpi::DistributedMesh parts(comm);
+    mpi::generate_in_parts(parts, grid_options, how);
+    const mpi::PartsResult result = mpi::improve(parts, polish_towards(14));
+    mpi::write_vtu(parts, folder.path() / "parts.vtu");
+    if (comm.rank() != 0) continue;
+    TetMesh mesh = whole_of(grid_options);
+    const std::size_t n_before = mesh.n_vertices();
+    hfr::improve(mesh, polish_towards(14));
+    EXPECT_EQ(result.before.n_vertices, n_before);
+    io::write(folder.path() / "whole.vtu", mesh);
+    EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << "temporary files";
+  }
+}
+
+/// Whatever ranks have written the pieces, they are the mesh; and a run goes on from there as from one file.
+TEST(InParts, PiecesComeBackAsTheMesh) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "a & b.pvtu";
+  const mpi::GridOptions grid_options = grid({8, 9, 7}, 0.22);
+  {
+    mpi::DistributedMesh parts(comm);
+    mpi::generate_in_parts(parts, grid_options);
+    mpi::improve(parts, polish_towards(10));
+    mpi::write_pvtu(parts, path);
+  }
+  TetMesh mesh = whole_of(grid_options);
+  hfr::improve(mesh, polish_towards(10));
+  mpi::DistributedMesh parts(comm);
+  mpi::read_pvtu(parts, path);
+  parts.work().set_qualities(parts.part(), MinSine2{}, {});
+  EXPECT_EQ(parts.n_cells(), mesh.n_cells());
+  EXPECT_EQ(parts.n_vertices(), mesh.n_vertices());
+  expect_part_of(parts, Whole(mesh, MinSine2{}));
+  EXPECT_TRUE(mpi::check(parts).is_good);
+  mpi::improve(parts, polish_towards(16));
+  mpi::write_vtu(parts, folder.path() / "parts.vtu");
+  if (comm.rank() == 0) {
+    hfr::improve(mesh, polish_towards(16));
+    io::write(folder.path() / "whole.vtu", mesh);
+    EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+  }
+  // By each rank alone, what all have written.
+  mpi::Comm alone(MPI_COMM_SELF);
+  mpi::DistributedMesh one(alone);
+  mpi::read_pvtu(one, path);
+  TetMesh again = whole_of(grid_options);
+  hfr::improve(again, polish_towards(10));
+  EXPECT_EQ(mpi::survey(one).worst, hfr::survey(again, {}).worst);
+  EXPECT_EQ(one.n_cells(), again.n_cells());
+}
+
+TEST(InParts, RegionsStayWithTheirCells) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  mpi::DistributedMesh parts(comm);
+  mpi::generate_in_parts(parts, grid({6, 5, 7}, 0.2));
+  const auto region = [&](const mpi::DistributedMesh& mesh, CellHandle c) {
+    return mesh.number(c) < mesh.n_cells() / 3 ? 1 : 2;
+  };
+  for (std::size_t c = 0; c < parts.part().n_cells(); ++c) parts.part().set_region(C(c), region(parts, C(c)));
+  mpi::write_pvtu(parts, folder.path() / "two.pvtu");
+  mpi::DistributedMesh read(comm);
+  mpi::read_pvtu(read, folder.path() / "two.pvtu");
+  std::size_t n_wrong = 0;
+  for (std::size_t c = 0; c < read.part().n_cells(); ++c)
+    n_wrong += read.part().region(C(c)) == region(read, C(c)) ? 0 : 1;
+  EXPECT_EQ(n_wrong, 0U);
+}
+
+TEST(InParts, BrokenPiecesAreRefusedOnAllRanks) {
+  mpi::Comm world(MPI_COMM_WORLD);
+  const SharedFolder folder(world);
+  const auto refusal = [&](const std::string& index) -> std::string {
+    if (world.rank() == 0) std::ofstream(folder.path() / "bad.pvtu") << index;
+    mpi::Comm comm(MPI_COMM_WORLD);
+    mpi::DistributedMesh parts(comm);
+    try {
+      mpi::read_pvtu(parts, folder.path() / "bad.pvtu");
+    } catch (const mpi::RankFailed& failed) {
+      return failed.what();
+    } catch (const std::exception& error) {
+      return comm.fail(2, error.what()).what();
+    }
+    return {};
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("<VTKFile/>"), HasSubstr("no index of pieces"));
+  EXPECT_THAT(refusal("<PUnstructuredGrid></PUnstructuredGrid>"), HasSubstr("it names no pieces"));
+  EXPECT_THAT(refusal("<PUnstructuredGrid><Piece Source=\"none.vtu\"/></PUnstructuredGrid>"),
+              HasSubstr("none.vtu"));
+  if (world.rank() == 0) io::write(folder.path() / "plain.vtu", valid_box(2, 0, 1));
+  EXPECT_THAT(refusal("<PUnstructuredGrid><Piece Source=\"plain.vtu\"/></PUnstructuredGrid>"),
+              HasSubstr("\"number\""));
+}
+
+/// Whatever a rank is doing when it fails, all ranks end, all know why, and nothing half-written stays.
+TEST(InParts, ARankThatFailsAnywhereEndsAll) {
+  mpi::Comm world(MPI_COMM_WORLD);
+  const SharedFolder folder(world);
+  const auto run = [&](int bad, std::uint64_t call) -> std::uint64_t {
+    mpi::Comm comm(MPI_COMM_WORLD);
+    if (comm.rank() == bad) comm.fail_at_call(call);
+    try {
+      mpi::DistributedMesh parts(comm);
+      mpi::generate_in_parts(parts, grid({8, 9, 7}, 0.22));
+      mpi::improve(parts, polish_towards(18));
+      mpi::check(parts);
+      mpi::write_vtu(parts, folder.path() / "out.vtu");
+      EXPECT_EQ(call, 0U);
+    } catch (const mpi::RankFailed& failed) {
+      EXPECT_EQ(failed.rank(), bad);
+      EXPECT_NE(std::string(failed.what()).find("a fault that was asked for"), std::string::npos);
+    } catch (const ResourceLimit& error) {
+      EXPECT_EQ(comm.rank(), bad);
+      EXPECT_EQ(comm.fail(5, error.what()).rank(), bad);
+    }
+    return comm.n_calls();
+  };
+  const std::uint64_t n_calls = run(0, 0);
+  EXPECT_GT(n_calls, 20U);
+  if (world.size() == 1) return;
+  for (int k = 0; k < 8; ++k)
+    run(k % 2 == 0 ? 0 : world.size() - 1, 1 + n_calls * static_cast<std::uint64_t>(k) / 8);
+  run(world.size() - 1, n_calls);  // the last call, when the file is there
+  world.sum(0);
+  if (world.rank() == 0) {
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << "temporary files";
+  }
+}
+
+}  // namespace
+}  // namespace hfr::test
