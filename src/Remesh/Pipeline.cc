@@ -68,18 +68,22 @@ void reach_claimed(const Run& run) {
   const GoalEffort& goal = *claimed.goal;
   const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
   Run part = run.with(claimed);
-  for (bool stayed = true; may_rise(run, goal.degrees) && !run.control.stopped();) {
-    const double enough = goal.pays * std::max(smallest(), 0.0);
+  const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+  bool stayed = true;
+  for (double room : goal.room) {
+    if (!may_rise(run, goal.degrees) || run.control.stopped()) return;
+    if (may_grow)
+      part.bounds.max =
+          static_cast<std::size_t>(room / goal.room.front() * static_cast<double>(claimed.bounds.max));
+    const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
     run.findings.forget_cell_bound();
     Best best(run, goal.may_fall);
     reach_in_turn(part, goal);
     const bool rose = smallest() > enough;
     best.settle();
     const bool stays = smallest() > enough;
-    const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
     if (!may_grow || !rose || !(stays || stayed)) return;
     stayed = stays;
-    part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "HalfFace/Layers.hh"
 #include "Operators/Unfold.hh"
@@ -235,16 +236,19 @@ void untangle(const Run& run, const UntangleEffort& effort) {
                           run.work.holds_damage ? run.work.floor : kNoFloor};
   // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
   if (moves && unfold_by_moving(run, effort, 1) == 0) return;
+  // Each restart leaves fewer invalid cells than the one before, or is the last. The runner's count is not
+  // asked: a cell that is flat but for rounding may be invalid in its metric only.
+  std::size_t n_left = invalid_cells(run.mesh, run.policy()).size();
   for (int restart = 1; !run.control.stopped(); ++restart) {
     PassRunner<Untangling> runner(run, metric, "untangle");
-    const std::size_t n_at_start = runner.n_invalid();
     reconnect(runner, run, effort);
     const Turn last{restart, Focus{effort.focus[0]}};
     if (runner.n_invalid() > 0) runner.pass(PassKind::kCluster, last);
     if (runner.n_invalid() > 0) runner.pass(PassKind::kInsert, last);
     if (runner.n_invalid() == 0) return;
-    const std::size_t left = moves ? unfold_by_moving(run, effort, 1 + restart) : runner.n_invalid();
-    if (left == 0 || left >= n_at_start) return;
+    if (moves) unfold_by_moving(run, effort, 1 + restart);
+    const std::size_t n_before = std::exchange(n_left, invalid_cells(run.mesh, run.policy()).size());
+    if (n_left == 0 || n_left >= n_before) return;
   }
 }
 
