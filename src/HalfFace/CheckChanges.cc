@@ -7,9 +7,13 @@
 #include "HalfFace/Check.hh"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "HalfFace/RawArray.hh"
 #include "Parallel/DisjointSets.hh"
@@ -25,32 +29,57 @@ std::array<VertexHandle, 3> seen_from(const Cell& cell, VertexHandle v) {
   return {cell.v[f[0]], cell.v[f[1]], cell.v[f[2]]};
 }
 
-/// A set of at most half as many keys as there is room for.
-template <std::size_t kRoom>
-class SmallSet {
+/// The link of a vertex: its vertices, numbered as they come, and from which of them an edge of a triangle
+/// leads to which. Room for kMost vertices; a larger link takes another way.
+class SmallLink {
  public:
-  explicit SmallSet(unsigned n_keys) {
-    while (mask_ + 1 < 2 * n_keys) mask_ = 2 * mask_ + 1;
-    std::fill_n(slots_.begin(), mask_ + 1, kEmpty);
+  static constexpr unsigned kMost = 64;
+
+  /// Number of the vertex; kMost where there are more.
+  unsigned number(VertexHandle v) {
+    std::size_t at = static_cast<std::uint32_t>(v.idx()) * 0x9e3779b1U >> 24;
+    for (; number_[at] != 0; at = (at + 1) % kSlots)
+      if (vertices_[number_[at] - 1U] == v) return number_[at] - 1U;
+    if (size_ == kMost) return kMost;
+    vertices_[size_] = v;
+    after_[size_] = 0;
+    number_[at] = static_cast<std::uint8_t>(++size_);
+    return size_ - 1;
   }
-  /// False when it was there.
-  bool insert(std::uint64_t key) {
-    const unsigned at = place(key);
-    if (slots_[at] == key) return false;
-    slots_[at] = key;
-    return true;
+  unsigned size() const { return size_; }
+  /// False when the edge was there.
+  bool add_edge(unsigned a, unsigned b) {
+    const std::uint64_t bit = std::uint64_t{1} << b;
+    const bool is_new = (after_[a] & bit) == 0;
+    after_[a] |= bit;
+    return is_new;
   }
-  bool has(std::uint64_t key) const { return slots_[place(key)] == key; }
+  bool has_edge(unsigned a, unsigned b) const { return (after_[a] >> b & 1) != 0; }
 
  private:
-  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
-  unsigned place(std::uint64_t key) const {
-    auto at = static_cast<unsigned>(key * 0x9e3779b97f4a7c15ULL >> 40) & mask_;
-    while (slots_[at] != kEmpty && slots_[at] != key) at = (at + 1) & mask_;
-    return at;
+  static constexpr std::size_t kSlots = 256;
+  unsigned size_ = 0;
+  std::array<std::uint8_t, kSlots> number_{};  // by hash: 1 + number; 0: none
+  RawArray<VertexHandle, kMost> vertices_;
+  RawArray<std::uint64_t, kMost> after_;  // by number: a bit for each vertex that an edge leads to
+};
+
+/// The same for a link of any size.
+class LargeLink {
+ public:
+  static constexpr unsigned kMost = 0xffffffffU;
+
+  unsigned number(VertexHandle v) {
+    return numbers_.try_emplace(v.idx(), static_cast<unsigned>(numbers_.size())).first->second;
   }
-  unsigned mask_ = 31;
-  RawArray<std::uint64_t, kRoom> slots_;
+  unsigned size() const { return static_cast<unsigned>(numbers_.size()); }
+  bool add_edge(unsigned a, unsigned b) { return edges_.insert(key(a, b)).second; }
+  bool has_edge(unsigned a, unsigned b) const { return edges_.count(key(a, b)) != 0; }
+
+ private:
+  static std::uint64_t key(unsigned a, unsigned b) { return std::uint64_t{a} << 32 | b; }
+  std::unordered_map<Index, unsigned> numbers_;
+  std::unordered_set<std::uint64_t> edges_;
 };
 
 /// How far the cells of a vertex are from a manifold, by their vertices alone.
@@ -186,29 +215,40 @@ class ChangeChecker {
     if (incident_cell.idx() >= mesh_.n_cells() || !mesh_.cell(incident_cell).has(v)) return false;
     Star star;
     if (!mesh_.gather_star(v, star) || static_cast<std::uint32_t>(star.size) != n_cells) return false;
-    SmallSet<2048> vertices(3 * n_cells), edges(3 * n_cells);
-    std::uint32_t n_vertices = 0, n_open = 0;
-    const auto key = [](VertexHandle a, VertexHandle b) {
-      return static_cast<std::uint64_t>(a.idx()) << 32 ^ static_cast<std::uint64_t>(b.idx());
-    };
-    for (int i = 0; i < star.size; ++i) {
-      const auto t = seen_from(mesh_.cell(star.cells[static_cast<std::size_t>(i)]), v);
+    SmallLink small;
+    if (const auto sound = is_disc_or_sphere(star, v, small)) return *sound;
+    LargeLink large;
+    return is_disc_or_sphere(star, v, large).value_or(false);
+  }
+
+  /// Whether the link is one, each vertex and edge of it there once; nothing where it does not fit in.
+  template <class Link>
+  std::optional<bool> is_disc_or_sphere(const Star& star, VertexHandle v, Link& link) const {
+    RawArray<std::array<unsigned, 3>, Star::kCapacity> triangles;
+    const auto n_cells = static_cast<unsigned>(star.size);
+    for (unsigned i = 0; i < n_cells; ++i) {
+      auto& t = triangles[i];
+      const auto corners = seen_from(mesh_.cell(star.cells[i]), v);
       for (std::size_t k = 0; k < 3; ++k) {
-        n_vertices += vertices.insert(t[k].idx()) ? 1 : 0;
-        if (!edges.insert(key(t[k], t[(k + 1) % 3]))) return false;
+        t[k] = link.number(corners[k]);
+        if (t[k] == Link::kMost) return std::nullopt;
       }
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!link.add_edge(t[k], t[(k + 1) % 3])) return false;
     }
-    for (int i = 0; i < star.size; ++i) {
-      const Cell& cell = mesh_.cell(star.cells[static_cast<std::size_t>(i)]);
-      const auto t = seen_from(cell, v);
+    unsigned n_open = 0;
+    for (unsigned i = 0; i < n_cells; ++i) {
+      const Cell& cell = mesh_.cell(star.cells[i]);
+      const auto& corners = kFaceCorners[static_cast<std::size_t>(cell.corner(v))];
+      const auto& t = triangles[i];
       for (std::size_t k = 0; k < 3; ++k) {
-        if (cell.mate[static_cast<std::size_t>(cell.corner(t[(k + 2) % 3]))].is_valid()) continue;
+        if (cell.mate[corners[(k + 2) % 3]].is_valid()) continue;
         ++n_open;
-        if (edges.has(key(t[(k + 1) % 3], t[k]))) return false;
+        if (link.has_edge(t[(k + 1) % 3], t[k])) return false;
       }
     }
-    if (n_open > 0) return 2 * n_vertices == 2 + n_cells + n_open;
-    return n_cells >= 4 && 2 * n_vertices == 4 + n_cells;
+    if (n_open > 0) return 2 * link.size() == 2 + n_cells + n_open;
+    return n_cells >= 4 && 2 * link.size() == 4 + n_cells;
   }
 
   /// Of the cells round each of the vertices, which are ascending.

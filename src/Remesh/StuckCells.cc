@@ -5,9 +5,11 @@
 
 #include "Operators/Operator.hh"
 #include "Operators/VertexInsertion.hh"
+#include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/Wedges.hh"
 #include "Remesh/Strategy.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 namespace {
@@ -76,16 +78,11 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
   std::vector<std::uint8_t> on_fold(unfillable.empty() ? 0 : mesh.n_vertices(), 0);
   for (HalfFaceHandle h : unfillable)
     for (VertexHandle v : mesh.halfface_vertices(h)) on_fold[v.idx()] = 1;
-  const double goal = dihedral_decision(degrees);
-  const auto low = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
-    if (mesh.is_deleted(CellHandle(i))) return false;
-    const auto p = corners(mesh, CellHandle(i));
-    return MinDihedral{}(p[0], p[1], p[2], p[3]) < goal;
-  });
+  const std::vector<CellHandle> low = cells_below(mesh, degrees, policy);
   std::vector<StuckCell> cells(low.size());
   par::for_each(policy, low.size(), [&](std::size_t i) {
     StuckCell& stuck = cells[i];
-    stuck.cell = CellHandle(low[i]);
+    stuck.cell = low[i];
     const auto p = corners(mesh, stuck.cell);
     stuck.degrees = smallest_angle(p[0], p[1], p[2], p[3]);
     bool folds = false;
@@ -105,9 +102,8 @@ CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck,
                              std::size_t max_cells, par::Policy policy) {
   using Op = VertexInsertion<MinDihedral>;
   std::vector<double> quality(mesh.n_cells());
-  par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
-    const auto p = corners(mesh, CellHandle(i));
-    quality[i] = MinDihedral{}(p[0], p[1], p[2], p[3]);
+  par::for_ranges(policy, mesh.n_cells(), [&](std::size_t begin, std::size_t end) {
+    for_decisions(mesh, MinDihedral{}, begin, end, [&](std::size_t i, double value) { quality[i] = value; });
   });
   Op op{MinDihedral{}, quality};
   op.poor_below = dihedral_decision(degrees);

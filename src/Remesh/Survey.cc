@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "Quality/Decisions.hh"
@@ -20,6 +19,26 @@ bool is_invalid(const TetMesh& mesh, CellHandle c) {
 double min_dihedral_of(const TetMesh& mesh, CellHandle c) {
   const auto& v = mesh.cell(c).v;
   return MinDihedral{}(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+}
+
+/// Cells with keep(cell, decision value), ascending.
+template <class Metric, class Keep>
+std::vector<CellHandle> cells_where(const TetMesh& mesh, const Metric& metric, par::Policy policy,
+                                    Keep&& keep) {
+  const std::size_t n = mesh.n_cells();
+  const int n_parts = par::thread_count(policy, n);
+  std::vector<std::vector<CellHandle>> found(static_cast<std::size_t>(n_parts));
+  par::parts(n_parts, [&](int part) {
+    auto& mine = found[static_cast<std::size_t>(part)];
+    for_decisions(mesh, metric, par::part_begin(n, n_parts, part), par::part_begin(n, n_parts, part + 1),
+                  [&](std::size_t i, double value) {
+                    if (keep(CellHandle(i), value)) mine.push_back(CellHandle(i));
+                  });
+  });
+  std::vector<CellHandle> cells = std::move(found[0]);
+  for (std::size_t part = 1; part < found.size(); ++part)
+    cells.insert(cells.end(), found[part].begin(), found[part].end());
+  return cells;
 }
 
 }  // namespace
@@ -53,19 +72,43 @@ double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
   return report_value(Metric::kMinDihedral, std::min(survey(mesh, policy).worst, kRegularDihedral));
 }
 
-std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy) {
-  const double goal = dihedral_decision(degrees);
+AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy) {
+  std::vector<double> decisions;
+  for (double angle : degrees) decisions.push_back(dihedral_decision(angle));
+  const double largest = decisions.empty() ? 0.0 : *std::max_element(decisions.begin(), decisions.end());
+  struct Found {
+    double worst = std::numeric_limits<double>::infinity();
+    std::vector<std::size_t> n_below;
+  };
   const std::size_t n = mesh.n_cells();
   const int n_parts = par::thread_count(policy, n);
-  std::vector<std::size_t> found(static_cast<std::size_t>(n_parts), 0);
+  std::vector<Found> found(static_cast<std::size_t>(n_parts));
   par::parts(n_parts, [&](int part) {
-    std::size_t mine = 0;
+    Found mine;
+    mine.n_below.assign(decisions.size(), 0);
     for_decisions(mesh, MinDihedral{}, par::part_begin(n, n_parts, part),
-                  par::part_begin(n, n_parts, part + 1),
-                  [&](std::size_t, double value) { mine += value < goal ? 1 : 0; });
-    found[static_cast<std::size_t>(part)] = mine;
+                  par::part_begin(n, n_parts, part + 1), [&](std::size_t, double value) {
+                    mine.worst = std::min(mine.worst, value);
+                    if (!(value < largest)) return;
+                    for (std::size_t k = 0; k < decisions.size(); ++k)
+                      mine.n_below[k] += value < decisions[k] ? 1 : 0;
+                  });
+    found[static_cast<std::size_t>(part)] = std::move(mine);
   });
-  return std::accumulate(found.begin(), found.end(), std::size_t{0});
+  AngleTally all;
+  all.n_cells = mesh.n_logical_cells();
+  all.n_below.assign(decisions.size(), 0);
+  double worst = kRegularDihedral;
+  for (const Found& part : found) {
+    worst = std::min(worst, part.worst);
+    for (std::size_t k = 0; k < decisions.size(); ++k) all.n_below[k] += part.n_below[k];
+  }
+  all.smallest = report_value(Metric::kMinDihedral, worst);
+  return all;
+}
+
+std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy) {
+  return tally_below(mesh, std::span(&degrees, 1), policy).n_below[0];
 }
 
 double share_below(const TetMesh& mesh, double degrees, par::Policy policy) {
@@ -73,23 +116,13 @@ double share_below(const TetMesh& mesh, double degrees, par::Policy policy) {
 }
 
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
-  const auto indices = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
-    return !mesh.is_deleted(CellHandle(i)) && is_invalid(mesh, CellHandle(i));
-  });
-  std::vector<CellHandle> cells;
-  cells.reserve(indices.size());
-  for (Index i : indices) cells.push_back(CellHandle(i));
-  return cells;
+  return cells_where(mesh, MinSine2{}, policy,
+                     [&](CellHandle c, double value) { return !(value > 0) && is_invalid(mesh, c); });
 }
 
 std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy) {
   const double goal = dihedral_decision(degrees);
-  std::vector<CellHandle> cells;
-  for (Index i : par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t c) {
-         return !mesh.is_deleted(CellHandle(c)) && min_dihedral_of(mesh, CellHandle(c)) < goal;
-       }))
-    cells.push_back(CellHandle(i));
-  return cells;
+  return cells_where(mesh, MinDihedral{}, policy, [&](CellHandle, double value) { return value < goal; });
 }
 
 std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,

@@ -3,6 +3,7 @@
 #define HFR_REMESH_SURVEY_HH
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
@@ -22,6 +23,16 @@ Survey survey(const TetMesh& mesh, par::Policy policy);
 
 /// Smallest dihedral angle of the mesh in degrees, 0 or negative when a cell is flat or inverted.
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
+/// What there is below each of a few angles, from one pass over the cells.
+struct AngleTally {
+  double smallest = 0;               ///< see smallest_dihedral()
+  std::size_t n_cells = 0;           ///< of the mesh
+  std::vector<std::size_t> n_below;  ///< by angle: cells whose smallest dihedral is below
+  double share(std::size_t angle) const {
+    return static_cast<double>(n_below[angle]) / static_cast<double>(n_cells);
+  }
+};
+AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy);
 /// Number of cells whose smallest dihedral is below so many degrees.
 std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy);
 /// The same as a share of the cells.

@@ -2,6 +2,7 @@
 #include "Remesh/Targets.hh"
 
 #include <algorithm>
+#include <vector>
 
 #include "Remesh/LastCells.hh"
 #include "Remesh/Polish.hh"
@@ -23,9 +24,9 @@ bool lacks_vertices(const Run& run) {
   return n_movable <= run.strategy.throughout.movable * static_cast<double>(frozen.size());
 }
 
-bool is_poor_throughout(const Run& run) {
-  const ThroughoutEffort& poor = run.strategy.throughout;
-  return lacks_vertices(run) || share_below(run.mesh, poor.below, run.policy()) > poor.share;
+/// `below`: the share of cells below ThroughoutEffort::below.
+bool is_poor_throughout(const Run& run, double below) {
+  return lacks_vertices(run) || below > run.strategy.throughout.share;
 }
 
 /// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
@@ -43,23 +44,28 @@ void raise_throughout(const Run& run, const ThroughoutEffort& effort, double deg
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
   const TargetEffort& effort = run.strategy.targets;
   const ThroughoutEffort& throughout = run.strategy.throughout;
-  const bool bounded = is_bounded(run), is_poor = bounded && is_poor_throughout(run);
-  double now = smallest_dihedral(run.mesh, run.policy());
+  std::vector<double> angles;
+  for (const TargetAngle& target : targets) angles.push_back(target.degrees);
+  angles.push_back(throughout.below);
+  AngleTally now = tally_below(run.mesh, angles, run.policy());
+  const bool bounded = is_bounded(run),
+             is_poor = bounded && is_poor_throughout(run, now.share(targets.size()));
   double last = 0;          // that was worked for
   bool has_brought = true;  // enough, the target before
-  for (const TargetAngle& target : targets) {
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const TargetAngle& target = targets[k];
     if (run.control.stopped()) return;
-    if (now >= target.degrees) continue;
-    if (target.degrees > effort.in_turn_beyond && now < last) break;
-    const double share = share_below(run.mesh, target.degrees, run.policy());
+    if (now.smallest >= target.degrees) continue;
+    if (target.degrees > effort.in_turn_beyond && now.smallest < last) break;
+    const double share = now.share(k);
     if (share > target.largest_share && !(has_brought && bounded)) continue;
     last = target.degrees;
     if (share > (is_poor ? throughout.dig_share : target.largest_share))
       raise_throughout(run, throughout, target.degrees);
     else
       polish(run, run.strategy.polish, target.degrees);
-    now = smallest_dihedral(run.mesh, run.policy());
-    has_brought = share_below(run.mesh, target.degrees, run.policy()) < effort.enough_left * share;
+    now = tally_below(run.mesh, angles, run.policy());
+    has_brought = now.share(k) < effort.enough_left * share;
   }
 }
 
@@ -68,7 +74,8 @@ void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngl
   if (smallest_dihedral(run.mesh, run.policy()) < floor) polish(run, strategy.polish, floor);
   const ThroughoutEffort& poor = strategy.throughout;
   // Where the mesh is poor throughout, vertices go to the worst cells first.
-  const bool throughout = is_bounded(run) && is_poor_throughout(run);
+  const bool throughout =
+      is_bounded(run) && is_poor_throughout(run, share_below(run.mesh, poor.below, run.policy()));
   if (strategy.refine && !throughout) refine(run, *strategy.refine);
   raise_to_targets(run, targets);
   // What was put in first is well connected by now, which shows where vertices are still missing.

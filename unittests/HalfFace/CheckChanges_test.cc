@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <random>
+#include <vector>
 
 #include "HalfFace/Writer.hh"
 #include "Meshes.hh"
@@ -61,6 +65,41 @@ TEST(CheckChanges, WhatDeletingCellsBreaksIsFoundRoundThem) {
     }
   }
   EXPECT_GT(n_broken, 10);
+}
+
+/// A vertex within two pyramids of n sides: 2 n cells, which have n + 2 other vertices.
+TetMesh double_pyramid(Index n) {
+  std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
+  std::vector<test::Corners> cells;
+  for (Index i = 0; i < n; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n;
+    points.push_back({std::cos(angle), std::sin(angle), 0});
+    const Index a = 3 + i, b = 3 + (i + 1) % n;
+    cells.push_back({0, 1, b, a});
+    cells.push_back({0, 2, a, b});
+  }
+  return build(points, cells);
+}
+
+TEST(CheckChanges, StarsOfAnySizeAreJudgedAlike) {
+  for (const Index n : {3, 20, 61, 62, 63, 100, 128, 140}) {
+    const TetMesh whole = double_pyramid(n);
+    EXPECT_EQ(check_changes(whole, without_cells(whole)), Ok) << n;
+    TetMesh mesh = whole;
+    mesh.delete_cell(CellHandle(0));
+    EXPECT_EQ(check_changes(mesh, whole), Ok) << n;
+    if (n == 3) continue;
+    mesh.delete_cell(CellHandle(4));  // a second hole, which touches the first at the edge to the top
+    EXPECT_NE(check_changes(mesh, whole), Ok) << n;
+    EXPECT_NE(check_changes(mesh, without_cells(mesh)), Ok) << n;
+    mesh.delete_cell(CellHandle(2));  // both become one
+    EXPECT_EQ(check_changes(mesh, whole), Ok) << n;
+    // A ring of cells is gone, from the top to the bottom: two parts that touch in the inner vertex.
+    mesh = whole;
+    for (const Index at : {Index{0}, n / 2})
+      for (const Index c : {2 * at, 2 * at + 1}) mesh.delete_cell(CellHandle(c));
+    EXPECT_EQ(static_cast<bool>(check_changes(mesh, whole)), static_cast<bool>(check_all(mesh))) << n;
+  }
 }
 
 TEST(CheckChanges, WhatWasNoManifoldMayStayButNotBecomeLessOfOne) {
