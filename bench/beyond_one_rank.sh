@@ -41,6 +41,10 @@ echo "--- $ranks ranks, $limit MB each: read, improve, check, write"
 limited "$ranks" "$out/bad.pvtu" -o "$out/good.pvtu" --min-dihedral "$degrees"
 echo "--- $ranks ranks, $limit MB each: generate, improve, check, write one file"
 limited "$ranks" "${grid[@]}" -o "$out/good.vtu" --min-dihedral "$degrees"
+echo "--- $ranks ranks, $limit MB each: write one file, read it by ranges, improve, check, write"
+limited "$ranks" "${grid[@]}" -o "$out/bad.vtu" > /dev/null
+limited "$ranks" "$out/bad.vtu" -o "$out/again.vtu" --min-dihedral "$degrees"
+cmp "$out/good.vtu" "$out/again.vtu"
 if [ "${COMPARE:-0}" = 1 ]; then
   echo "--- hfremesh without a limit"
   "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.2 -o "$out/whole.vtu" --quiet

@@ -43,7 +43,8 @@ void add_options(Command command, PartsLine& line) {
   command.example("mpirun -n 4 hfremesh-mpi parts --generate 150 150 150 -o bad.pvtu", "20 million cells");
   command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.pvtu --min-dihedral 15",
                   "with the bits of hfremesh --polish-only --no-insert");
-  command.option("IN", line.input, "Index of pieces to read (.pvtu)");
+  command.option("IN", line.input,
+                 "What to read: .pvtu, an index of pieces, or .vtu, of which each rank reads a range");
   command
       .option(
           "-o,--output", line.output,
@@ -90,9 +91,11 @@ void require_sound(const PartsLine& line) {
   };
   const auto refuse = [](const std::string& why) { throw Failure(ExitCode::kUsage, "parts: " + why); };
   if (line.input.empty() == line.counts.empty()) refuse("give either IN or --generate NX NY NZ");
-  if (!line.input.empty() && extension(line.input) != ".pvtu")
-    refuse(line.input +
-           ": meshes in parts are read from .pvtu; hfremesh-mpi without 'parts' reads other formats");
+  const std::string in = extension(line.input);
+  if (!line.input.empty() && in != ".pvtu" && in != ".vtu")
+    refuse(
+        line.input +
+        ": meshes in parts are read from .pvtu and .vtu; hfremesh-mpi without 'parts' reads other formats");
   const std::string out = extension(line.output);
   if (!line.output.empty() && out != ".pvtu" && out != ".vtu")
     refuse(line.output + ": meshes in parts are written as .pvtu or .vtu");
@@ -151,7 +154,12 @@ class PartsRun {
 
   void begin() {
     if (!line_.input.empty()) {
-      reporting(ExitCode::kCannotRead, [&] { mpi::read_pvtu(mesh_, line_.input); });
+      reporting(ExitCode::kCannotRead, [&] {
+        if (std::filesystem::path(line_.input).extension() == ".pvtu")
+          mpi::read_pvtu(mesh_, line_.input);
+        else
+          for (const std::string& note : mpi::read_vtu(mesh_, line_.input)) say("{}: {}", line_.input, note);
+      });
       return;
     }
     mpi::GridOptions grid;

@@ -89,6 +89,13 @@ void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// several ranks have come to belong to the first of them. Throws InvalidInput where pieces have no "number",
 /// numbers have gaps, or there are other elements than tetrahedra; IoError where a file is missing.
 void read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
+/// One .vtu of tetrahedra whose arrays are raw appended data, as write_vtu() and io::write() make it: each
+/// rank reads a range of the points and one of the cells, and none the whole. Regions come along; other
+/// arrays are left out, and named in what is returned, on all ranks. Throws InvalidInput for other elements,
+/// labelled or fixed vertices, and .vtu of another form; IoError where the file cannot be read.
+/// `at_once`: cells that a rank reads and sends away before it reads on.
+std::vector<std::string> read_vtu(DistributedMesh& mesh, const std::filesystem::path& path,
+                                  std::uint64_t at_once = 1'000'000);
 
 }  // namespace hfr::mpi
 

@@ -3,7 +3,6 @@
 // <AppendedData …> tag and closed by hand before it is parsed.
 #include <tinyxml2.h>
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,24 +11,13 @@
 #include "IO/Formats.hh"
 #include "IO/VtkGrid.hh"
 #include "IO/VtuData.hh"
+#include "IO/VtuXml.hh"
 #include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
 
 using tinyxml2::XMLElement;
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r\n\v\f";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-std::string_view attribute(const XMLElement& element, const char* name) {
-  const char* const value = element.Attribute(name);
-  return value ? trimmed(value) : std::string_view();
-}
 
 class VtuReader {
  public:
@@ -85,13 +73,11 @@ void VtuReader::fail(const XMLElement& element, const std::string& message) cons
 }
 
 std::size_t VtuReader::number(const XMLElement& element, const char* attribute_name) const {
-  const std::string_view text = attribute(element, attribute_name);
-  std::size_t value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || stop != text.data() + text.size())
-    fail(element,
-         std::string("attribute ") + attribute_name + " must be a number, not '" + shown(text) + "'");
-  return value;
+  const auto value = number_attribute(element, attribute_name);
+  if (!value)
+    fail(element, std::string("attribute ") + attribute_name + " must be a number, not '" +
+                      shown(attribute(element, attribute_name)) + "'");
+  return *value;
 }
 
 const XMLElement& VtuReader::child(const XMLElement& parent, const char* tag) const {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <optional>
 
 #include "Distributed/Parts.hh"
@@ -267,6 +268,108 @@ TEST(InParts, PiecesComeBackAsTheMesh) {
   hfr::improve(again, polish_towards(10));
   EXPECT_EQ(mpi::survey(one).worst, hfr::survey(again, {}).worst);
   EXPECT_EQ(one.n_cells(), again.n_cells());
+}
+
+/// One file by ranges: whatever its numbers are, and whoever has written it, the parts are those of the mesh.
+TEST(InParts, RangesOfOneFileAreTheMesh) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "one.vtu";
+  TetMesh mesh = whole_of(grid({8, 9, 7}, 0.22));
+  // Numbers that say nothing of where things are.
+  std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
+  const std::size_t n = points.size(), step = 287;
+  ASSERT_EQ(std::gcd(n, step), 1U);
+  std::vector<std::array<Index, 4>> cells;
+  std::vector<Vec3> shuffled(n);
+  for (std::size_t i = 0; i < n; ++i) shuffled[i * step % n] = points[i];
+  shuffled.push_back({2, 2, 2});  // of no cell
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) {
+    auto& v = cells.emplace_back();
+    const std::size_t from = c * 11 % mesh.n_cells();
+    for (std::size_t k = 0; k < 4; ++k) v[k] = static_cast<Index>(mesh.cell(C(from)).v[k].idx() * step % n);
+  }
+  ASSERT_EQ(std::gcd(mesh.n_cells(), std::size_t{11}), 1U);
+  mesh = build(shuffled, cells);
+  for (std::size_t c = 0; c < mesh.n_cells(); ++c) mesh.set_region(C(c), c % 3 == 0 ? 4 : -1);
+  if (comm.rank() == 0) io::write(path, mesh);
+  comm.sum(0);
+  for (const std::uint64_t at_once : {100, 5000}) {
+    mpi::DistributedMesh parts(comm);
+    EXPECT_THAT(mpi::read_vtu(parts, path, at_once), testing::IsEmpty());
+    parts.work().set_qualities(parts.part(), MinSine2{}, {});
+    EXPECT_EQ(parts.n_cells(), mesh.n_cells());
+    EXPECT_EQ(parts.n_vertices(), mesh.n_vertices());
+    expect_part_of(parts, Whole(mesh, MinSine2{}));
+    EXPECT_TRUE(mpi::check(parts).is_good);
+    const std::uint64_t most_held = mpi::survey(parts).most_held;
+    EXPECT_TRUE(comm.size() == 1 || most_held < mesh.n_cells()) << most_held;
+    mpi::write_vtu(parts, folder.path() / "again.vtu");
+    if (comm.rank() == 0) {
+      EXPECT_EQ(bytes_of(folder.path() / "again.vtu"), bytes_of(path));
+    }
+    comm.sum(0);
+  }
+}
+
+TEST(InParts, FilesThatCannotBeReadInRangesAreRefusedOnAllRanks) {
+  mpi::Comm world(MPI_COMM_WORLD);
+  const SharedFolder folder(world);
+  const auto path = folder.path() / "bad.vtu";
+  const TetMesh mesh = valid_box(2, 0, 1);
+  if (world.rank() == 0) io::write(path, mesh);
+  world.sum(0);
+  const std::string good = bytes_of(path);
+  const auto refusal = [&](const std::string& bytes) -> std::string {
+    world.sum(0);  // all have done with the file before
+    if (world.rank() == 0) std::ofstream(path, std::ios::binary) << bytes;
+    world.sum(0);
+    mpi::Comm comm(MPI_COMM_WORLD);
+    mpi::DistributedMesh parts(comm);
+    try {
+      mpi::read_vtu(parts, path);
+    } catch (const mpi::RankFailed& failed) {
+      return failed.what();
+    } catch (const std::exception& error) {
+      return comm.fail(2, error.what()).what();
+    }
+    return {};
+  };
+  const auto with = [&](const std::string& was, const std::string& is) {
+    std::string bytes = good;
+    bytes.replace(bytes.find(was), was.size(), is);
+    return bytes;
+  };
+  using testing::HasSubstr;
+  EXPECT_EQ(refusal(good), "");
+  EXPECT_THAT(refusal(""), HasSubstr("hfremesh convert writes it"));
+  EXPECT_THAT(refusal(with("encoding=\"raw\"", "encoding=\"base64\"")),
+              HasSubstr("hfremesh convert writes it"));
+  EXPECT_THAT(refusal(with("byte_order", "compressor=\"vtkZLibDataCompressor\" byte_order")),
+              HasSubstr("hfremesh convert writes it"));
+  EXPECT_THAT(refusal(good.substr(0, good.size() / 2)), HasSubstr("ends too early"));
+  EXPECT_THAT(refusal(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"26\"")), HasSubstr("array 'Points'"));
+  EXPECT_THAT(refusal(with("NumberOfPoints=\"27\"", "NumberOfPoints=\"x\"")), HasSubstr("must be a number"));
+  EXPECT_THAT(refusal(with("Name=\"types\"", "Name=\"kinds\"")), HasSubstr("no array 'types'"));
+  // What only the rank sees that reads it: the last cell's kind, and its last corner.
+  const auto number_of = [&](const std::string& name) {
+    const std::size_t at = good.find("offset=\"", good.find("Name=\"" + name + "\"")) + 8;
+    return good.find("\n_") + 2 + std::stoul(good.substr(at)) + 8;
+  };
+  std::string bytes = good;
+  bytes[number_of("types") + mesh.n_cells() - 1] = 12;
+  EXPECT_THAT(refusal(bytes), HasSubstr("cell 47: meshes in parts have tetrahedra"));
+  bytes = good;
+  bytes[number_of("connectivity") + 16 * mesh.n_cells() - 4] = 27;
+  EXPECT_THAT(refusal(bytes), HasSubstr("cell 47: vertex 27 is out of range"));
+  bytes = good;
+  bytes[number_of("connectivity") + 3] = '\x80';
+  EXPECT_THAT(refusal(bytes), HasSubstr("cell 0: vertex -"));
+  std::error_code error;
+  if (world.rank() == 0) std::filesystem::remove(path, error);
+  world.sum(0);
+  mpi::DistributedMesh parts(world);
+  EXPECT_THROW(mpi::read_vtu(parts, path), IoError);
 }
 
 TEST(InParts, RegionsStayWithTheirCells) {

@@ -148,7 +148,8 @@ inline void expect_part_of(const mpi::DistributedMesh& parts, const Whole& whole
     if (distance[v] > 2 || whole.mesh.is_deleted(V(v))) continue;
     const CellHandle mine = part.incident_cell(V(i)), theirs = whole.mesh.incident_cell(V(v));
     if (parts.work().star_size[i] != whole.work.star_size[v] ||
-        parts.work().changed[i] != whole.work.changed[v] || parts.number(mine) != theirs.idx())
+        parts.work().changed[i] != whole.work.changed[v] || mine.is_valid() != theirs.is_valid() ||
+        (mine.is_valid() && parts.number(mine) != theirs.idx()))
       ++n_other_values;
   }
   std::size_t n_there = 0;

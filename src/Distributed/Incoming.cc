@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/Incoming.hh"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "HalfFace/Errors.hh"
+
+namespace hfr::mpi {
+
+/// A set of ranks for some points, by place.
+struct Incoming::Sets {
+  static constexpr Index kNone = VertexHandle::kInvalid;
+  std::vector<Index> of;
+  std::vector<std::vector<int>> ranks;
+
+  void add(Index at, int r) {
+    if (of[at] == kNone) {
+      of[at] = static_cast<Index>(ranks.size());
+      ranks.emplace_back();
+    }
+    auto& set = ranks[of[at]];
+    if (std::find(set.begin(), set.end(), r) == set.end()) set.push_back(r);
+  }
+  std::span<const int> operator[](Index at) const {
+    return of[at] == kNone ? std::span<const int>() : std::span<const int>(ranks[of[at]]);
+  }
+};
+
+/// Points and cells by number, each once.
+void Incoming::unite() {
+  const auto by_number = [](auto& items) {
+    const auto less = [](const auto& a, const auto& b) { return a.number < b.number; };
+    const auto middle =
+        std::is_sorted_until(items.begin(), items.end(), less);  // what has come stands behind
+    std::sort(middle, items.end(), less);
+    std::inplace_merge(items.begin(), middle, items.end(), less);
+    items.erase(std::unique(items.begin(), items.end(),
+                            [](const auto& a, const auto& b) { return a.number == b.number; }),
+                items.end());
+  };
+  by_number(points_);
+  by_number(cells_);
+}
+
+/// Of a number among the points. Corners of one cell after the other lie near each other, so the search
+/// begins where the last one has ended.
+std::size_t Incoming::place(std::uint64_t number, std::size_t hint) const {
+  std::size_t low = std::min(hint, points_.size() - 1), high = low, step = 1;
+  if (points_[low].number <= number)
+    for (; high < points_.size() && points_[high].number <= number; step *= 2) low = high, high += step;
+  else
+    for (; low > 0 && points_[low].number > number; step *= 2) high = low, low -= std::min(low, step);
+  const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(low);
+  const auto end = points_.begin() + static_cast<std::ptrdiff_t>(std::min(high + 1, points_.size()));
+  const auto at = std::lower_bound(begin, end, number,
+                                   [](const PointRecord& p, std::uint64_t n) { return p.number < n; });
+  if (at == end || at->number != number) throw InternalError("a point of a cell has not come along");
+  return static_cast<std::size_t>(at - points_.begin());
+}
+
+/// body(cell, places of its corners) for all cells.
+template <class Body>
+void Incoming::for_cells(Body&& body) const {
+  std::size_t hint = 0;
+  for (const CornerRecord& c : cells_) {
+    Places at{};
+    for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(hint = place(c.v[k], hint));
+    body(c, at);
+  }
+}
+
+/// One more than the largest number of all.
+std::uint64_t Incoming::end_of(std::uint64_t mine) const {
+  return static_cast<std::uint64_t>(-comm_.min(-static_cast<double>(mine)));
+}
+
+void Incoming::find_owners() {
+  unite();
+  n_points_ = end_of(points_.empty() ? 0 : points_.back().number + 1);
+  n_cells_ = end_of(cells_.empty() ? 0 : cells_.back().number + 1);
+  HFR_REQUIRE(n_points_ > 0 && n_cells_ > 0, "the pieces have no cells");
+  HFR_REQUIRE(comm_.sum(cells_.size()) == n_cells_, "numbers of cells have gaps, or come twice");
+  const std::uint64_t n_ranks = comm_.n_ranks();
+  const auto begin = [&](std::uint64_t r) { return (r * n_points_ + n_ranks - 1) / n_ranks; };
+  std::vector<Packer> to(comm_.n_ranks());
+  for (const PointRecord& p : points_) to[p.number * n_ranks / n_points_].put(p.number);
+  const auto me = static_cast<std::uint64_t>(comm_.rank());
+  std::vector<std::int32_t> first(begin(me + 1) - begin(me), -1);
+  std::vector<std::vector<std::uint64_t>> asked(comm_.n_ranks());
+  for (const Comm::Message& message : comm_.exchange(to))
+    for (Unpacker in(message.bytes); !in.at_end();) {
+      const auto number = in.get<std::uint64_t>();
+      asked[static_cast<std::size_t>(message.from)].push_back(number);
+      std::int32_t& owner = first[number - begin(me)];
+      if (owner < 0) owner = message.from;  // messages come by rank
+    }
+  HFR_REQUIRE(std::find(first.begin(), first.end(), -1) == first.end(), "numbers of points have gaps");
+  std::vector<Packer> answers(comm_.n_ranks());
+  for (std::size_t r = 0; r < asked.size(); ++r)
+    for (std::uint64_t number : asked[r]) answers[r].put(first[number - begin(me)]);
+  std::vector<std::vector<std::byte>> came(comm_.n_ranks());
+  for (Comm::Message& message : comm_.exchange(answers))
+    came[static_cast<std::size_t>(message.from)] = std::move(message.bytes);
+  std::vector<Unpacker> in;
+  for (const auto& bytes : came) in.emplace_back(bytes);
+  for (PointRecord& p : points_) p.owner = in[p.number * n_ranks / n_points_].get<std::int32_t>();
+}
+
+/// Each cell to the ranks that `receivers` adds to the list, with its points.
+template <class Receivers>
+void Incoming::send(Receivers&& receivers, Incoming& into) {
+  std::vector<std::vector<CornerRecord>> cells(comm_.n_ranks());
+  std::vector<int> list;
+  for_cells([&](const CornerRecord& c, const Places& at) {
+    list.clear();
+    receivers(c, at, list);
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (int r : list)
+      if (r != comm_.rank() || &into != this) cells[static_cast<std::size_t>(r)].push_back(c);
+  });
+  std::vector<Packer> to(comm_.n_ranks());
+  for (std::size_t r = 0; r < cells.size(); ++r) {
+    if (cells[r].empty()) continue;
+    std::vector<std::uint64_t> numbers;
+    for (const CornerRecord& c : cells[r]) numbers.insert(numbers.end(), c.v.begin(), c.v.end());
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    std::vector<PointRecord> points;
+    for (std::size_t at = 0; std::uint64_t number : numbers)
+      points.push_back(points_[at = place(number, at)]);
+    to[r].put_all(points);
+    to[r].put_all(std::exchange(cells[r], {}));
+  }
+  for (const Comm::Message& message : comm_.exchange(to)) {
+    Unpacker in(message.bytes);
+    const auto points = in.get_all<PointRecord>();
+    into.points_.insert(into.points_.end(), points.begin(), points.end());
+    const auto came = in.get_all<CornerRecord>();
+    into.cells_.insert(into.cells_.end(), came.begin(), came.end());
+  }
+  if (&into == this) unite();
+}
+
+/// Of own vertices that have others' within so many edges: the owners of these. One edge less round own
+/// vertices all cells are here.
+Incoming::Sets Incoming::near_own(int edges) const {
+  Sets one{std::vector<Index>(points_.size(), Sets::kNone), {}};  // of any vertex: owners of its neighbours
+  for_cells([&](const CornerRecord&, const Places& at) {
+    if (std::all_of(at.begin(), at.end(), [&](Index i) { return owner(i) == owner(at[0]); })) return;
+    for (Index v : at)
+      for (Index w : at) one.add(v, owner(w));
+  });
+  Sets two = one;
+  if (edges == 2)
+    for_cells([&](const CornerRecord&, const Places& at) {
+      for (Index w : at)
+        for (int r : one[w])
+          for (Index v : at) two.add(v, r);
+    });
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].owner != comm_.rank()) two.of[i] = Sets::kNone;
+  return two;
+}
+
+void Incoming::keep_near(std::uint8_t most) {
+  const auto far = static_cast<std::uint8_t>(most + 1);
+  std::vector<std::uint8_t> edges(points_.size(), far);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].owner == comm_.rank()) edges[i] = 0;
+  const auto nearest = [&](const Places& at) {
+    return std::min(std::min(edges[at[0]], edges[at[1]]), std::min(edges[at[2]], edges[at[3]]));
+  };
+  for (std::uint8_t step = 1; step < far; ++step)
+    for_cells([&](const CornerRecord&, const Places& at) {
+      if (nearest(at) != step - 1) return;
+      for (Index i : at) edges[i] = std::min(edges[i], step);
+    });
+  std::vector<std::uint8_t> stays(points_.size(), 0);
+  for (std::size_t i = 0; i < points_.size(); ++i) stays[i] = edges[i] == 0 ? 1 : 0;
+  std::size_t n_cells = 0;
+  std::vector<std::uint8_t> is_near(cells_.size(), 0);
+  for_cells([&](const CornerRecord& c, const Places& at) {
+    if (nearest(at) == far) return;
+    for (Index i : at) stays[i] = 1;
+    is_near[static_cast<std::size_t>(&c - cells_.data())] = 1;
+  });
+  for (std::size_t c = 0; c < cells_.size(); ++c)
+    if (is_near[c]) cells_[n_cells++] = cells_[c];
+  cells_.resize(n_cells);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (stays[i]) points_[n++] = points_[i];
+  points_.resize(n);
+}
+
+DistributedMesh::Piece Incoming::piece() {
+  DistributedMesh::Piece piece;
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 4>> cells;
+  keep_near(2);
+  for (const PointRecord& p : points_) {
+    piece.vertex_number.push_back(p.number);
+    piece.owner.push_back(p.owner);
+    points.push_back(p.point);
+  }
+  bool has_regions = false;
+  cells.reserve(cells_.size());
+  for_cells([&](const CornerRecord& c, const Places& at) {
+    piece.cell_number.push_back(c.number);
+    cells.push_back(at);
+    has_regions = has_regions || c.region != 0;
+  });
+  points_ = {};
+  piece.mesh = build(std::move(points), cells);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    HFR_REQUIRE(piece.mesh.cell(CellHandle(c)).v[2].idx() == cells[c][2],
+                "cells of a mesh in parts have to be oriented alike, and most of them positive");
+  if (has_regions)
+    for (std::size_t c = 0; c < cells.size(); ++c) piece.mesh.set_region(CellHandle(c), cells_[c].region);
+  cells_ = {};
+  return piece;
+}
+
+void Incoming::hand_to_owners(Incoming& to) {
+  unite();
+  send(
+      [&](const CornerRecord&, const Places& at, std::vector<int>& receivers) {
+        for (Index i : at) receivers.push_back(owner(i));
+      },
+      to);
+  if (&to == this) keep_near(0);
+}
+
+void Incoming::make_parts(DistributedMesh& mesh) {
+  unite();
+  for (int edges = 1; edges <= 2; ++edges) {
+    const Sets near = near_own(edges);
+    send(
+        [&](const CornerRecord&, const Places& at, std::vector<int>& to) {
+          for (Index v : at) to.insert(to.end(), near[v].begin(), near[v].end());
+        },
+        *this);
+  }
+  mesh.assemble(piece(), n_points_, n_cells_);
+}
+
+}  // namespace hfr::mpi

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_INCOMING_HH
+#define HFR_DISTRIBUTED_INCOMING_HH
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "Distributed/Comm.hh"
+#include "Distributed/DistributedMesh.hh"
+#include "HalfFace/Vec3.hh"
+
+namespace hfr::mpi {
+
+/// A vertex and a cell by their numbers in the whole.
+struct PointRecord {
+  std::uint64_t number = 0;
+  Vec3 point;
+  std::int32_t owner = 0;
+};
+struct CornerRecord {
+  std::uint64_t number = 0;
+  std::array<std::uint64_t, 4> v{};
+  std::int32_t region = 0;
+};
+
+/// What this rank knows of a mesh that comes in from files: from cells that any rank may have read to parts
+/// with their layers. A cell goes to the owners of its vertices first: then each rank has all cells of its
+/// own vertices, and knows whose vertices are one edge away. To these go the cells of its vertices, and with
+/// what comes each knows who is two edges away, to whom they go, too.
+class Incoming {
+ public:
+  explicit Incoming(Comm& comm) : comm_(comm) {}
+
+  /// Any order; the same thing may come twice. The points of a cell have to be there on its rank.
+  void add(const PointRecord& point) { points_.push_back(point); }
+  void add(const CornerRecord& cell) { cells_.push_back(cell); }
+  void reserve_cells(std::size_t n) { cells_.reserve(n); }
+
+  /// The first rank that has a point owns it. Each rank answers for a range of numbers; that it has seen all
+  /// of them says that there are no gaps. All take part.
+  void find_owners();
+  /// For whoever has given points their owners: what the whole has.
+  void set_size(std::uint64_t n_points, std::uint64_t n_cells) {
+    n_points_ = n_points;
+    n_cells_ = n_cells;
+  }
+  /// Each cell to the owners of its vertices, with its points, into `to` of these ranks; where that is this
+  /// object itself, only what belongs here stays. All take part.
+  void hand_to_owners(Incoming& to);
+  /// From what owners have to the parts. All take part.
+  void make_parts(DistributedMesh& mesh);
+
+ private:
+  using Places = std::array<Index, 4>;
+  struct Sets;
+
+  void unite();
+  std::size_t place(std::uint64_t number, std::size_t hint) const;
+  template <class Body>
+  void for_cells(Body&& body) const;
+  int owner(Index at) const { return points_[at].owner; }
+  std::uint64_t end_of(std::uint64_t mine) const;
+  template <class Receivers>
+  void send(Receivers&& receivers, Incoming& into);
+  Sets near_own(int edges) const;
+  /// Leaves cells with a vertex within so many edges of own ones, and the points of these and own ones.
+  void keep_near(std::uint8_t most);
+  DistributedMesh::Piece piece();
+
+  Comm& comm_;
+  std::vector<PointRecord> points_;
+  std::vector<CornerRecord> cells_;
+  std::uint64_t n_points_ = 0, n_cells_ = 0;
+};
+
+}  // namespace hfr::mpi
+
+#endif
