@@ -39,6 +39,7 @@ if [ ! -d "$seeds" ]; then
 fi
 
 export OMP_WAIT_POLICY=passive
+export LSAN_OPTIONS=suppressions=$root/unittests/LibFuzzer/leaks.txt:print_suppressions=0
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=detect_stack_use_after_return=0:allocator_may_return_null=0
 seconds=$(awk -v minutes="$minutes" 'BEGIN { print int(60 * minutes) }')
 status=0
