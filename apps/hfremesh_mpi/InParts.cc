@@ -155,10 +155,10 @@ class PartsRun {
   void begin() {
     if (!line_.input.empty()) {
       reporting(ExitCode::kCannotRead, [&] {
-        if (std::filesystem::path(line_.input).extension() == ".pvtu")
-          mpi::read_pvtu(mesh_, line_.input);
-        else
-          for (const std::string& note : mpi::read_vtu(mesh_, line_.input)) say("{}: {}", line_.input, note);
+        const bool is_index = std::filesystem::path(line_.input).extension() == ".pvtu";
+        for (const std::string& note :
+             is_index ? mpi::read_pvtu(mesh_, line_.input) : mpi::read_vtu(mesh_, line_.input))
+          say("{}: {}", line_.input, note);
       });
       return;
     }

@@ -87,8 +87,9 @@ void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
 
 /// What write_pvtu() has written, by any number of ranks: piece i is read by rank i mod n, and points that
 /// several ranks have come to belong to the first of them. Throws InvalidInput where pieces have no "number",
-/// numbers have gaps, or there are other elements than tetrahedra; IoError where a file is missing.
-void read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
+/// numbers have gaps, or there are other elements than tetrahedra; IoError where a file is missing. Regions
+/// come along; returns the names of other arrays, which are left out, of the pieces that this rank has read.
+std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// One .vtu of tetrahedra whose arrays are raw appended data, as write_vtu() and io::write() make it: each
 /// rank reads a range of the points and one of the cells, and none the whole. Regions come along; other
 /// arrays are left out, and named in what is returned, on all ranks. Throws InvalidInput for other elements,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -67,8 +68,8 @@ std::vector<std::uint64_t> numbers_of(const std::filesystem::path& path,
                      "them");
 }
 
-/// Reads a piece.
-void read_piece(const std::filesystem::path& path, int rank, Incoming& incoming) {
+/// Reads a piece. Returns what is left out of it.
+std::vector<std::string> read_piece(const std::filesystem::path& path, int rank, Incoming& incoming) {
   io::MeshData data = io::read_mesh(path);
   if (!data.triangles.empty() || !data.edges.empty() || !data.vertex_labels.empty() ||
       !data.fixed_vertices.empty())
@@ -84,20 +85,31 @@ void read_piece(const std::filesystem::path& path, int rank, Incoming& incoming)
     }
     incoming.add(one);
   }
+  std::vector<std::string> notes;
+  const auto note = [&](const std::vector<io::Field>& fields, const char* of) {
+    for (const io::Field& field : fields)
+      if (field.name != "number") notes.push_back("array '" + field.name + "' of " + of + " left out");
+  };
+  note(data.point_fields, "points");
+  note(data.cell_fields, "cells");
+  return notes;
 }
 
 }  // namespace
 
-void read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
+std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const Comm::InPhase phase(mesh.comm(), Phase::kHandOut);
   const std::vector<std::filesystem::path> pieces = pieces_of(path);
   Incoming incoming(mesh.comm());
+  std::vector<std::string> notes;
   const std::size_t n_ranks = mesh.comm().n_ranks();
   for (auto i = static_cast<std::size_t>(mesh.comm().rank()); i < pieces.size(); i += n_ranks)
-    read_piece(pieces[i], mesh.comm().rank(), incoming);
+    for (std::string& note : read_piece(pieces[i], mesh.comm().rank(), incoming))
+      if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
   incoming.find_owners();
   incoming.hand_to_owners(incoming);
   incoming.make_parts(mesh);
+  return notes;
 }
 
 }  // namespace hfr::mpi

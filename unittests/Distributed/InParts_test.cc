@@ -12,6 +12,8 @@
 
 #include "Distributed/Parts.hh"
 #include "HalfFace/Check.hh"
+#include "IO/Assemble.hh"
+#include "IO/MeshFile.hh"
 #include "IO/ReadWrite.hh"
 #include "Remesh/Survey.hh"
 #include "ScratchFolder.hh"
@@ -247,7 +249,7 @@ TEST(InParts, PiecesComeBackAsTheMesh) {
   TetMesh mesh = whole_of(grid_options);
   hfr::improve(mesh, polish_towards(10));
   mpi::DistributedMesh parts(comm);
-  mpi::read_pvtu(parts, path);
+  EXPECT_THAT(mpi::read_pvtu(parts, path), testing::IsEmpty());
   parts.work().set_qualities(parts.part(), MinSine2{}, {});
   EXPECT_EQ(parts.n_cells(), mesh.n_cells());
   EXPECT_EQ(parts.n_vertices(), mesh.n_vertices());
@@ -388,6 +390,30 @@ TEST(InParts, RegionsStayWithTheirCells) {
   for (std::size_t c = 0; c < read.part().n_cells(); ++c)
     n_wrong += read.part().region(C(c)) == region(read, C(c)) ? 0 : 1;
   EXPECT_EQ(n_wrong, 0U);
+}
+
+TEST(InParts, WhatIsLeftOutOfPiecesIsNamed) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const TetMesh mesh = valid_box(2, 0, 1);
+  if (comm.rank() == 0) {
+    io::MeshData data = io::disassemble(mesh);
+    io::Field points{"number", 1, false, {}}, cells{"number", 1, false, {}}, heat{"heat", 1, false, {}};
+    for (std::size_t i = 0; i < data.points.size(); ++i) points.values.push_back(static_cast<double>(i));
+    for (std::size_t c = 0; c < data.cells.size(); ++c) cells.values.push_back(static_cast<double>(c));
+    heat.values.assign(data.points.size(), 0.5);
+    data.point_fields = {points, heat};
+    data.cell_fields = {cells};
+    io::write_mesh(folder.path() / "heat.vtu", data);
+    std::ofstream(folder.path() / "heat.pvtu")
+        << "<PUnstructuredGrid><Piece Source=\"heat.vtu\"/></PUnstructuredGrid>";
+  }
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  const std::vector<std::string> notes = mpi::read_pvtu(parts, folder.path() / "heat.pvtu");
+  EXPECT_EQ(notes, comm.rank() == 0 ? std::vector<std::string>{"array 'heat' of points left out"}
+                                    : std::vector<std::string>{});
+  EXPECT_EQ(parts.n_cells(), mesh.n_cells());
 }
 
 TEST(InParts, BrokenPiecesAreRefusedOnAllRanks) {
