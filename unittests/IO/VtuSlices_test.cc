@@ -4,10 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Generate.hh"
@@ -116,6 +123,76 @@ TEST(VtuSlices, ChangedBytesAreReadOrRefused) {
   }
   EXPECT_GT(n_refused, 1000);
   EXPECT_LT(n_refused, 3000);
+}
+
+/// Raw appended arrays as other programs may write them.
+class Appended {
+ public:
+  Appended(bool big_endian, bool wide_header)
+      : swap_(big_endian != (std::endian::native == std::endian::big)),
+        big_endian_(big_endian),
+        wide_(wide_header) {}
+
+  template <class T>
+  std::string array(const std::string& name, const std::string& type, int components,
+                    const std::vector<T>& values) {
+    const std::string element = "<DataArray type=\"" + type + "\" Name=\"" + name +
+                                "\" NumberOfComponents=\"" + std::to_string(components) +
+                                "\" format=\"appended\" offset=\"" + std::to_string(data_.size()) + "\"/>\n";
+    const std::size_t n_bytes = values.size() * sizeof(T);
+    if (wide_)
+      put(static_cast<std::uint64_t>(n_bytes));
+    else
+      put(static_cast<std::uint32_t>(n_bytes));
+    for (const T value : values) put(value);
+    return element;
+  }
+  std::string file(const std::string& piece) const {
+    return std::string(
+               "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"") +
+           (big_endian_ ? "BigEndian" : "LittleEndian") + "\"" + (wide_ ? " header_type=\"UInt64\"" : "") +
+           ">\n<UnstructuredGrid>\n" + piece + "</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n  _" +
+           data_ + "\n</AppendedData>\n</VTKFile>\n";
+  }
+
+ private:
+  template <class T>
+  void put(T value) {
+    std::array<char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), &value, sizeof(T));
+    if (swap_) std::reverse(bytes.begin(), bytes.end());
+    data_.append(bytes.data(), bytes.size());
+  }
+
+  bool swap_, big_endian_, wide_;
+  std::string data_;
+};
+
+TEST(VtuSlices, NumbersOfAnyKindAndByteOrder) {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "a.vtu";
+  for (const bool big_endian : {false, true})
+    for (const bool wide : {false, true}) {
+      Appended data(big_endian, wide);
+      const std::string points =
+          data.array<float>("Points", "Float32", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.5F, 2, 300});
+      const std::string corners =
+          data.array<std::int64_t>("connectivity", "Int64", 1, {0, 1, 2, 3, 1, 2, 3, 4});
+      const std::string ends = data.array<std::uint16_t>("offsets", "UInt16", 1, {4, 8});
+      const std::string types = data.array<std::int32_t>("types", "Int32", 1, {10, 10});
+      const std::string regions = data.array<std::int16_t>("region", "Int16", 1, {-2, 500});
+      std::ofstream(path, std::ios::binary) << data.file(
+          "<Piece NumberOfPoints=\"5\" NumberOfCells=\"2\">\n<Points>" + points + "</Points>\n<Cells>" +
+          corners + ends + types + "</Cells>\n<CellData>" + regions + "</CellData>\n</Piece>\n");
+      ASSERT_EQ(fault(path), "");
+      io::VtuSlices file(path);
+      EXPECT_EQ(file.points(3, 5), (std::vector<Vec3>{{0, 0, 1}, {0.5, 2, 300}}));
+      EXPECT_EQ(file.cells(1, 2), (std::vector<std::array<std::uint64_t, 4>>{{1, 2, 3, 4}}));
+      EXPECT_EQ(file.regions(0, 2), (std::vector<std::int32_t>{-2, 500}));
+      const TetMesh whole = io::read(path);
+      EXPECT_EQ(whole.n_cells(), 2U);
+      EXPECT_EQ(whole.region(CellHandle(1)), 500);
+    }
 }
 
 TEST(VtuSlices, OtherArraysAreNamed) {
