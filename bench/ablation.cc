@@ -271,6 +271,9 @@ std::vector<Row> make_rows() {
               if (s.goal) s.goal->goes_on = false;
             }),
       number("goal.may_fall", &G::may_fall, kOffToo),
+      number("goal.more_cells", &G::more_cells, kBothWays, kAbove),
+      number("goal.turns", &G::turns, {0.33, 2}),
+      number("goal.pays", &G::pays, kOffToo),
       number("any_cost.most_of_hundred", &Y::most_of_hundred, {0.75, 2}),
       number("any_cost.missed", &Y::missed),
       number("any_cost.gain", &Y::gain, {0, 10}, kAbove),

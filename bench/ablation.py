@@ -8,15 +8,14 @@ RESULTS is a file of JSON lines, one a run. Runs that it has are not made again,
 on where it stopped; --table makes none. The table has a line for each number and factor: ratios to the runs
 with nothing changed, geometric means over meshes and seeds, of the worst angle (below half a degree counts as
 half a degree), the 1st and 5th percentile, cells and CPU seconds on one thread; and the mesh that loses most of
-its worst angle. "other seeds" is what chance does: the means over half of the seeds beside the other half. A row that stays
-within that buys nothing on these meshes.
+its worst angle. "other seeds" is what chance does: the means over half of the seeds beside the other half. A row
+that stays within that buys nothing on these meshes.
 """
 import argparse
 import json
 import math
 import pathlib
 import subprocess
-import tempfile
 
 from quality_table import ROWS, find
 

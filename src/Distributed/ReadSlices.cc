@@ -28,23 +28,27 @@ class Slices {
   std::uint64_t n_ranks_, n_;
 };
 
+/// Of the points of all ranks.
+CurveGrid common_grid(Comm& comm, const std::vector<Vec3>& mine) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
+  for (int d = 0; d < 3; ++d) {
+    for (const Vec3& p : mine) low[d] = std::min(low[d], p[d]), high[d] = std::max(high[d], p[d]);
+    low[d] = comm.min(low[d]);
+    high[d] = -comm.min(-high[d]);
+  }
+  return {SpaceCurve::kHilbert, low, high};
+}
+
 /// Who owns what: stretches of Hilbert's curve through the box of all points, about as many points on each.
 class CurveOwners {
  public:
   /// `mine`: the points that this rank has read. All take part.
-  CurveOwners(Comm& comm, const std::vector<Vec3>& mine) {
-    double extent = 0;
-    for (int d = 0; d < 3; ++d) {
-      double low = std::numeric_limits<double>::infinity(), high = -low;
-      for (const Vec3& p : mine) low = std::min(low, p[d]), high = std::max(high, p[d]);
-      low_[d] = comm.min(low);
-      extent = std::max(extent, -comm.min(-high) - low_[d]);
-    }
-    scale_ = extent > 0 ? kSteps / extent : 0;
+  CurveOwners(Comm& comm, const std::vector<Vec3>& mine) : grid_(common_grid(comm, mine)) {
     constexpr std::size_t kSamples = 1024;  // of each rank
     std::vector<std::uint64_t> sample;
     const std::size_t step = std::max<std::size_t>(mine.size() / kSamples, 1);
-    for (std::size_t i = 0; i < mine.size(); i += step) sample.push_back(place(mine[i]));
+    for (std::size_t i = 0; i < mine.size(); i += step) sample.push_back(grid_.place(mine[i]));
     sample = comm.all_gather(std::span<const std::uint64_t>(sample));
     std::sort(sample.begin(), sample.end());
     for (std::size_t r = 1; r < comm.n_ranks(); ++r)
@@ -52,19 +56,12 @@ class CurveOwners {
   }
 
   std::int32_t operator()(Vec3 p) const {
-    const auto at = std::upper_bound(splitters_.begin(), splitters_.end(), place(p));
+    const auto at = std::upper_bound(splitters_.begin(), splitters_.end(), grid_.place(p));
     return static_cast<std::int32_t>(at - splitters_.begin());
   }
 
  private:
-  static constexpr double kSteps = (1 << 21) - 1;
-  std::uint64_t place(Vec3 p) const {
-    const auto step = [&](int d) { return static_cast<std::uint32_t>((p[d] - low_[d]) * scale_); };
-    return curve_place(SpaceCurve::kHilbert, step(0), step(1), step(2));
-  }
-
-  Vec3 low_;
-  double scale_ = 0;
+  CurveGrid grid_;
   std::vector<std::uint64_t> splitters_;
 };
 

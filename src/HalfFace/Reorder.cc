@@ -25,34 +25,16 @@ std::uint64_t spread(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249ULL;
 }
 
-/// A box as a grid of 2^21 places in each direction.
-class Grid {
- public:
-  Grid(const TetMesh& mesh, SpaceCurve curve) : curve_(curve) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Vec3 high = {-kInfinity, -kInfinity, -kInfinity};
-    low_ = {kInfinity, kInfinity, kInfinity};
-    for (const Vec3& p : mesh.points()) {
-      for (int i = 0; i < 3; ++i) {
-        low_[i] = std::min(low_[i], p[i]);
-        high[i] = std::max(high[i], p[i]);
-      }
+CurveGrid grid_of(const TetMesh& mesh, SpaceCurve curve) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
+  for (const Vec3& p : mesh.points())
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
     }
-    double size = 0;
-    for (int i = 0; i < 3; ++i) size = std::max(size, high[i] - low_[i]);
-    scale_ = size > 0 ? ((1 << kBits) - 1) / size : 0;
-  }
-
-  std::uint64_t place(Vec3 p) const {
-    const auto step = [&](int i) { return static_cast<std::uint32_t>((p[i] - low_[i]) * scale_); };
-    return curve_place(curve_, step(0), step(1), step(2));
-  }
-
- private:
-  SpaceCurve curve_;
-  Vec3 low_;
-  double scale_;
-};
+  return {curve, low, high};
+}
 
 /// Old → new when the things that exist(i) are sorted by place(i).
 template <class H, class Exists, class Place>
@@ -74,6 +56,17 @@ std::vector<H> sorted_places(par::Policy policy, std::size_t n, std::size_t& n_n
 }
 
 }  // namespace
+
+CurveGrid::CurveGrid(SpaceCurve curve, Vec3 low, Vec3 high) : curve_(curve), low_(low) {
+  double size = 0;
+  for (int i = 0; i < 3; ++i) size = std::max(size, high[i] - low[i]);
+  scale_ = size > 0 ? ((1 << kBits) - 1) / size : 0;
+}
+
+std::uint64_t CurveGrid::place(Vec3 p) const {
+  const auto step = [&](int i) { return static_cast<std::uint32_t>((p[i] - low_[i]) * scale_); };
+  return curve_place(curve_, step(0), step(1), step(2));
+}
 
 std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   if (curve == SpaceCurve::kHilbert) {
@@ -135,7 +128,7 @@ bool is_scattered(const TetMesh& mesh, par::Policy policy) {
 }
 
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
-  const Grid grid(mesh, options.curve);
+  const CurveGrid grid = grid_of(mesh, options.curve);
   GarbageMap map;
   std::size_t n_vertices = 0;
   std::size_t n_cells = 0;

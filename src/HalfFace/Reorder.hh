@@ -35,6 +35,19 @@ bool is_scattered(const TetMesh& mesh, par::Policy policy = {});
 /// Place on the curve of the point whose coordinates are x, y, z: 21 bits each.
 std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, std::uint32_t z);
 
+/// The box from low to high as a grid of 2^21 places along its longest side.
+class CurveGrid {
+ public:
+  CurveGrid(SpaceCurve curve, Vec3 low, Vec3 high);
+  /// Place on the curve of a point of the box.
+  std::uint64_t place(Vec3 p) const;
+
+ private:
+  SpaceCurve curve_;
+  Vec3 low_;
+  double scale_ = 0;
+};
+
 }  // namespace hfr
 
 #endif

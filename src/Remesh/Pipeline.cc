@@ -70,11 +70,10 @@ void reach_claimed(const Run& run) {
   Run part = run.with(claimed);
   const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
   bool stayed = true;
-  for (double room : goal.room) {
+  double more = 1;  // times the bound that was claimed first
+  for (int turn = 0; turn < goal.turns; ++turn, more *= goal.more_cells) {
     if (!may_rise(run, goal.degrees) || run.control.stopped()) return;
-    if (may_grow)
-      part.bounds.max =
-          static_cast<std::size_t>(room / goal.room.front() * static_cast<double>(claimed.bounds.max));
+    if (may_grow) part.bounds.max = static_cast<std::size_t>(more * static_cast<double>(claimed.bounds.max));
     const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
     run.findings.forget_cell_bound();
     Best best(run, goal.may_fall);

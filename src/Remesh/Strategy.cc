@@ -287,7 +287,7 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     const auto claimed = towards(kClaimedGoal);
     if (options.max_cells == 0 && claimed->bounds.max > 0)
       claimed->bounds.max =
-          static_cast<std::size_t>(claimed->goal->room.front() * static_cast<double>(n_cells));
+          static_cast<std::size_t>(claimed->goal->more_cells * static_cast<double>(n_cells));
     claimed->pass.first_edge_does = false;  // what is left by then is hard
     strategy.claimed = claimed;
   }

@@ -317,9 +317,11 @@ struct GoalEffort {
   bool goes_on = true;       ///< with all cells where the goal was missed; not where iterations are limited
   /// Share of its 1st and 5th percentile that a default run may lose for what it claims.
   double may_fall = 0.03;
-  /// Times the cells of the input that it may make for that, one after the other while the worst angle rises
-  /// by `pays`, a share of the goal: a share of itself would be nothing where it is all but 0.
-  std::array<double, 3> room = {1.5, 2.25, 3.375};
+  /// Times the cells of the input that it may make for that; so many times again, `turns` in all, while the
+  /// worst angle rises by `pays`, a share of the goal: a share of itself would be nothing where it is all but
+  /// 0.
+  double more_cells = 1.5;
+  int turns = 3;
   double pays = 0.03;
 };
 

@@ -235,10 +235,13 @@ void untangle(const Run& run, const UntangleEffort& effort) {
   const Untangling metric{1.0 / typical_six_volume(run.mesh),
                           run.work.holds_damage ? run.work.floor : kNoFloor};
   // Moving comes first: connectivity that was right before the mesh moved is worth keeping.
-  if (moves && unfold_by_moving(run, effort, 1) == 0) return;
+  const auto move = [&](int iteration) {
+    return moves ? unfold_by_moving(run, effort, iteration) : invalid_cells(run.mesh, run.policy()).size();
+  };
+  std::size_t n_left = move(1);
+  if (moves && n_left == 0) return;
   // Each restart leaves fewer invalid cells than the one before, or is the last. The runner's count is not
   // asked: a cell that is flat but for rounding may be invalid in its metric only.
-  std::size_t n_left = invalid_cells(run.mesh, run.policy()).size();
   for (int restart = 1; !run.control.stopped(); ++restart) {
     PassRunner<Untangling> runner(run, metric, "untangle");
     reconnect(runner, run, effort);
@@ -246,8 +249,7 @@ void untangle(const Run& run, const UntangleEffort& effort) {
     if (runner.n_invalid() > 0) runner.pass(PassKind::kCluster, last);
     if (runner.n_invalid() > 0) runner.pass(PassKind::kInsert, last);
     if (runner.n_invalid() == 0) return;
-    if (moves) unfold_by_moving(run, effort, 1 + restart);
-    const std::size_t n_before = std::exchange(n_left, invalid_cells(run.mesh, run.policy()).size());
+    const std::size_t n_before = std::exchange(n_left, move(1 + restart));
     if (n_left == 0 || n_left >= n_before) return;
   }
 }
