@@ -80,8 +80,8 @@ void measure(hfr::Index n, int threads) {
       1e3 * median(moved_few));
   for (const std::size_t n_bad : {50, 500, 5000}) {
     const std::vector<hfr::Vec3> d = damage(fresh, n_bad, h);
-    std::vector<double> stepped, without_parents, improved, with_fields;
-    std::size_t created = 0;
+    std::vector<double> stepped, with_parents, improved, with_fields;
+    std::size_t created = 0, n_parents = 0;
     for (int i = 0; i < 5; ++i) {
       hfr::TetMesh one = fresh, two = fresh, three = fresh, four = fresh;
       hfr::Remesher a(one, options);
@@ -89,10 +89,11 @@ void measure(hfr::Index n, int threads) {
         const hfr::StepResult step = a.step(d);
         created = step.repairs.empty() ? 0 : step.repairs[0].edits.created_cells.size();
       }));
-      hfr::RemesherOptions bare = options;
-      bare.parents = false;
-      hfr::Remesher c(four, bare);
-      without_parents.push_back(seconds([&] { c.step(d); }));
+      hfr::Remesher c(four, options);
+      with_parents.push_back(seconds([&] {
+        for (const hfr::RepairResult& repair : c.step(d).repairs)
+          n_parents += repair.edits.parents().all.size();
+      }));
       for (hfr::VertexHandle v : two.vertices()) two.set_point(v, two.point(v) + d[v.idx()]);
       improved.push_back(seconds([&] { hfr::improve(two, options.improve); }));
       three.request_cell_property<double>("rho", 1.0);
@@ -103,10 +104,12 @@ void measure(hfr::Index n, int threads) {
       with_fields.push_back(seconds([&] { b.step(d); }));
     }
     std::printf(
-        "  %5zu vertices displaced: improve %.1f ms; step %.2f of it, without parents %.2f, with two fields "
-        "%.2f; %zu cells created\n",
+        "  %5zu vertices displaced: improve %.1f ms; step %.2f of it, with parents %.2f, with two fields "
+        "%.2f; "
+        "%zu cells created, %zu parents\n",
         n_bad, 1e3 * median(improved), median(stepped) / median(improved),
-        median(without_parents) / median(improved), median(with_fields) / median(improved), created);
+        median(with_parents) / median(improved), median(with_fields) / median(improved), created,
+        n_parents / with_parents.size());
   }
 }
 

@@ -81,11 +81,12 @@ Table of_created_cells(const hfr_mesh& mesh, const Edits& edits) {
 }
 
 Table of_parents(const hfr_mesh& mesh, const Edits& edits) {
-  auto child = std::make_shared<std::vector<CellHandle>>(edits.parents.size());
-  for (const CreatedCell& c : edits.created_cells)
-    for (std::size_t i = 0; i < c.n_parents; ++i) (*child)[c.first_parent + i] = c.cell;
-  return {edits.parents.size(), 2, [&, child](std::size_t i, std::size_t j) {
-            return static_cast<double>(number(mesh, j == 0 ? (*child)[i] : edits.parents[i].old_cell));
+  const Parents& parents = edits.parents();
+  auto child = std::make_shared<std::vector<CellHandle>>();
+  for (std::size_t i = 0; i < edits.created_cells.size(); ++i)
+    child->insert(child->end(), parents.of(i).size(), edits.created_cells[i].cell);
+  return {parents.all.size(), 2, [&, child](std::size_t i, std::size_t j) {
+            return static_cast<double>(number(mesh, j == 0 ? (*child)[i] : parents.all[i].old_cell));
           }};
 }
 
@@ -102,8 +103,10 @@ Table table_of(const hfr_remesher& r, std::int64_t repair, const std::string& wh
   if (what == "created_cells") return of_created_cells(mesh, e);
   if (what == "moved_cells") return of_handles(mesh, e.moved_cells);
   if (what == "parents") return of_parents(mesh, e);
-  if (what == "parent_shares")
-    return {e.parents.size(), 1, [&](std::size_t i, std::size_t) { return e.parents[i].share; }};
+  if (what == "parent_shares") {
+    const std::vector<ParentCell>& all = e.parents().all;
+    return {all.size(), 1, [&](std::size_t i, std::size_t) { return all[i].share; }};
+  }
   if (what == "removed_vertices") return of_handles(mesh, e.removed_vertices);
   if (what == "created_vertices") return of_places(mesh, e.created_vertices);
   if (what == "created_weights") return of_weights(e.created_vertices);

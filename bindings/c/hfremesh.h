@@ -248,7 +248,8 @@ HFR_C_EXPORT hfr_status hfr_remesher_reset(hfr_remesher* remesher);
 /* Rows of what the last step, move or repair did; of repair number `repair` (0 for the first), except for
  * "refused". "removed_cells", "created_cells", "parents", "moved_cells", "removed_vertices",
  * "created_vertices", "moved_vertices", "map_vertices", "map_cells", "old_vertices", "old_cells"; -1 for
- * another word or repair. */
+ * another word or repair, and for parents that the option "parents" has left out. Parents are found when they
+ * are first counted or got, which may take as long as the repair. */
 HFR_C_EXPORT int64_t hfr_remesher_count(const hfr_remesher* remesher, int64_t repair, const char* what);
 /* The same into the caller's array. "Old" is before that repair, "new" after it; base - 1: none.
  *   removed_cells k x 1 old; created_cells k x 5: the new cell, its four new vertices; moved_cells k x 1 new

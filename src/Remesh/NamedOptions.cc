@@ -293,7 +293,9 @@ constexpr std::array kRemesherRows = std::to_array<Row<R>>({
       "A field that is carried over repairs, and how.", true},
      add_transfer},
     {{"parents", kFlag,
-      "Find the parents of created cells; true by default. Without, repairs of many cells are faster by far.",
+      "The edits of a repair can be asked for the parents of created cells, and keep the mesh as it was for "
+      "that; "
+      "true by default.",
       false},
      [](R& o, Text t) { o.parents = flag(t); }},
     {{"ids", kFlag, "Keep numbers of vertices and cells that never change.", false},

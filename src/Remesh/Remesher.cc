@@ -2,6 +2,7 @@
 #include "Remesh/Remesher.hh"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -118,6 +119,7 @@ class Remesher::State {
   MoveResult take(std::span<const Vec3> displacement, OnInversion on_inversion);
   void note_motion(std::span<const Vec3> displacement, double fraction);
 
+  void copy_mesh();
   RepairResult repair_mesh();
   void follow_edits(const Edits& edits, bool was_cut_short);
   bool repair_in_step(std::span<const FieldTransfer> fields, StepResult& result);
@@ -145,6 +147,7 @@ class Remesher::State {
 
   RunMemory memory_;                 // of repairs
   std::shared_ptr<TetMesh> before_;  // the mesh before the last repair
+  std::shared_ptr<TetMesh> spare_;   // where edits keep, or have kept, such a copy
   std::optional<Edits> pending_;     // of the last repair, whose fields wait
   std::optional<Before> undo_;       // of the step in progress, once it has repaired
   bool has_moved_ = false;           // points, in the step in progress
@@ -317,12 +320,21 @@ MoveResult Remesher::State::move(std::span<const Vec3> displacement) {
 
 // --- repairing ---
 
+/// Into before_. Edits whose parents may still be asked for keep the copy that was there; another one, whose
+/// edits are gone, serves again.
+void Remesher::State::copy_mesh() {
+  if (before_ && before_.use_count() > 1) std::swap(before_, spare_);
+  if (before_ && before_.use_count() == 1) {
+    std::atomic_thread_fence(std::memory_order_acquire);  // edits may have gone in another thread
+    *before_ = mesh_;
+  } else {
+    before_ = std::make_shared<TetMesh>(mesh_);
+  }
+}
+
 /// Leaves the mesh as it was where improve() throws.
 RepairResult Remesher::State::repair_mesh() {
-  if (before_ && before_.use_count() == 1)
-    *before_ = mesh_;
-  else
-    before_ = std::make_shared<TetMesh>(mesh_);
+  copy_mesh();
   memory_.before = before_.get();
   memory_.found = watch_.survey();
   Result run;
@@ -336,7 +348,8 @@ RepairResult Remesher::State::repair_mesh() {
   RepairResult result;
   result.stop = run.stop;
   result.goal_reached = run.goal_reached;
-  result.edits = make_edits(*before_, mesh_, std::move(run.maps), policy_, wants_parents_);
+  result.edits = wants_parents_ ? make_edits(before_, mesh_, std::move(run.maps), policy_)
+                                : make_edits(*before_, mesh_, std::move(run.maps), policy_);
   follow_edits(result.edits, run.stop == Stop::kTimeLimit || run.stop == Stop::kCancelled);
   return result;
 }

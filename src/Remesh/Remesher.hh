@@ -104,8 +104,8 @@ struct RemesherOptions {
   /// The fields that are carried over a repair. Others come out of it as operators leave them: those of
   /// vertices attached, those of cells with what stood in the slot.
   std::vector<FieldTransfer> fields;
-  /// Find the parents of created cells (Edits::parents). It costs about what the repair itself does; without,
-  /// they are found only where a field is inherited.
+  /// Edits can be asked for the parents of created cells (Edits::parents()); they keep the mesh as it was
+  /// until then. Without, they can only where a field is inherited.
   bool parents = true;
   /// Keep numbers for vertices and cells that never change and are never given twice.
   bool ids = false;

@@ -25,19 +25,17 @@ std::vector<double> volumes(const TetMesh& mesh, std::span<const CellHandle> cel
 Overlaps overlaps_of_changed(const TetMesh& old, const TetMesh& now, const Edits& edits,
                              std::span<const CellHandle> new_cells, std::span<const CellHandle> old_cells,
                              par::Policy policy) {
-  if (!edits.has_parents) return find_overlaps(old, now, edits, new_cells, old_cells, policy);
-  const Overlaps of_moved = find_overlaps(old, now, edits, edits.moved_cells, old_cells, policy);
+  if (!edits.has_parents()) return find_overlaps(old, edits, shapes_of(now, new_cells), old_cells, policy);
+  const Parents& parents = edits.parents();
+  const Overlaps of_moved = find_overlaps(old, edits, shapes_of(now, edits.moved_cells), old_cells, policy);
   Overlaps all;
   all.first.push_back(0);
-  auto created = edits.created_cells.begin();
-  std::size_t moved = 0;
+  std::size_t created = 0, moved = 0;
   for (CellHandle c : new_cells) {
-    if (created != edits.created_cells.end() && created->cell == c) {
+    if (created < edits.created_cells.size() && edits.created_cells[created].cell == c) {
       const double whole = std::abs(volume(now, c));
-      for (std::size_t i = 0; i < created->n_parents; ++i) {
-        const ParentCell& parent = edits.parents[created->first_parent + i];
+      for (const ParentCell& parent : parents.of(created))
         all.parts.push_back({parent.old_cell, parent.share * whole});
-      }
       std::sort(all.parts.begin() + static_cast<std::ptrdiff_t>(all.first.back()), all.parts.end(),
                 [](const Overlap& a, const Overlap& b) { return a.old_cell < b.old_cell; });
       ++created;

@@ -2,10 +2,13 @@
 #include "Transfer/Edits.hh"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <mutex>
+#include <optional>
 #include <utility>
 
-#include "HalfFace/Geometry.hh"
+#include "HalfFace/Errors.hh"
 #include "Transfer/Locate.hh"
 #include "Transfer/Overlaps.hh"
 
@@ -64,29 +67,72 @@ std::vector<CellHandle> cells_that_moved(const TetMesh& now, const Edits& edits,
   return cells;
 }
 
-/// The largest share first; of equal ones the smaller handle.
-void set_parents(const TetMesh& old, const TetMesh& now, Edits& edits, par::Policy policy) {
-  std::vector<CellHandle> cells;
-  for (const CreatedCell& c : edits.created_cells) cells.push_back(c.cell);
-  const Overlaps overlaps = find_overlaps(old, now, edits, cells, changed_old_cells(edits), policy);
-  edits.has_parents = true;
-  edits.parents.reserve(overlaps.parts.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    CreatedCell& c = edits.created_cells[i];
-    c.first_parent = edits.parents.size();
-    const double whole = volume(now, c.cell);
-    for (const Overlap& part : overlaps.of(i))
-      edits.parents.push_back({part.old_cell, part.volume / (whole < 0 ? -whole : whole)});
-    c.n_parents = edits.parents.size() - c.first_parent;
-    std::stable_sort(edits.parents.begin() + static_cast<std::ptrdiff_t>(c.first_parent), edits.parents.end(),
-                     [](const ParentCell& a, const ParentCell& b) { return a.share > b.share; });
+/// The created cells of the edits, with where their corners are.
+std::vector<NewCell> created_cells(const TetMesh& old, const Edits& edits) {
+  const auto point = [&](VertexHandle v) {
+    for (const auto* list : {&edits.moved_vertices, &edits.created_vertices}) {
+      const auto at = std::lower_bound(list->begin(), list->end(), v,
+                                       [](const PlacedVertex& p, VertexHandle u) { return p.vertex < u; });
+      if (at != list->end() && at->vertex == v) return at->point;
+    }
+    return old.point(edits.maps.old_vertices[v.idx()]);
+  };
+  std::vector<NewCell> cells;
+  cells.reserve(edits.created_cells.size());
+  for (const CreatedCell& c : edits.created_cells) {
+    const auto& v = c.vertices;
+    cells.push_back({v, {point(v[0]), point(v[1]), point(v[2]), point(v[3])}});
   }
+  return cells;
+}
+
+/// The largest share first; of equal ones the smaller handle.
+Parents find_parents(const TetMesh& old, const Edits& edits, par::Policy policy) {
+  const std::vector<NewCell> cells = created_cells(old, edits);
+  Overlaps overlaps = find_overlaps(old, edits, cells, changed_old_cells(edits), policy);
+  Parents parents;
+  parents.all.resize(overlaps.parts.size());
+  par::for_each(policy, cells.size(), [&](std::size_t i) {
+    const double whole = std::abs(volume6(cells[i].points)) / 6;
+    ParentCell* const begin = parents.all.data() + overlaps.first[i];
+    ParentCell* end = begin;
+    for (const Overlap& part : overlaps.of(i)) *end++ = {part.old_cell, part.volume / whole};
+    std::sort(begin, end, [](const ParentCell& a, const ParentCell& b) {
+      return a.share > b.share || (a.share == b.share && a.old_cell < b.old_cell);
+    });
+  });
+  parents.first = std::move(overlaps.first);
+  return parents;
 }
 
 }  // namespace
 
-Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Policy policy,
-                 bool with_parents) {
+struct Edits::ParentSearch {
+  std::mutex mutex;
+  std::shared_ptr<const TetMesh> old;  // until they are found
+  par::Policy policy;
+  std::optional<Parents> found;
+};
+
+const Parents& Edits::parents() const {
+  HFR_REQUIRE(search_, "parents of created cells were left out");
+  const std::scoped_lock lock(search_->mutex);
+  if (!search_->found) {
+    search_->found = find_parents(*search_->old, *this, search_->policy);
+    search_->old.reset();
+  }
+  return *search_->found;
+}
+
+Edits make_edits(std::shared_ptr<const TetMesh> old, const TetMesh& now, MeshMaps maps, par::Policy policy) {
+  Edits edits = make_edits(*old, now, std::move(maps), policy);
+  edits.search_ = std::make_shared<Edits::ParentSearch>();
+  edits.search_->old = std::move(old);
+  edits.search_->policy = policy;
+  return edits;
+}
+
+Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Policy policy) {
   Edits edits;
   keep_cells_of_same_order(old, now, maps, policy);
   edits.maps = std::move(maps);
@@ -109,7 +155,6 @@ Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Pol
   edits.moved_cells = cells_that_moved(now, edits, policy);
   place(old, edits, edits.created_vertices, policy);
   place(old, edits, edits.moved_vertices, policy);
-  if (with_parents) set_parents(old, now, edits, policy);
   return edits;
 }
 

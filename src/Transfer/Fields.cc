@@ -154,13 +154,14 @@ void transfer_inherited(const TetMesh& old, TetMesh& now, const Edits& edits, co
                         FieldReport& report) {
   const DenseStored& from = required(old, name, Transfer::kInherit);
   DenseStored& to = required(now, name, Transfer::kInherit);
-  for (const CreatedCell& c : edits.created_cells) {
-    if (c.n_parents == 0) {
+  const Parents& parents = edits.parents();
+  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
+    if (parents.of(i).empty()) {
       ++report.n_outside;
       continue;
     }
     ++report.n_changed;
-    to.copy_from(from, edits.parents[c.first_parent].old_cell.idx(), c.cell.idx());
+    to.copy_from(from, parents.of(i).front().old_cell.idx(), edits.created_cells[i].cell.idx());
   }
 }
 

@@ -306,17 +306,16 @@ Overlaps joined(const std::vector<Found>& found, std::span<const std::uint8_t> i
 
 }  // namespace
 
-Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edits,
-                       std::span<const CellHandle> new_cells, std::span<const CellHandle> old_cells,
-                       par::Policy policy) {
+Overlaps find_overlaps(const TetMesh& old, const Edits& edits, std::span<const NewCell> new_cells,
+                       std::span<const CellHandle> old_cells, par::Policy policy) {
   Candidates candidates(old, old_cells, policy);
   std::unordered_map<Index, CellHandle> place;
   for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
     for (const PlacedVertex& v : *list)
       if (v.old_cell.is_valid()) place.emplace(v.vertex.idx(), v.old_cell);
   /// visit(candidate) for those that may have something of the cell, until it returns true.
-  const auto for_near_corners = [&](CellHandle c, auto&& visit) {
-    for (VertexHandle v : now.cell_vertices(c)) {
+  const auto for_near_corners = [&](const NewCell& c, auto&& visit) {
+    for (VertexHandle v : c.vertices) {
       const auto at = place.find(v.idx());
       if (at != place.end() && visit(candidates.number(at->second))) return;
       const VertexHandle source = edits.maps.sources[v.idx()];
@@ -343,7 +342,7 @@ Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edit
   };
   std::vector<std::uint8_t> is_open(new_cells.size(), 0);
   const std::vector<Found> first = search_all(new_cells.size(), kNanoseconds, [&](std::size_t i, Search& s) {
-    s.begin(points_of(now, new_cells[i]));
+    s.begin(new_cells[i].points);
     for_near_corners(new_cells[i], [&](Index near) { return s.look_along_faces(near); });
     is_open[i] = !s.is_covered() || s.is_near_an_inverted_one();
   });
@@ -351,7 +350,7 @@ Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edit
       par::compact<Index>(policy, new_cells.size(), [&](std::size_t i) { return is_open[i] != 0; });
   if (!open.empty()) candidates.sort_by_x();
   const std::vector<Found> second = search_all(open.size(), kNanoseconds, [&](std::size_t i, Search& s) {
-    s.begin(points_of(now, new_cells[open[i]]));
+    s.begin(new_cells[open[i]].points);
     for_near_corners(new_cells[open[i]], [&](Index near) {
       s.look_from(near);
       return false;
@@ -359,6 +358,13 @@ Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edit
     if (!s.is_covered()) s.look_everywhere();
   });
   return joined(first, is_open, second);
+}
+
+std::vector<NewCell> shapes_of(const TetMesh& now, std::span<const CellHandle> cells) {
+  std::vector<NewCell> out;
+  out.reserve(cells.size());
+  for (CellHandle c : cells) out.push_back({now.cell_vertices(c), points_of(now, c)});
+  return out;
 }
 
 std::vector<CellHandle> changed_old_cells(const Edits& edits) {

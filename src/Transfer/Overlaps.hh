@@ -8,6 +8,7 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "Transfer/Edits.hh"
+#include "Transfer/SharedVolume.hh"
 
 namespace hfr {
 
@@ -27,12 +28,18 @@ struct Overlaps {
   }
 };
 
+/// A cell of the mesh as it is.
+struct NewCell {
+  std::array<VertexHandle, 4> vertices;
+  TetPoints points;
+};
+std::vector<NewCell> shapes_of(const TetMesh& now, std::span<const CellHandle> cells);
+
 /// Between the new cells that are given and the old ones, ascending, that are where they are. The old cells
 /// are found from the old vertices of a new cell on, from half-face to half-face; where what is found does
 /// not cover the cell, among all that are given. `edits`: its maps and created vertices.
-Overlaps find_overlaps(const TetMesh& old, const TetMesh& now, const Edits& edits,
-                       std::span<const CellHandle> new_cells, std::span<const CellHandle> old_cells,
-                       par::Policy policy);
+Overlaps find_overlaps(const TetMesh& old, const Edits& edits, std::span<const NewCell> new_cells,
+                       std::span<const CellHandle> old_cells, par::Policy policy);
 
 /// Old cells that the new ones of the edits may cover: those that are gone, and those with a vertex that has
 /// moved. Ascending.

@@ -33,12 +33,15 @@ class TetPlanes {
     const double u1 = dot(x, normal_[0]), u2 = dot(x, normal_[1]), u3 = dot(x, normal_[2]);
     return {whole_ - u1 - u2 - u3, u1, u2, u3};
   }
+  /// The same, with 0 for what may be rounding: of a corner that both tetrahedra have, for one.
+  std::array<double, 4> rounded_coordinates(Vec3 p) const;
   /// Whether one of its planes has all of the other tetrahedron on its outer side.
   bool is_apart_from(const TetPoints& other) const;
 
  private:
   Vec3 origin_;
   std::array<Vec3, 3> normal_;
+  std::array<double, 3> slack_{};  // rounding of a coordinate, for each unit of distance
   double whole_ = 0;
 };
 

@@ -51,11 +51,10 @@ TEST(Edits, WhatIsNotListedIsAsItWas) {
 TEST(Edits, SharesOfTheParentsOfACreatedCellAddUpToOneTheLargestFirst) {
   const TwoMeshes two;
   const Edits edits = two.edits();
-  for (const CreatedCell& c : edits.created_cells) {
-    ASSERT_GT(c.n_parents, 0U);
+  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
+    ASSERT_FALSE(edits.parents().of(i).empty());
     double sum = 0, last = 2;
-    for (std::size_t i = 0; i < c.n_parents; ++i) {
-      const ParentCell& parent = edits.parents[c.first_parent + i];
+    for (const ParentCell& parent : edits.parents().of(i)) {
       sum += parent.share;
       EXPECT_LE(parent.share, last);
       last = parent.share;
@@ -91,12 +90,13 @@ TEST(Edits, CellWithItsVerticesInAnotherOrderIsANewOne) {
   std::vector<std::array<Index, 4>> indices;
   for (const auto& c : cells) indices.push_back({c[0].idx(), c[1].idx(), c[2].idx(), c[3].idx()});
   two.now = build(std::vector<Vec3>(two.old.points().begin(), two.old.points().end()), indices);
-  const Edits edits = make_edits(two.old, two.now, maps, {});
+  const Edits edits = make_edits(std::make_shared<TetMesh>(two.old), two.now, maps, {});
   ASSERT_EQ(edits.created_cells.size(), 1U);
   EXPECT_EQ(edits.created_cells[0].cell, CellHandle(5));
-  ASSERT_EQ(edits.created_cells[0].n_parents, 1U);
-  EXPECT_EQ(edits.parents[0].old_cell, CellHandle(5));
-  EXPECT_NEAR(edits.parents[0].share, 1, 1e-14);
+  const auto parents = edits.parents().of(0);
+  ASSERT_EQ(parents.size(), 1U);
+  EXPECT_EQ(parents[0].old_cell, CellHandle(5));
+  EXPECT_NEAR(parents[0].share, 1, 1e-14);
 }
 
 }  // namespace

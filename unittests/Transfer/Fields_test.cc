@@ -177,10 +177,10 @@ TEST(TransferInherited, CreatedCellsHaveTheValueOfTheCellThatTheyCoverMostOf) {
       {{.name = "material", .how = Transfer::kInherit}, {.name = "name", .how = Transfer::kInherit}});
   const auto material = two.now.get_cell_property<int>("material");
   const auto name = two.now.get_cell_property<std::string>("name");
-  for (const CreatedCell& c : edits.created_cells) {
-    const CellHandle parent = edits.parents[c.first_parent].old_cell;
-    EXPECT_EQ((*material)[c.cell], static_cast<int>(parent.idx()));
-    EXPECT_EQ((*name)[c.cell], "cell " + std::to_string(parent.idx()));
+  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
+    const CellHandle c = edits.created_cells[i].cell, parent = edits.parents().of(i).front().old_cell;
+    EXPECT_EQ((*material)[c], static_cast<int>(parent.idx()));
+    EXPECT_EQ((*name)[c], "cell " + std::to_string(parent.idx()));
   }
   for (CellHandle c : two.now.cells())
     if (edits.maps.old_cells[c.idx()].is_valid()) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "HalfFace/Generate.hh"
@@ -65,6 +66,26 @@ TEST(SharedVolumeProperty, BothOrdersAgree) {
     n_shared += ab > 0 ? 1 : 0;
   }
   EXPECT_GT(n_shared, 1000);
+}
+
+TEST(SharedVolumeProperty, CellsOnBothSidesOfACommonFaceShareNothing) {
+  RandomTets random(17);
+  int n = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Tet a = random.next();
+    const Tet other = random.next();
+    Tet b = a;
+    b[3] = a[0] + a[1] + a[2] - 2 * a[3] + 0.1 * (other[3] - other[0]);
+    if (volume6(a) * volume6(b) >= 0) continue;
+    ++n;
+    for (int k = 0; k < 4; ++k) {  // whichever corner the planes are taken from
+      std::rotate(b.begin(), b.begin() + 1, b.end());
+      std::rotate(a.begin(), a.begin() + k % 2, a.end());
+      ASSERT_EQ(shared_volume(a, b), 0) << i;
+      ASSERT_EQ(shared_volume(b, a), 0) << i;
+    }
+  }
+  EXPECT_GT(n, 1000);
 }
 
 TEST(SharedVolumeProperty, PartsInTheCellsOfAMeshAddUpToTheCell) {

@@ -77,7 +77,9 @@ struct TwoMeshes {
     }
   }
 
-  Edits edits(par::Policy policy = {}) const { return make_edits(old, now, maps, policy); }
+  Edits edits(par::Policy policy = {}) const {
+    return make_edits(std::make_shared<TetMesh>(old), now, maps, policy);
+  }
 };
 
 }  // namespace hfr::test

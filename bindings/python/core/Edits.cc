@@ -43,6 +43,12 @@ Array<std::int64_t> old_cells_array(const std::vector<PlacedVertex>& vertices) {
   return to_array(column(vertices, [](const PlacedVertex& v) { return number(v.old_cell); }));
 }
 
+/// Which may take a while when it is the first time.
+const Parents& parents(const Edits& edits) {
+  nb::gil_scoped_release others_run;
+  return edits.parents();
+}
+
 void bind_cells(nb::class_<Edits>& type) {
   type.def_prop_ro(
           "removed_cells", [](const Edits& e) { return handle_array(e.removed_cells); }, kOwned,
@@ -62,24 +68,23 @@ void bind_cells(nb::class_<Edits>& type) {
       .def_prop_ro(
           "parent_offsets",
           [](const Edits& e) {
-            auto offsets = column(e.created_cells, [](const CreatedCell& c) {
-              return static_cast<std::int64_t>(c.first_parent);
-            });
-            offsets.push_back(static_cast<std::int64_t>(e.parents.size()));
-            return to_array(std::move(offsets));
+            return to_array(
+                column(parents(e).first, [](std::size_t i) { return static_cast<std::int64_t>(i); }));
           },
           kOwned,
-          "(k + 1,) int64: the parents of created cell i are parent_cells[offsets[i]:offsets[i + 1]].")
+          "(k + 1,) int64: the parents of created cell i are parent_cells[offsets[i]:offsets[i + 1]]. They "
+          "are "
+          "found when they are first asked for; ValueError: left out by parents=False.")
       .def_prop_ro(
           "parent_cells",
           [](const Edits& e) {
-            return to_array(column(e.parents, [](const ParentCell& p) { return number(p.old_cell); }));
+            return to_array(column(parents(e).all, [](const ParentCell& p) { return number(p.old_cell); }));
           },
           kOwned, "(p,) int64, old cells; of each created cell the largest share first.")
       .def_prop_ro(
           "parent_shares",
           [](const Edits& e) {
-            return to_array(column(e.parents, [](const ParentCell& p) { return p.share; }));
+            return to_array(column(parents(e).all, [](const ParentCell& p) { return p.share; }));
           },
           kOwned, "(p,) float64: the common volume as a share of the created cell's.")
       .def_prop_ro(

@@ -8,6 +8,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -168,8 +169,10 @@ void bind_improve(nb::module_& module) {
   module.def(
       "edits",
       [](const Mesh& old, const Improved& run) {
+        auto kept =
+            std::make_shared<const TetMesh>(old.tets);  // while nobody else runs, who could write its points
         nb::gil_scoped_release others_run;
-        return make_edits(old.tets, run.mesh.tets, run.result.maps, par::Policy::all());
+        return make_edits(std::move(kept), run.mesh.tets, run.result.maps, par::Policy::all());
       },
       "old"_a, "run"_a, "What a run did, element by element.");
   module.def("options", &option_rows, "of_remesher"_a = false,

@@ -38,8 +38,8 @@ class Remesher(_core.Remesher):
     values, one row a vertex or cell of `new`; there the field has what operators made of it. Others are attached to
     their vertices and cells.
 
-    parents: False leaves out the parents of created cells in edits where no field is inherited: with many cells they cost
-    more than the repair. ids: keep numbers of vertices and cells that never change. progress, cancel and further
+    parents: the edits of a repair find the parents of created cells when they are first asked for, and keep the mesh as
+    it was until then; False leaves them out where no field is inherited. ids: keep numbers of vertices and cells that never change. progress, cancel and further
     options: as improve(), for each repair.
 
     Raises ValueError for options and arrays that do not fit, with the first index at fault. One step at a time: while

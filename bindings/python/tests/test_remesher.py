@@ -92,6 +92,7 @@ def test_one_repair_says_everything_of_itself(loaded):
         ids, cell_ids = rm.vertex_ids, rm.cell_ids
         step = rm.step(swirl(rm.points, 0.25))
     edits = step.edits
+    rm.step(np.zeros((rm.n_vertices, 3)))  # parents are found when they are asked for, whatever came since
     assert step.cause in ("angle", "inverted") and len(edits.created_cells) > 0 and "created" in repr(edits)
     offsets = edits.parent_offsets
     assert len(offsets) == len(edits.created_cells) + 1 and offsets[-1] == len(edits.parent_cells)
@@ -104,6 +105,13 @@ def test_one_repair_says_everything_of_itself(loaded):
     assert not set(rm.cell_ids[edits.created_cells]) & set(cell_ids)
     still = np.setdiff1d(kept, edits.moved_vertices)
     np.testing.assert_array_equal(rm.field("T")[still], old_T[edits.maps.old_vertices[still]])
+
+
+def test_parents_that_are_left_out_are_said_to_be(loaded):
+    rm = hf.Remesher(loaded, goal=15, trigger=10, parents=False)
+    step = rm.step(swirl(rm.points, 1.0))
+    with pytest.raises(ValueError, match="left out"):
+        step.repairs[0].edits.parent_cells
 
 
 def test_a_quiet_step_changes_nothing(loaded):
