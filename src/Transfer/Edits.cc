@@ -115,7 +115,7 @@ struct Edits::ParentSearch {
 };
 
 const Parents& Edits::parents() const {
-  HFR_REQUIRE(search_, "parents of created cells were left out");
+  HFR_REQUIRE(search_, "parents of created cells were left out of the edits");
   const std::scoped_lock lock(search_->mutex);
   if (!search_->found) {
     search_->found = find_parents(*search_->old, *this, search_->policy);

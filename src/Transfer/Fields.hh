@@ -67,7 +67,7 @@ void validate_fields(const TetMesh& mesh, std::span<const FieldTransfer> fields)
 
 /// Brings fields of `now` up to date, of which operators have made `now` out of `old`. Values of vertices
 /// that have not moved, and of cells with the same vertices where they were, keep every bit. The same bits
-/// for any number of threads.
+/// for any number of threads. Throws InvalidInput where a field is inherited and the edits have no parents.
 std::vector<FieldReport> transfer_fields(const TetMesh& old, TetMesh& now, const Edits& edits,
                                          std::span<const FieldTransfer> fields, par::Policy policy);
 

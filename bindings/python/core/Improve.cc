@@ -51,13 +51,13 @@ Improved improve_copy(const Mesh& mesh, const OptionTexts& texts, nb::handle pro
   validate_fields(mesh.tets, fields.fields);
   Improved out;
   out.mesh.tets = mesh.tets;  // while nobody else runs, who could write its points
-  TetMesh old;
-  if (!fields.fields.empty()) old = mesh.tets;
+  std::shared_ptr<const TetMesh> old;
+  if (!fields.fields.empty()) old = std::make_shared<const TetMesh>(mesh.tets);
   nb::gil_scoped_release others_run;
   out.result = improve(out.mesh.tets, options);
   if (!fields.fields.empty()) {
     const Edits edits = make_edits(old, out.mesh.tets, out.result.maps, options.policy);
-    out.transferred = transfer_fields(old, out.mesh.tets, edits, fields.fields, options.policy);
+    out.transferred = transfer_fields(*old, out.mesh.tets, edits, fields.fields, options.policy);
   }
   return out;
 }
