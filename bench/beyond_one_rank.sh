@@ -32,7 +32,7 @@ fails() {
 
 fails "one rank" limited 1 "${grid[@]}" -o "$out/alone.vtu" --min-dihedral "$degrees"
 fails hfremesh bash -c "ulimit -v $((limit * 1000)); \"\$@\" && \"$tool\" \"$out/alone.vtu\" -o \"$out/alone.vtu\" \
-  --min-dihedral $degrees --polish-only --no-insert --threads 1" _ \
+  --min-dihedral $degrees --polish-only --threads 1" _ \
   "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.2 -o "$out/alone.vtu" --quiet
 rm -f "$out/alone.vtu"
 echo "--- $ranks ranks, $limit MB each: generate and write"
@@ -48,7 +48,7 @@ cmp "$out/good.vtu" "$out/again.vtu"
 if [ "${COMPARE:-0}" = 1 ]; then
   echo "--- hfremesh without a limit"
   "$tool" generate cavity --n "$cubes" "$cubes" "$cubes" --amplitude 0 --jitter 0.2 -o "$out/whole.vtu" --quiet
-  "$tool" "$out/whole.vtu" -o "$out/whole.vtu" --min-dihedral "$degrees" --polish-only --no-insert --threads 1 --quiet
+  "$tool" "$out/whole.vtu" -o "$out/whole.vtu" --min-dihedral "$degrees" --polish-only --threads 1 --quiet
   cmp "$out/whole.vtu" "$out/good.vtu"
   echo "beyond_one_rank: the same bytes"
 fi

@@ -34,6 +34,8 @@ struct PartsLine {
   double jitter = 0.2;
   double amplitude = 0;
   double min_dihedral = 0;
+  bool no_insert = false;
+  std::size_t min_cells = 0, max_cells = 0;
   std::uint64_t seed = 2013;
   int threads_each = 1;
   std::string partition = "coordinates";
@@ -42,7 +44,7 @@ struct PartsLine {
 void add_options(Command command, PartsLine& line) {
   command.example("mpirun -n 4 hfremesh-mpi parts --generate 150 150 150 -o bad.pvtu", "20 million cells");
   command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.pvtu --min-dihedral 15",
-                  "with the bits of hfremesh --polish-only --no-insert");
+                  "with the bits of hfremesh --polish-only");
   command.option("IN", line.input,
                  "What to read: .pvtu, an index of pieces, or .vtu, of which each rank reads a range");
   command
@@ -54,9 +56,16 @@ void add_options(Command command, PartsLine& line) {
       .option(
           "--min-dihedral", line.min_dihedral,
           "Goal for the smallest dihedral angle: the cells that miss it are worked on by edge removal, face "
-          "swaps, vertex collapse and smoothing")
+          "swaps, vertex collapse, smoothing and new vertices")
       .type_name("DEG")
       .check(real_number(0, 70.5, false));
+  command.flag("--no-insert", line.no_insert, "No new vertices");
+  command.option("--min-cells", line.min_cells, "No vertex is removed below N cells; 0: 81 % of the input's")
+      .type_name("N")
+      .check(whole_number());
+  command.option("--max-cells", line.max_cells, "No new vertices beyond N cells; 0: 119 % of the input's")
+      .type_name("N")
+      .check(whole_number());
   command.option("--threads-each", line.threads_each, "Threads of each rank")
       .type_name("N")
       .shows_default()
@@ -175,6 +184,9 @@ class PartsRun {
     ImproveOptions options;
     options.min_dihedral = line_.min_dihedral;
     options.polish_only = true;
+    if (line_.no_insert) options.ops = without(options.ops, Ops::kInsert);
+    options.min_cells = line_.min_cells;
+    options.max_cells = line_.max_cells;
     options.policy = policy();
     const mpi::PartsResult result = mpi::improve(mesh_, options);
     say_found("improved", result.after);

@@ -382,8 +382,9 @@ void DistributedMesh::gather(TetMesh* mesh, Workspace* work, Gather what, par::P
   }
 }
 
-/// The slots of the whole, and which of them are free.
+/// The slots of the whole, which of them are free, and the vertices that have come.
 void DistributedMesh::write_slots(TetMesh& mesh, Workspace& work) const {
+  while (mesh.n_vertices() < n_vertices_) mesh.add_vertex({});
   TetMesh::Writer writer(mesh);
   writer.resize_cells(n_slots_);
   work.grow(mesh);

@@ -63,8 +63,9 @@ class DistributedMesh {
     kEverything  ///< all cells and points, whatever stands there
   };
   /// Brings the parts together in the mesh and workspace of rank 0, which have the vertices, labels and
-  /// properties that were handed out. The mesh is then what the same passes make of it in shared memory:
-  /// points, slots, mates, incident cells, free list. All take part; the parts stay as they are.
+  /// properties that were handed out; vertices that have come since are added. The mesh is then what the same
+  /// passes make of it in shared memory: points, slots, mates, incident cells, free list. All take part; the
+  /// parts stay as they are.
   void gather(TetMesh* mesh, Workspace* work, Gather what, par::Policy policy = {});
 
   Comm& comm() const { return comm_; }
@@ -86,7 +87,7 @@ class DistributedMesh {
   CellHandle cell_at(std::uint64_t number) const;
   /// Slots and cells of the whole mesh.
   std::uint64_t n_slots() const { return n_slots_; }
-  /// Vertices of the whole when it was cut or assembled; some may be deleted.
+  /// Vertices of the whole, also those that are deleted.
   std::uint64_t n_vertices() const { return n_vertices_; }
   std::uint64_t n_cells() const { return n_slots_ - free_.size(); }
 
@@ -114,6 +115,8 @@ class DistributedMesh {
   /// Free slots of the whole, in the order of TetMesh::free_cells(): the same on all ranks.
   std::vector<std::uint64_t>& free_slots() { return free_; }
   std::uint64_t& n_slots() { return n_slots_; }
+  /// Vertices have been added to the whole; their numbers are the next ones.
+  void add_numbers(std::uint64_t n) { n_vertices_ += n; }
   /// The slot of that number, a new deleted one if need be.
   CellHandle slot_of(std::uint64_t number);
   /// near() and within_two() after what was noted, and zone() without what is not in it. O(zone), with the

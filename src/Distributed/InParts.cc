@@ -24,11 +24,16 @@ class Residents : public Ranks {
   explicit Residents(DistributedMesh& mesh) : mesh_(mesh), passes_(mesh, n_rounds_) {}
 
   bool keep_mesh() const override { return true; }
-  bool can_do(PassKind kind, Metric metric) const override { return PartPasses::can_do(kind, metric); }
+  bool can_do(PassKind kind, Metric metric) const override {
+    return PartPasses::can_do(kind == PassKind::kInsert ? PassKind::kEdge : kind, metric);
+  }
   bool can_take(const TetMesh&, const Workspace&) const override { return true; }
   std::size_t least_cells(std::size_t) const override { return 0; }
   void take(const TetMesh&, const Workspace&) override {}
   RoundCounts pass(const Look& look) override { return passes_.run(look); }
+  RoundCounts dig(const Dig& dig, std::vector<std::uint64_t>& waiting) override {
+    return passes_.dig(dig, waiting);
+  }
   Tally tally(double below) override { return passes_.tally(below); }
   std::size_t n_cells() const override { return static_cast<std::size_t>(mesh_.n_cells()); }
   void bring_back(TetMesh&, Workspace&) override {}

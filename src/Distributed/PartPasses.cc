@@ -6,6 +6,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "Distributed/PartInsertion.hh"
 #include "Distributed/PartRound.hh"
 #include "Distributed/PartSeeds.hh"
 #include "Distributed/PartSmoothing.hh"
@@ -58,16 +59,31 @@ RoundCounts PartPasses::run(const Ranks::Look& look) {
   return look.metric == Metric::kMinSine ? pass(look, MinSine2{}) : pass(look, MinDihedral{});
 }
 
+RoundCounts PartPasses::dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting) {
+  const Comm::InPhase phase(parts_.comm(), Phase::kEvaluate);
+  const RoundCounts counts = insert_in_parts(parts_, dig, listed(dig.look), waiting);
+  n_rounds_ += counts.rounds;
+  return counts;
+}
+
+/// Cells of the part that the pass has to look at.
+Worklist PartPasses::listed(const Ranks::Look& look) {
+  const TetMesh& part = parts_.part();
+  Workspace& work = parts_.work();
+  const par::Policy policy{look.threads};
+  return Worklist(part, policy, poor_.below(look.below, work, policy), [&](CellHandle c) {
+    const auto& v = part.cell(c).v;
+    return std::any_of(v.begin(), v.end(),
+                       [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
+  });
+}
+
 template <class M>
 RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
   const TetMesh& part = parts_.part();
   Workspace& work = parts_.work();
   const par::Policy policy{look.threads};
-  const Worklist list(part, policy, poor_.below(look.below, work, policy), [&](CellHandle c) {
-    const auto& v = part.cell(c).v;
-    return std::any_of(v.begin(), v.end(),
-                       [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
-  });
+  const Worklist list = listed(look);
   std::array<std::uint64_t, 2> listed = {list.cells().size(), 0};
   if (look.kind == PassKind::kEdge) listed[1] = n_own(list.cells());
   parts_.comm().sum(listed);

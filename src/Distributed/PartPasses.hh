@@ -3,11 +3,13 @@
 #define HFR_DISTRIBUTED_PART_PASSES_HH
 
 #include <cstdint>
+#include <vector>
 
 #include "Distributed/DistributedMesh.hh"
 #include "Remesh/PassState.hh"
 #include "Remesh/Ranks.hh"
 #include "Scheduler/PoorCells.hh"
+#include "Scheduler/Seeds.hh"
 
 namespace hfr::mpi {
 
@@ -19,10 +21,13 @@ class PartPasses {
 
   static bool can_do(PassKind kind, Metric metric);
   RoundCounts run(const Ranks::Look& look);
+  /// A round of insertion, on rank 0: see PartInsertion.
+  RoundCounts dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting);
   /// Of all cells of the whole.
   Ranks::Tally tally(double below);
 
  private:
+  Worklist listed(const Ranks::Look& look);
   template <class M>
   RoundCounts pass(const Ranks::Look& look, const M& metric);
   template <class Op>

@@ -330,8 +330,12 @@ void PartRound::finish(std::span<const Commit> commits) {
   // knows whom its own are near to now.
   const Outcome first = exchange(changed_cells(commits), commits, is_touched);
   is_touched = is_touched || first.has_come;
-  if (is_touched) mesh_.update_zone();
   if (!first.is_any_touched) return;  // nowhere
+  bring_near(is_touched, commits);
+}
+
+void PartRound::bring_near(bool is_touched, std::span<const Commit> commits) {
+  if (is_touched) mesh_.update_zone();
   const bool has_come =
       exchange(is_touched ? new_cells() : std::vector<Push>(comm_.n_ranks()), commits, false).has_come;
   if (has_come) mesh_.update_zone();

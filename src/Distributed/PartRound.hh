@@ -36,6 +36,9 @@ class PartRound : public RoundPlace {
   Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;
+  /// After cells have come and gone here by DistributedMesh::apply(): brings what is near to others' vertices
+  /// now to whom it is, and drops what no longer is. All ranks take part.
+  void bring_near(bool is_touched, std::span<const Commit> commits = {});
 
  private:
   enum class State : std::uint8_t { kUndecided, kWon, kLost };

@@ -38,19 +38,23 @@ template <class Metric, class IsCut = NoneIsCut>
 class Digger {
  public:
   Digger(const TetMesh& mesh, const Metric& metric, std::span<const double> quality, std::size_t max_cells,
-         IsCut is_cut = {})
+         IsCut is_cut = {}, const CutRim* rim = nullptr)
       : mesh_(mesh),
         metric_(metric),
         quality_(quality),
         max_cells_(std::min(max_cells, Growth::kMaxCells)),
-        is_cut_(is_cut) {}
+        is_cut_(is_cut),
+        rim_(rim) {}
 
   /// The best cavity on the way of digging behind the worst outer face until that is not possible.
   /// site.new_worst is not positive unless all its cells are.
   Site dig(GrownCells cells, Vec3 place) const {
     Site best;
     double old_worst = std::numeric_limits<double>::infinity();
-    for (CellHandle c : cells.cells()) old_worst = std::min(old_worst, quality_[c.idx()]);
+    for (CellHandle c : cells.cells()) {
+      old_worst = std::min(old_worst, quality_[c.idx()]);
+      if (rim_) rim_->look(cells, c);
+    }
     std::size_t n_valued = 0;
     for (std::size_t idle = 0; idle < kPatience; ++idle) {
       for (std::size_t i = n_valued; i < cells.outer().size(); ++i)
@@ -62,7 +66,9 @@ class Digger {
       }
       if (cells.cells().size() >= max_cells_ || !worst_face.is_valid() || !cells.grow(worst_face)) break;
       n_valued = cells.n_kept();
-      old_worst = std::min(old_worst, quality_[cells.cells()[cells.cells().size() - 1].idx()]);
+      const CellHandle taken = cells.cells()[cells.cells().size() - 1];
+      old_worst = std::min(old_worst, quality_[taken.idx()]);
+      if (rim_) rim_->look(cells, taken);
     }
     return best;
   }
@@ -107,6 +113,7 @@ class Digger {
   std::span<const double> quality_;
   std::size_t max_cells_;
   IsCut is_cut_;
+  const CutRim* rim_;
 };
 
 /// Fills the cavity that a growth makes with cells on a new vertex at `place`.

@@ -6,9 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Cavity.hh"
+#include "Parallel/Atomic.hh"
 #include "Quality/Lowest.hh"
 
 namespace hfr {
@@ -147,6 +149,19 @@ class GrownCells {
   FixedVector<HalfFaceHandle, kMaxFaces> outer_;
   FixedVector<double, kMaxFaces + kLowestBlock> values_;  // with room for least() to fill up
   std::size_t n_kept_ = 0;
+};
+
+/// Of a mesh that is cut out of a larger one: which cells lack a neighbour for that. What grows is right
+/// until it takes one of these in; that it has is noted here.
+struct CutRim {
+  std::vector<std::uint8_t> is_rim;  ///< by cell
+  /// By cell: 1 where something that grew from there has come to the rim. Written from several threads.
+  mutable std::vector<std::uint8_t> has_met;
+
+  void look(const GrownCells& cells, CellHandle taken) const {
+    if (is_rim[taken.idx()] == 0) return;
+    par::atomic(has_met[cells.growth().first.idx()]).store(1, std::memory_order_relaxed);
+  }
 };
 
 namespace detail {

@@ -55,7 +55,8 @@ struct VertexInsertion {
   /// Where there is one, the cavity is dug from the seed's cell for a vertex at this place, which stays
   /// there; max_sites, least_promise, poor_below and only_site do not matter then.
   std::optional<Vec3> only_place = std::nullopt;
-  std::size_t max_cells = 48;  ///< of the cavity, at most Growth::kMaxCells
+  std::size_t max_cells = 48;   ///< of the cavity, at most Growth::kMaxCells
+  const CutRim* rim = nullptr;  ///< where the mesh is cut out of a larger one
 
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;

@@ -84,6 +84,7 @@ template <class Metric>
 void PassRunner<Metric>::look_again() {
   PassState::look_again();
   waiting_.clear();
+  if (ranks_) ranks_->forget_waiting();
   surface_.look_again();
 }
 
@@ -123,16 +124,14 @@ std::size_t PassRunner<Metric>::pass(PassKind kind, const Turn& turn) {
 template <class Metric>
 std::size_t PassRunner<Metric>::insert(const Turn& turn, double gain) {
   if (!has(effort().ops, Ops::kInsert)) return 0;
-  if (run().is_part()) {
-    run().ranks->leave_out(PassKind::kInsert);
-    return 0;
-  }
   this->to_host();
   if (gain != insert_gain_) {  // what has been refused may now do
     insert_gain_ = gain;
     look_again_for(PassKind::kInsert);
     waiting_.clear();
+    if (ranks_) ranks_->forget_waiting();
   }
+  if (ranks_ && run().is_part()) return ranks_->insert(row(PassKind::kInsert).name, turn, gain);
   return insert_pass(turn);
 }
 

@@ -67,6 +67,46 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
   return total.winners;
 }
 
+std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) {
+  Run& run = state_.run_;
+  if (!takes(PassKind::kInsert, turn)) {
+    run.ranks->leave_out(PassKind::kInsert);
+    return 0;
+  }
+  if (!run.has_room()) {
+    run.findings.note_cell_bound(run.bounds);
+    return 0;
+  }
+  const double start = run.control.seconds();
+  const PassEffort& effort = run.strategy.pass;
+  Ranks::Dig dig{{PassKind::kInsert, metric_, turn.focus.below, 0, effort.seed, 0, 0, run.policy().threads},
+                 gain,
+                 effort.few_seeds,
+                 effort.sites_of_many,
+                 effort.promise_of_many};
+  RoundCounts total;
+  std::size_t first = 0;
+  for (int r = 0; r < effort.insert_rounds && !run.control.stopped(); ++r) {
+    dig.look.since =
+        std::exchange(state_.looked_[static_cast<std::size_t>(PassKind::kInsert)], run.work.clock);
+    dig.look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
+    dig.look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
+    const RoundCounts counts = run.ranks->dig(dig, waiting_);
+    if (counts.rounds == 0) break;
+    if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
+    total += counts;
+    if (r == 0) first = counts.winners;
+    if (counts.winners < counts.held_back) break;  // the room is used up
+    if (counts.seeds > effort.few_seeds && counts.winners < counts.seeds / turn.seeds_of_vertex) break;
+    if (counts.winners * effort.little <= first && waiting_.empty()) break;
+  }
+  const Ranks::Tally tally = run.ranks->tally(turn.focus.below);
+  state_.n_invalid_ = tally.n_invalid;
+  state_.worst_ = tally.worst;
+  state_.report(name, turn, total, run.control.seconds() - start);
+  return total.winners;
+}
+
 void RankPasses::bring_back() {
   Run& run = state_.run_;
   if (run.is_part() || !std::exchange(is_resident_, false)) return;

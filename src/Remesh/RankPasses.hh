@@ -2,7 +2,9 @@
 #ifndef HFR_REMESH_RANK_PASSES_HH
 #define HFR_REMESH_RANK_PASSES_HH
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "Remesh/PassState.hh"
 #include "Remesh/Ranks.hh"
@@ -23,6 +25,9 @@ class RankPasses {
   /// Changes that a pass has committed; nothing where it does not run there: then the mesh is here. 0 where
   /// it is left out; see Ranks::keep_mesh().
   std::optional<std::size_t> run(PassKind kind, const char* name, const Turn& turn);
+  /// The same for insertion where the ranks keep the mesh: rounds as PassRunner has them.
+  std::size_t insert(const char* name, const Turn& turn, double gain);
+  void forget_waiting() { waiting_.clear(); }
   bool is_resident() const { return is_resident_; }
   void bring_back();
   std::size_t n_below(double value) { return state_.run_.ranks->tally(value).n_below; }
@@ -33,7 +38,8 @@ class RankPasses {
   PassState& state_;
   Metric metric_;
   bool is_resident_ = false;
-  int n_exceptions_;  // when this was made
+  std::vector<std::uint64_t> waiting_;  // numbers of cells, for their turn in insert()
+  int n_exceptions_;                    // when this was made
 };
 
 }  // namespace hfr

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
@@ -33,6 +34,14 @@ class Ranks {
     /// PassEffort::first_edge_does.
     std::uint64_t first_edge_beyond = std::numeric_limits<std::uint64_t>::max();
   };
+  /// One round of insertion over such cells and those that wait from the round before.
+  struct Dig {
+    Look look;
+    double gain = 1;  ///< VertexInsertion::gain; its poor_below is look.below
+    /// With more cells than `many`, these hold in place of VertexInsertion's own.
+    std::uint64_t many = 0, sites_of_many = 0;
+    double promise_of_many = 0;
+  };
   struct Tally {
     std::size_t n_invalid = 0, n_below = 0;
     double worst = 0;
@@ -52,6 +61,12 @@ class Ranks {
   virtual void take(const TetMesh& mesh, const Workspace& work) = 0;
   /// counts.rounds is 0 where there is nothing to look at.
   virtual RoundCounts pass(const Look& look) = 0;
+  /// Where keep_mesh(). `waiting`: numbers of cells that are near chosen ones, for the round after; the same
+  /// on all ranks. counts.rounds is 0 where there is nothing to look at.
+  virtual RoundCounts dig(const Dig&, std::vector<std::uint64_t>& waiting) {
+    waiting.clear();
+    return {};
+  }
   /// Of all cells.
   virtual Tally tally(double below) = 0;
   virtual std::size_t n_cells() const = 0;

@@ -43,6 +43,17 @@ SeedAddress address_of(const Seed& seed) {
   return {seed.cell, {}, seed.edge};
 }
 
+/// Seeds that grow from a cell, as those of VertexInsertion: likewise.
+template <class Seed>
+concept GrowsFromCell = std::constructible_from<Seed, CellHandle> && requires(const Seed& seed) {
+  { seed.cell } -> std::convertible_to<CellHandle>;
+  seed.growth;
+};
+template <GrowsFromCell Seed>
+SeedAddress address_of(const Seed& seed) {
+  return {seed.cell, {}, 0};
+}
+
 template <class Seed>
 concept HasAddress = requires(const Seed& seed) {
   { address_of(seed) } -> std::same_as<SeedAddress>;
@@ -59,6 +70,8 @@ Seed seed_at(const SeedAddress& at) {
     return halfface_of(at.cell, static_cast<int>(at.place));
   else if constexpr (IsCellAndEdge<Seed>)
     return Seed{at.cell, static_cast<std::uint8_t>(at.place)};
+  else if constexpr (GrowsFromCell<Seed>)
+    return Seed(at.cell);
   else
     return Seed(halfface_of(at.cell, static_cast<int>(at.place)));
 }

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/Cutout.hh"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "Distributed/Buffer.hh"
+#include "HalfFace/Writer.hh"
+
+namespace hfr::mpi {
+namespace {
+
+using VertexRecord = DistributedMesh::VertexRecord;
+using CellRecord = DistributedMesh::CellRecord;
+
+/// Marks the own vertices of each rank that few enough edges lead to from some cells. Each step goes one edge
+/// further; what it comes to of other ranks is told to them.
+class Spread {
+ public:
+  explicit Spread(const DistributedMesh& parts) : parts_(parts), to_(parts.comm().n_ranks()) {}
+
+  void begin(CellHandle c, std::uint8_t depth) {
+    for (VertexHandle v : parts_.part().cell(c).v) reach(v, depth);
+  }
+  void run() {
+    for (bool is_done = false; !is_done;) {
+      const Comm::Exchanged came = parts_.comm().exchange(to_, next_.size());
+      to_.assign(parts_.comm().n_ranks(), {});
+      for (const Comm::Message& message : came.messages)
+        for (Unpacker in(message.bytes); !in.at_end();) {
+          const auto told = in.get<Told>();
+          reach(parts_.vertex_at(told.number), told.left);
+        }
+      is_done = came.sum + came.n_messages == 0;
+      for (VertexHandle v : std::exchange(next_, {})) go_on_from(v);
+    }
+  }
+  /// Ascending.
+  std::vector<VertexHandle> own() const {
+    std::vector<VertexHandle> vertices;
+    for (const auto& [v, left] : left_)
+      if (parts_.is_own(VertexHandle(v))) vertices.push_back(VertexHandle(v));
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+  }
+
+ private:
+  struct Told {
+    std::uint64_t number = 0;
+    std::uint8_t left = 0;
+  };
+
+  void reach(VertexHandle v, std::uint8_t left) {
+    const auto [at, is_first] = left_.emplace(v.idx(), left);
+    if (!is_first && at->second >= left) return;
+    at->second = left;
+    if (parts_.is_own(v))
+      next_.push_back(v);
+    else
+      to_[static_cast<std::size_t>(parts_.owner(v))].put(Told{parts_.number(v), left});
+  }
+  void go_on_from(VertexHandle v) {
+    const std::uint8_t left = left_.at(v.idx());
+    if (left == 0) return;
+    for (CellHandle c : parts_.part().vertex_cells(v))
+      for (VertexHandle u : parts_.part().cell(c).v) reach(u, static_cast<std::uint8_t>(left - 1));
+  }
+
+  const DistributedMesh& parts_;
+  std::unordered_map<Index, std::uint8_t> left_;  // edges to go, by vertex
+  std::vector<VertexHandle> next_;                // own ones to go on from
+  std::vector<Packer> to_;
+};
+
+template <class Record>
+void sort_by_number(std::vector<Record>& records) {
+  std::sort(records.begin(), records.end(), [](const Record& a, const Record& b) {
+    if constexpr (requires { a.of_owner; })
+      return a.number != b.number ? a.number < b.number : a.of_owner > b.of_owner;
+    else
+      return a.number < b.number;
+  });
+  records.erase(std::unique(records.begin(), records.end(),
+                            [](const Record& a, const Record& b) { return a.number == b.number; }),
+                records.end());
+}
+
+}  // namespace
+
+Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cells,
+               std::span<const std::uint8_t> depth) {
+  const TetMesh& part = parts.part();
+  Comm& comm = parts.comm();
+  Spread spread(parts);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const CellHandle c = parts.cell_at(cells[i]);
+    if (c.is_valid() && !part.is_deleted(c) && parts.is_own(c)) spread.begin(c, depth[i]);
+  }
+  spread.run();
+  std::vector<std::uint64_t> taken;
+  std::vector<CellHandle> mine;
+  for (VertexHandle v : spread.own()) {
+    taken.push_back(parts.number(v));
+    for (CellHandle c : part.vertex_cells(v)) mine.push_back(c);
+  }
+  std::sort(mine.begin(), mine.end());
+  mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
+  std::vector<CellRecord> cell_records;
+  std::vector<VertexHandle> corners;
+  for (CellHandle c : mine) {
+    cell_records.push_back(parts.record(c));
+    corners.insert(corners.end(), part.cell(c).v.begin(), part.cell(c).v.end());
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  for (VertexHandle v : corners) vertices_.push_back(parts.record(v));
+  std::vector<Packer> to(comm.n_ranks());
+  if (comm.rank() != 0) {
+    to[0].put_all(taken);
+    to[0].put_all(vertices_);
+    to[0].put_all(cell_records);
+  }
+  const std::vector<Comm::Message> came = comm.exchange(to);
+  if (comm.rank() != 0) {
+    vertices_.clear();
+    return;
+  }
+  for (const Comm::Message& message : came) {
+    Unpacker in(message.bytes);
+    const auto append = [&]<class T>(std::vector<T>& list) {
+      const std::vector<T> theirs = in.get_all<T>();
+      list.insert(list.end(), theirs.begin(), theirs.end());
+    };
+    append(taken);
+    append(vertices_);
+    append(cell_records);
+  }
+  std::sort(taken.begin(), taken.end());
+  sort_by_number(vertices_);
+  sort_by_number(cell_records);
+  work_.clock = parts.work().clock;
+  work_.floor = parts.work().floor;
+  work_.holds_damage = parts.work().holds_damage;
+  first_new_ = parts.n_vertices();
+  build(std::move(cell_records), taken);
+}
+
+/// `taken`: numbers of vertices, ascending.
+void Cutout::build(std::vector<CellRecord> cells, const std::vector<std::uint64_t>& taken) {
+  TetMesh::Writer writer(mesh_);
+  mesh_.reserve_vertices(vertices_.size());
+  std::vector<std::uint8_t> is_taken;
+  for (const VertexRecord& r : vertices_) {
+    mesh_.add_vertex(r.point);
+    work_.star_size.push_back(r.star_size);
+    work_.changed.push_back(r.changed);
+    work_.frozen.push_back(r.frozen);
+    is_taken.push_back(std::binary_search(taken.begin(), taken.end(), r.number) ? 1 : 0);
+  }
+  n_sorted_ = cells.size();
+  writer.resize_cells(n_sorted_);
+  work_.claim.assign(n_sorted_, kUnclaimed);
+  rim_.is_rim.assign(n_sorted_, 0);
+  rim_.has_met.assign(n_sorted_, 0);
+  for (std::size_t i = 0; i < n_sorted_; ++i) {
+    const CellRecord& r = cells[i];
+    const CellHandle c(i);
+    cell_number_.push_back(r.number);
+    work_.quality.push_back(r.quality);
+    work_.pending.push_back(r.pending);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), r.v[k],
+                                       [](const VertexRecord& v, std::uint64_t n) { return v.number < n; });
+      const VertexHandle v(at - vertices_.begin());
+      writer.cell(c).v[k] = v;
+      writer.cell(c).mate[k] = HalfFaceHandle();
+      if (!is_taken[v.idx()]) rim_.is_rim[i] = 1;
+      if (!mesh_.incident_cell(v).is_valid() || at->incident == r.number) writer.set_incident_cell(v, c);
+    }
+    mesh_.set_region(c, r.region);
+  }
+  match_faces();
+}
+
+void Cutout::match_faces() {
+  using Face = std::pair<std::array<VertexHandle, 3>, HalfFaceHandle>;
+  std::vector<Face> faces;
+  faces.reserve(4 * n_sorted_);
+  for (std::size_t i = 0; i < n_sorted_; ++i)
+    for (HalfFaceHandle h : mesh_.cell_halffaces(CellHandle(i))) {
+      std::array<VertexHandle, 3> key = mesh_.halfface_vertices(h);
+      std::sort(key.begin(), key.end());
+      faces.emplace_back(key, h);
+    }
+  std::sort(faces.begin(), faces.end());
+  TetMesh::Writer writer(mesh_);
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    if (faces[i].first != faces[i - 1].first) continue;
+    writer.set_mate(faces[i].second, faces[i - 1].second);
+    writer.set_mate(faces[i - 1].second, faces[i].second);
+  }
+}
+
+CellHandle Cutout::cell_at(std::uint64_t number) const {
+  const auto end = cell_number_.begin() + static_cast<std::ptrdiff_t>(n_sorted_);
+  const auto at = std::lower_bound(cell_number_.begin(), end, number);
+  return at != end && *at == number ? CellHandle(at - cell_number_.begin()) : CellHandle();
+}
+
+CellHandle Cutout::add_slot(std::uint64_t number) {
+  const CellHandle c(cell_number_.size());
+  TetMesh::Writer(mesh_).resize_cells(cell_number_.size() + 1);
+  work_.grow(mesh_);
+  work_.quality[c.idx()] = std::numeric_limits<double>::infinity();
+  cell_number_.push_back(number);
+  return c;
+}
+
+VertexRecord Cutout::record(VertexHandle v) const {
+  VertexRecord r;
+  if (v.idx() < vertices_.size()) r = vertices_[v.idx()];
+  r.number = number(v);
+  r.incident = number(mesh_.incident_cell(v));
+  r.point = mesh_.point(v);
+  r.star_size = work_.star_size[v.idx()];
+  r.changed = work_.changed[v.idx()];
+  r.frozen = work_.frozen[v.idx()];
+  r.of_owner = 1;
+  return r;
+}
+
+CellRecord Cutout::record(CellHandle c) const {
+  CellRecord r;
+  r.number = number(c);
+  const Cell& cell = mesh_.cell(c);
+  for (std::size_t k = 0; k < 4; ++k) {
+    r.v[k] = number(cell.v[k]);
+    const HalfFaceHandle m = cell.mate[k];
+    r.mate[k] = m.is_valid() ? 4 * number(cell_of(m)) + static_cast<std::uint64_t>(corner_of(m)) : kNoNumber;
+  }
+  r.quality = work_.quality[c.idx()];
+  r.region = mesh_.region(c);
+  r.pending = work_.pending[c.idx()];
+  return r;
+}
+
+}  // namespace hfr::mpi

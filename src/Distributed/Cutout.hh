@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_CUTOUT_HH
+#define HFR_DISTRIBUTED_CUTOUT_HH
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Operators/GrownCells.hh"
+
+namespace hfr::mpi {
+
+/// The surroundings of some cells, brought together on rank 0 as a mesh of their own, for work that reaches
+/// further than what each part holds. Vertices and cells stand in the order of their numbers in the whole.
+class Cutout {
+ public:
+  /// `cells`: numbers, ascending, the same on all ranks; `depth`, of each of them, at least 1: vertices are
+  /// taken that so many edges lead to, and all cells that have one of these. All take part; elsewhere than on
+  /// rank 0 nothing is there afterwards. A cell of it whose vertices are all such has all its neighbours;
+  /// others are its rim.
+  Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cells,
+         std::span<const std::uint8_t> depth);
+
+  TetMesh& mesh() { return mesh_; }
+  Workspace& work() { return work_; }
+  const CutRim& rim() const { return rim_; }
+
+  std::uint64_t number(VertexHandle v) const {
+    return v.idx() < vertices_.size() ? vertices_[v.idx()].number : first_new_ + (v.idx() - vertices_.size());
+  }
+  std::uint64_t number(CellHandle c) const { return cell_number_[c.idx()]; }
+  CellHandle cell_at(std::uint64_t number) const;
+  /// A new deleted slot, with that number.
+  CellHandle add_slot(std::uint64_t number);
+  /// What the whole is to be told of them.
+  DistributedMesh::VertexRecord record(VertexHandle v) const;
+  DistributedMesh::CellRecord record(CellHandle c) const;
+
+ private:
+  void build(std::vector<DistributedMesh::CellRecord> cells, const std::vector<std::uint64_t>& taken);
+  void match_faces();
+
+  TetMesh mesh_;
+  Workspace work_;
+  CutRim rim_;
+  std::vector<DistributedMesh::VertexRecord> vertices_;  // as they were
+  std::vector<std::uint64_t> cell_number_;               // by slot; the first n_sorted_ ascend
+  std::size_t n_sorted_ = 0;
+  std::uint64_t first_new_ = 0;  // number of the first vertex that is added
+};
+
+}  // namespace hfr::mpi
+
+#endif

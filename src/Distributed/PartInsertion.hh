@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_PART_INSERTION_HH
+#define HFR_DISTRIBUTED_PART_INSERTION_HH
+
+#include <cstdint>
+#include <vector>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Remesh/Ranks.hh"
+#include "Scheduler/Seeds.hh"
+
+namespace hfr::mpi {
+
+/// A round of VertexInsertion over a mesh in parts, with the bits that it has in shared memory. What the
+/// cells that get a vertex now have round them comes together on rank 0 (see Cutout), which evaluates,
+/// selects and commits; where a cavity comes to the rim, again with more layers. What has changed goes to all
+/// ranks, and each takes what lies near its own vertices. A new vertex belongs to the owner of the vertex
+/// with the smallest number among its neighbours.
+///
+/// `list`: cells of this part that are to be looked at. `waiting`: numbers of cells that share a vertex with
+/// a worse one, for the round after, ascending; those of the round before count as listed. All take part.
+RoundCounts insert_in_parts(DistributedMesh& parts, const Ranks::Dig& dig, const Worklist& list,
+                            std::vector<std::uint64_t>& waiting);
+
+}  // namespace hfr::mpi
+
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/Cutout.hh"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "Distributed/InParts.hh"
+#include "Distributed/Parts.hh"
+#include "HalfFace/Generate.hh"
+#include "Operators/VertexInsertion.hh"
+
+namespace hfr::test {
+namespace {
+
+struct Sides {
+  mpi::DistributedMesh parts;
+  Whole whole;
+
+  explicit Sides(mpi::Comm& comm) : parts(comm), whole(TetMesh(), MinSine2{}) {
+    mpi::GridOptions options;
+    options.cavity.counts = {7, 6, 8};
+    options.cavity.jitter = 0.3;
+    options.cavity.amplitude = 0;
+    mpi::generate_in_parts(parts, options);
+    parts.work().set_qualities(parts.part(), MinSine2{}, {});
+    const generate::Arrays arrays = generate::cavity(options.cavity);
+    whole = Whole(build(arrays.points, arrays.cells), MinSine2{});
+  }
+};
+
+/// Cells with a vertex that so many edges lead to from a cell.
+std::set<std::uint64_t> cells_round(const TetMesh& mesh, CellHandle first, int depth) {
+  std::set<VertexHandle> vertices(mesh.cell(first).v.begin(), mesh.cell(first).v.end());
+  for (int i = 0; i < depth; ++i) {
+    const std::set<VertexHandle> before = vertices;
+    for (VertexHandle v : before)
+      for (CellHandle c : mesh.vertex_cells(v)) vertices.insert(mesh.cell(c).v.begin(), mesh.cell(c).v.end());
+  }
+  std::set<std::uint64_t> cells;
+  for (VertexHandle v : vertices)
+    for (CellHandle c : mesh.vertex_cells(v)) cells.insert(c.idx());
+  return cells;
+}
+
+TEST(Cutout, HasTheLayersAskedForRoundACell) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  Sides sides(comm);
+  for (const std::uint8_t depth : {1, 2, 4})
+    for (std::uint64_t i = 0; i < sides.whole.mesh.n_cells(); i += 97) {
+      mpi::Cutout cutout(sides.parts, std::span(&i, 1), std::span(&depth, 1));
+      if (comm.rank() != 0) continue;
+      std::set<std::uint64_t> found;
+      const TetMesh& mesh = cutout.mesh();
+      for (CellHandle c : mesh.cells()) {
+        found.insert(cutout.number(c));
+        const CellHandle there(cutout.number(c));
+        for (std::size_t k = 0; k < 4; ++k) {
+          ASSERT_EQ(cutout.number(mesh.cell(c).v[k]), sides.whole.mesh.cell(there).v[k].idx());
+          const HalfFaceHandle mine = mesh.cell(c).mate[k], theirs = sides.whole.mesh.cell(there).mate[k];
+          if (cutout.rim().is_rim[c.idx()] != 0 && !mine.is_valid()) continue;
+          ASSERT_EQ(mine.is_valid(), theirs.is_valid());
+          if (mine.is_valid()) {
+            ASSERT_EQ(cutout.number(cell_of(mine)), cell_of(theirs).idx());
+            ASSERT_EQ(corner_of(mine), corner_of(theirs));
+          }
+        }
+        ASSERT_EQ(cutout.work().quality[c.idx()], sides.whole.work.quality[there.idx()]);
+      }
+      EXPECT_EQ(found, cells_round(sides.whole.mesh, CellHandle(i), depth));
+    }
+}
+
+/// Whatever does not come to the rim is what it is in the whole; with enough layers nothing does.
+TEST(Cutout, InsertionThatStaysOffTheRimIsThatOfTheWhole) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  Sides sides(comm);
+  std::array<int, 5> n_met{}, n_same{};
+  for (const std::uint8_t depth : {1, 2, 3, 4})
+    for (std::uint64_t i = 0; i < sides.whole.mesh.n_cells(); i += 41) {
+      mpi::Cutout cutout(sides.parts, std::span(&i, 1), std::span(&depth, 1));
+      if (comm.rank() != 0) continue;
+      using Op = VertexInsertion<MinSine2>;
+      Op here{MinSine2{}, cutout.work().quality};
+      here.rim = &cutout.rim();
+      const auto found = here.evaluate(cutout.mesh(), Op::Seed(cutout.cell_at(i)));
+      if (cutout.rim().has_met[cutout.cell_at(i).idx()] != 0) {
+        ++n_met[depth];
+        continue;
+      }
+      const Op there{MinSine2{}, sides.whole.work.quality};
+      const auto expected = there.evaluate(sides.whole.mesh, Op::Seed(CellHandle(i)));
+      ASSERT_EQ(found.has_value(), expected.has_value());
+      if (!found) continue;
+      ++n_same[depth];
+      EXPECT_EQ(found->place, expected->place);
+      EXPECT_EQ(found->new_worst, expected->new_worst);
+      Scope mine, theirs;
+      here.scope(cutout.mesh(), found->seed, mine);
+      there.scope(sides.whole.mesh, expected->seed, theirs);
+      ASSERT_EQ(mine.size(), theirs.size());
+      for (std::size_t k = 0; k < mine.size(); ++k) EXPECT_EQ(cutout.number(mine[k]), theirs[k].idx());
+    }
+  if (comm.rank() != 0) return;
+  EXPECT_GT(n_met[1], 0);
+  EXPECT_GT(n_met[1], n_met[2]);
+  EXPECT_GE(n_met[2], n_met[3]);
+  EXPECT_EQ(n_met[4], 0);
+  EXPECT_GT(n_same[2], 10);
+  EXPECT_GT(n_same[4], 10);
+}
+
+}  // namespace
+}  // namespace hfr::test
