@@ -18,8 +18,7 @@
 namespace hfr::mpi {
 namespace {
 
-constexpr std::uint8_t kFirstDepth = 3;  // layers; most cavities stay within two
-constexpr std::uint8_t kDeeper = 3;      // more of them round a cell whose cavity has come to the rim
+constexpr std::uint8_t kDeeper = 2;  // more layers round a cell whose cavity has come to the rim
 
 /// A cell below the goal, as rank 0 sees it.
 struct Poor {
@@ -263,8 +262,9 @@ RoundCounts follow(DistributedMesh& parts, Unpacker& in) {
 }
 
 template <class M>
-RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& turns, const M& metric) {
-  std::vector<std::uint8_t> depth(turns.now.size(), kFirstDepth);
+RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& turns,
+                   std::uint8_t first_depth, const M& metric) {
+  std::vector<std::uint8_t> depth(turns.now.size(), first_depth);
   for (;;) {
     Packer said;
     {
@@ -284,14 +284,14 @@ RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& t
 }  // namespace
 
 RoundCounts insert_in_parts(DistributedMesh& parts, const Ranks::Dig& dig, const Worklist& list,
-                            std::vector<std::uint64_t>& waiting) {
+                            std::vector<std::uint64_t>& waiting, std::uint8_t depth) {
   const auto n_own = static_cast<std::uint64_t>(
       std::ranges::count_if(list.cells(), [&](Index c) { return parts.is_own(CellHandle(c)); }));
   if (parts.comm().sum(n_own) == 0 && waiting.empty()) return {};
   Turns turns = take_turns(parts.comm(), gather_poor(parts, dig.look.below, list, waiting));
   waiting = turns.waiting;
-  return dig.look.metric == Metric::kMinSine ? insert(parts, dig, turns, MinSine2{})
-                                             : insert(parts, dig, turns, MinDihedral{});
+  return dig.look.metric == Metric::kMinSine ? insert(parts, dig, turns, depth, MinSine2{})
+                                             : insert(parts, dig, turns, depth, MinDihedral{});
 }
 
 }  // namespace hfr::mpi

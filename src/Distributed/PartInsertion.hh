@@ -18,9 +18,10 @@ namespace hfr::mpi {
 /// with the smallest number among its neighbours.
 ///
 /// `list`: cells of this part that are to be looked at. `waiting`: numbers of cells that share a vertex with
-/// a worse one, for the round after, ascending; those of the round before count as listed. All take part.
+/// a worse one, for the round after, ascending; those of the round before count as listed. `depth`: layers
+/// that are tried first, at least 1; the result does not depend on it. All take part.
 RoundCounts insert_in_parts(DistributedMesh& parts, const Ranks::Dig& dig, const Worklist& list,
-                            std::vector<std::uint64_t>& waiting);
+                            std::vector<std::uint64_t>& waiting, std::uint8_t depth = 2);
 
 }  // namespace hfr::mpi
 

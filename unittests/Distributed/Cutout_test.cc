@@ -3,12 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <optional>
 #include <set>
 
 #include "Distributed/InParts.hh"
+#include "Distributed/PartInsertion.hh"
 #include "Distributed/Parts.hh"
+#include "HalfFace/Check.hh"
 #include "HalfFace/Generate.hh"
 #include "Operators/VertexInsertion.hh"
+#include "Remesh/PassState.hh"
 
 namespace hfr::test {
 namespace {
@@ -108,6 +113,34 @@ TEST(Cutout, InsertionThatStaysOffTheRimIsThatOfTheWhole) {
   EXPECT_EQ(n_met[4], 0);
   EXPECT_GT(n_same[2], 10);
   EXPECT_GT(n_same[4], 10);
+}
+
+TEST(Cutout, InsertionIsTheSameHoweverManyLayersAreTriedFirst) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  std::optional<Whole> expected;
+  for (const std::uint8_t depth : {6, 1, 2}) {
+    Sides sides(comm);
+    std::vector<Index> all(sides.parts.part().n_cells());
+    std::iota(all.begin(), all.end(), Index{0});
+    const double below = dihedral_decision(14);
+    const Ranks::Dig dig{{PassKind::kInsert, Metric::kMinSine, below, 0, 1, kNoLimit, kNoLimit}, 1, kNoLimit};
+    std::vector<std::uint64_t> waiting;
+    std::size_t n_winners = 0;
+    for (int i = 0; i < 3; ++i) {
+      const Worklist list(sides.parts.part(), {}, std::span<const Index>(all), [&](CellHandle c) {
+        return i == 0 && !sides.parts.part().is_deleted(c) && sides.parts.work().quality[c.idx()] < below;
+      });
+      n_winners += mpi::insert_in_parts(sides.parts, dig, list, waiting, depth).winners;
+    }
+    EXPECT_GT(n_winners, 20U);
+    gather_from_nothing(sides.parts, sides.whole);
+    if (comm.rank() != 0) continue;
+    EXPECT_EQ(check(sides.whole.mesh), Ok);
+    if (expected)
+      expect_same(*expected, sides.whole);
+    else
+      expected = std::move(sides.whole);
+  }
 }
 
 }  // namespace

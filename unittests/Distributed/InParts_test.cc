@@ -252,6 +252,30 @@ std::vector<Inserting> inserting() {
   return all;
 }
 
+/// Of the vertices within two edges of own ones all cells are there, and no others are.
+void expect_two_layers(const mpi::DistributedMesh& parts) {
+  const TetMesh& part = parts.part();
+  std::vector<int> edges(part.n_vertices(), 3);  // from an own vertex
+  for (std::size_t v = 0; v < edges.size(); ++v)
+    if (parts.is_own(V(v))) edges[v] = 0;
+  std::vector<std::uint32_t> n_cells(part.n_vertices(), 0);
+  for (const int step : {1, 2, 3})
+    for (CellHandle c : part.cells()) {
+      int least = 3;
+      for (VertexHandle v : part.cell(c).v) least = std::min(least, edges[v.idx()]);
+      if (step == 3) {
+        EXPECT_LE(least, 2);
+        for (VertexHandle v : part.cell(c).v) ++n_cells[v.idx()];
+      } else if (least < step) {
+        for (VertexHandle v : part.cell(c).v) edges[v.idx()] = std::min(edges[v.idx()], step);
+      }
+    }
+  std::size_t n_wrong = 0;
+  for (std::size_t v = 0; v < edges.size(); ++v)
+    if (edges[v] <= 2 && !part.is_deleted(V(v))) n_wrong += n_cells[v] == parts.work().star_size[v] ? 0 : 1;
+  EXPECT_EQ(n_wrong, 0U);
+}
+
 TEST(InParts, InsertedVerticesHaveTheBitsOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
@@ -265,6 +289,7 @@ TEST(InParts, InsertedVerticesHaveTheBitsOfSharedMemory) {
       EXPECT_TRUE(result.left_out.empty());
       const mpi::PartsCheck checked = mpi::check(parts);
       EXPECT_TRUE(checked.is_good) << checked.message;
+      expect_two_layers(parts);
       mpi::write_vtu(parts, folder.path() / "parts.vtu");
       if (comm.rank() != 0) continue;
       TetMesh mesh = whole_of(one.grid);
