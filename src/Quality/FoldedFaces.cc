@@ -2,7 +2,8 @@
 #include "Quality/FoldedFaces.hh"
 
 #include <algorithm>
-#include <span>
+#include <array>
+#include <cstdint>
 
 #include "Quality/Metrics.hh"
 
@@ -30,7 +31,7 @@ bool between(Vec3 a, Vec3 b, Vec3 x) {
 
 /// Faces (v, a, b) and (v, a, d): on one another when they lie in a plane and on one side of the common edge.
 bool fold_at_edge(Vec3 v, Vec3 a, Vec3 b, Vec3 d) {
-  return orientation(v, a, b, d) == 0 && dot(cross(a - v, b - v), cross(a - v, d - v)) > 0;
+  return dot(cross(a - v, b - v), cross(a - v, d - v)) > 0 && orientation(v, a, b, d) == 0;
 }
 
 /// Faces (v, a, b) and (v, c, d), seen from v as arcs: whether these meet other than at a common end.
@@ -69,18 +70,20 @@ std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy
     const HalfFaceHandle h(i);
     return !mesh.is_deleted(cell_of(h)) && !mesh.opposite_halfface(h).is_valid();
   });
-  std::vector<Corner> corners;
-  corners.reserve(3 * boundary.size());
+  // Corners by vertex, of each vertex in the order of the faces.
+  std::vector<std::size_t> end_of(mesh.n_vertices() + 1, 0);
+  for (Index i : boundary)
+    for (VertexHandle v : mesh.halfface_vertices(HalfFaceHandle(i))) ++end_of[v.idx() + 1];
+  std::vector<std::size_t> first;  // corner of each vertex that has any
+  for (std::size_t v = 0; v < mesh.n_vertices(); ++v) {
+    if (end_of[v + 1] > 0) first.push_back(end_of[v]);
+    end_of[v + 1] += end_of[v];
+  }
+  first.push_back(3 * boundary.size());
+  std::vector<Corner> corners(3 * boundary.size());
   for (Index i : boundary)
     for (VertexHandle v : mesh.halfface_vertices(HalfFaceHandle(i)))
-      corners.push_back({v, HalfFaceHandle(i)});
-  std::sort(corners.begin(), corners.end(), [](const Corner& x, const Corner& y) {
-    return x.vertex < y.vertex || (x.vertex == y.vertex && x.face < y.face);
-  });
-  std::vector<std::size_t> first;  // corner of each vertex
-  for (std::size_t i = 0; i < corners.size(); ++i)
-    if (i == 0 || corners[i].vertex != corners[i - 1].vertex) first.push_back(i);
-  first.push_back(corners.size());
+      corners[end_of[v.idx()]++] = {v, HalfFaceHandle(i)};
   const std::size_t n_vertices = first.size() - 1;
   const int n_parts = par::thread_count(policy.for_items_of(kVertexNanoseconds), n_vertices);
   std::vector<std::vector<HalfFaceHandle>> found(static_cast<std::size_t>(n_parts));

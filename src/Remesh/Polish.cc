@@ -12,6 +12,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
   RunControl& control = runner.run().control;
   std::size_t n_poor = runner.n_below(decision);
   double worst = runner.worst();
+  const std::size_t many = std::min(few, effort.many);
   int idle = 0;
   bool has_dug = false;
   std::size_t n_poor_dug = 0;  // when vertices were last inserted
@@ -21,7 +22,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     const std::size_t changes = runner.iterate(turn);
     const std::size_t n_poor_now = runner.n_below(decision);
     const double enough = worst > 0 ? worst * effort.gain : worst;
-    const std::size_t at_least = n_poor > effort.many ? n_poor / effort.least_fewer : 0;
+    const std::size_t at_least = n_poor > many ? n_poor / effort.least_fewer : 0;
     const bool fewer = n_poor_now + at_least < n_poor;
     idle = fewer || runner.worst() > enough ? 0 : idle + 1;
     n_poor = n_poor_now;

@@ -97,7 +97,10 @@ PassEffort pass_effort(const Asked& asked) {
 PolishEffort polish_effort(const Asked& asked, bool any_cost) {
   PolishEffort polish;
   polish.iterations = asked.iterations_or(polish.iterations);
-  if (asked.is_free()) polish.many = 200;
+  if (asked.is_free()) {
+    polish.many = 200;
+    polish.least_fewer = 10;
+  }
   if (any_cost)
     polish.dig_share = 4;
   else if (asked.is_free())
