@@ -3,12 +3,14 @@
 """Share of a run's time in which only one thread could run, sampled from the states of its threads (Linux).
 
 usage: bench/one_thread.py TOOL MESH... [--threads 2] [--interval 0.002] [--runs 1] [-- OPTIONS OF THE TOOL]
-A thread that waits for a core counts as one that could run, so a busy machine changes the figures little.
+A thread that waits for a core counts as one that could run, so a busy machine changes the figures little; one that has
+nothing to do sleeps at once here, since one that looks for work would seem to have some.
 Reading and writing files, and what has but one thread by choice, are part of the run that is sampled:
 `improve` stands for the time between the first and the last pass that the tool reports.
 """
 import argparse
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -38,7 +40,8 @@ def sample(tool, mesh, threads, interval, extra, folder):
     report = folder / "report.json"
     command = [tool, mesh, "-o", folder / "out.meshb", "-q", "-j", str(threads), "--json", report, *extra]
     start = time.monotonic()
-    process = subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True)
+    sleeping = {**os.environ, "OMP_WAIT_POLICY": "passive", "GOMP_SPINCOUNT": "0"}
+    process = subprocess.Popen(list(map(str, command)), stderr=subprocess.PIPE, text=True, env=sleeping)
     counts = []
     while process.poll() is None:
         count = runnable_threads(process.pid)
