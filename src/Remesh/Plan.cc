@@ -127,10 +127,10 @@ void add_targets(Lines& lines, const Strategy& strategy) {
                 " cells or raise the worst by ", throughout.polish.gain, "; vertices for all, up to ",
                 throughout.of_hundred, " of 100 cells that there may be, until fewer than 1 in ",
                 throughout.polish.seeds_of_vertex, " gets one"));
-  lines.add("targets", say(polish.iterations, " iterations; ", polish.idle,
-                           " idle ones (no fewer cells, with many not 1 in ", polish.least_fewer,
-                           " fewer, and the worst not raised by ", polish.gain, ") end it; ",
-                           named(polish.selection)));
+  lines.add("targets",
+            say(polish.iterations, " iterations; ", polish.idle,
+                " idle ones (no fewer cells, with many not 1 in ", polish.least_fewer,
+                " fewer, and the worst not raised by ", polish.gain, ") end it; ", named(polish.selection)));
   lines.add("targets", say("vertices for at most ", polish.few_to_dig, " cells or 1 in ", polish.dig_share));
   if (strategy.refine_again) add_refine(lines, "refine again", *strategy.refine_again);
   const LastCellsEffort& last = strategy.last_cells;
