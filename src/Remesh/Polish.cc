@@ -22,7 +22,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     const std::size_t changes = runner.iterate(turn);
     const std::size_t n_poor_now = runner.n_below(decision);
     const double enough = worst > 0 ? worst * effort.gain : worst;
-    const std::size_t at_least = n_poor > many ? n_poor / effort.least_fewer : 0;
+    const std::size_t at_least = n_poor > many ? (n_poor - many) / effort.least_fewer : 0;
     const bool fewer = n_poor_now + at_least < n_poor;
     idle = fewer || runner.worst() > enough ? 0 : idle + 1;
     n_poor = n_poor_now;

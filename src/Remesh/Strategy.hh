@@ -155,8 +155,8 @@ struct PolishEffort {
   double gain = 1.01;
   int idle = 2;
   /// With more poor cells than may get vertices, or than `many`, an iteration is idle unless it mends one in
-  /// `least_fewer`: there is always something that gets better by little, and what is dearer does more. Shown
-  /// by the steps of bench/moving_body.py, seconds.
+  /// `least_fewer` of those beyond: there is always something that gets better by little, and what is dearer
+  /// does more. Shown by the steps of bench/moving_body.py, seconds.
   std::size_t many = kNoLimit;
   std::size_t least_fewer = 20;
   /// FanMerge counts as gain where it merges one in so many of these: each merger takes several cells.
