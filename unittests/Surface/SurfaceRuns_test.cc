@@ -400,7 +400,7 @@ TEST(SurfaceRuns, EveryNumberOfThreadsGivesTheSameBits) {
 
 TEST(SurfaceRuns, RaisingTheWorstAtAnyCostLeavesCellsToWorkIn) {
   // Layers so thin that most of their vertices are better away; swaps take cells beyond the bound, too.
-  const TetMesh first = built(generate::jittered_box({4, 4, 16}, 0.1, 1, {0, 0, 0}, {1, 1, 1}));
+  const TetMesh first = built(generate::jittered_box({4, 4, 32}, 0.1, 1, {0, 0, 0}, {1, 1, 1}));
   ImproveOptions options = with(SurfaceMode::kFlat);
   options.raise_min_dihedral = true;
   options.ops = without(options.ops, Ops::kInsert);
