@@ -2,11 +2,40 @@
 #include "Operators/VertexCollapse.hh"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
+#include <span>
 
 #include "Operators/Metrics.hh"
 
 namespace hfr {
+namespace {
+
+/// Vertices of a link, each once, although its faces name it three times and more.
+class LinkVertices {
+ public:
+  void add(VertexHandle v) {
+    std::uint64_t& marks = marks_[v.idx() % kMarks / 64];
+    const std::uint64_t mark = std::uint64_t{1} << (v.idx() % 64);
+    // Those whose marks differ are not the same.
+    if ((marks & mark) != 0 && std::find(vertices_.begin(), vertices_.end(), v) != vertices_.end()) return;
+    marks |= mark;
+    vertices_.push_back(v);
+  }
+  std::span<const VertexHandle> ascending() {
+    std::sort(vertices_.begin(), vertices_.end());
+    return {vertices_.begin(), vertices_.end()};
+  }
+
+ private:
+  static constexpr std::size_t kMarks = 256;
+
+  FixedVector<VertexHandle, 3 * Star::kCapacity> vertices_;
+  std::array<std::uint64_t, kMarks / 64> marks_{};
+};
+
+}  // namespace
 
 template <class Metric>
 void VertexCollapse<Metric>::scope(const TetMesh& mesh, Seed seed, Scope& out) const {
@@ -25,22 +54,20 @@ std::optional<typename VertexCollapse<Metric>::Plan> VertexCollapse<Metric>::eva
   const auto n = static_cast<std::size_t>(star.size);
   FixedVector<std::array<VertexHandle, 3>, Star::kCapacity> faces;  // of the link
   FixedVector<std::array<Vec3, 3>, Star::kCapacity> corners;        // and their points
-  FixedVector<VertexHandle, 3 * Star::kCapacity> link;
+  LinkVertices link;
   double old_worst = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < n; ++i) {
     old_worst = std::min(old_worst, quality[star.cells[i].idx()]);
     const auto f = mesh.halfface_vertices(halfface_of(star.cells[i], star.corners[i]));
     faces.push_back(f);
     corners.push_back({mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])});
-    for (VertexHandle v : f) link.push_back(v);
+    for (VertexHandle v : f) link.add(v);
   }
-  std::sort(link.begin(), link.end());
-  link.resize(static_cast<std::size_t>(std::unique(link.begin(), link.end()) - link.begin()));
 
   Plan plan;
   plan.new_worst = old_worst;
   std::size_t killer = 0;  // the face that refused the last apex is likely to refuse the next
-  for (VertexHandle apex : link) {
+  for (VertexHandle apex : link.ascending()) {
     const Vec3 p = mesh.point(apex);
     double worst = std::numeric_limits<double>::infinity();
     std::uint32_t n_created = 0;

@@ -14,29 +14,20 @@
 namespace hfr {
 namespace {
 
-double degrees(const Standing& standing) {
-  return report_value(Metric::kMinDihedral, std::min(standing.worst, kRegularDihedral));
-}
+double degrees(double decision) { return report_value(Metric::kMinDihedral, decision); }
+double degrees(const Standing& standing) { return degrees(std::min(standing.worst, kRegularDihedral)); }
 
 /// Of the cells.
 constexpr std::array<double, 2> kLowShares = {0.01, 0.05};
 
-}  // namespace
-
-Best::Best(const Run& run, double may_fall) : run_(run), standing_(now()), mesh_(run) {
-  low_ = least_ = percentiles();
-  for (double& value : least_)
-    if (value > 0) value = dihedral_decision((1 - may_fall) * report_value(Metric::kMinDihedral, value));
-}
-
-Best::Percentiles Best::percentiles() const {
-  std::vector<double> values(run_.mesh.n_cells());
-  par::for_ranges(run_.policy(), values.size(), [&](std::size_t begin, std::size_t end) {
-    for_decisions(run_.mesh, MinDihedral{}, begin, end,
+Best::Percentiles percentiles_of(const Run& run) {
+  std::vector<double> values(run.mesh.n_cells());
+  par::for_ranges(run.policy(), values.size(), [&](std::size_t begin, std::size_t end) {
+    for_decisions(run.mesh, MinDihedral{}, begin, end,
                   [&](std::size_t i, double value) { values[i] = value; });
   });
-  const auto n = static_cast<double>(run_.mesh.n_logical_cells());
-  Percentiles found{};
+  const auto n = static_cast<double>(run.mesh.n_logical_cells());
+  Best::Percentiles found{};
   if (values.empty()) return found;
   for (std::size_t k = 0; k < found.size(); ++k) {                    // deleted slots hold infinity
     const double rank = std::max(std::ceil(kLowShares[k] * n), 1.0);  // counted from 1
@@ -47,28 +38,57 @@ Best::Percentiles Best::percentiles() const {
   return found;
 }
 
+Standing standing_now(const Run& run) {
+  return standing_of(run.mesh, survey(run.mesh, run.policy()), run.policy());
+}
+
+}  // namespace
+
+Best::Beginning::Beginning(const Run& run) : worst(degrees(standing_now(run))), low(percentiles_of(run)) {}
+
+Best::Best(const Run& run, double may_fall, Loss loss, const Beginning& beginning)
+    : run_(run),
+      loss_(loss),
+      beginning_(beginning),
+      least_(beginning.low),
+      standing_(standing_now(run)),
+      low_(percentiles_of(run)),
+      mesh_(run) {
+  for (double& value : least_)
+    if (value > 0) value = dihedral_decision((1 - may_fall) * degrees(value));
+}
+
 bool Best::is_admissible(const Standing& found) const {
   // Cells that have become valid are worth more.
   if (found.n_inverted + found.n_flat < standing_.n_inverted + standing_.n_flat) return true;
-  const Percentiles low = percentiles();
-  return low[0] >= least_[0] && low[1] >= least_[1];
+  const Percentiles low = percentiles_of(run_);
+  if (low[0] >= least_[0] && low[1] >= least_[1]) return true;
+  return loss_ == Loss::kMadeUpFor && makes_up_for(degrees(found), low);
 }
 
-Standing Best::now() const { return standing_of(run_.mesh, survey(run_.mesh, run_.policy()), run_.policy()); }
+bool Best::makes_up_for(double worst, const Percentiles& low) const {
+  double sum = worst - beginning_.worst, kept = 1;  // degrees; share of both
+  for (std::size_t k = 0; k < low.size(); ++k) {
+    const double now = degrees(low[k]), before = degrees(beginning_.low[k]);
+    sum += now - before;
+    if (before > 0) kept *= now / before;
+  }
+  return sum >= 0 && worst * kept * kept >= beginning_.worst;
+}
 
 void Best::note() {
-  const Standing found = now();
+  const Standing found = standing_now(run_);
   if (!is_better(found, standing_) || !is_admissible(found)) return;
   standing_ = found;
-  low_ = percentiles();
+  low_ = percentiles_of(run_);
   mesh_.emplace(run_);
 }
 
 void Best::settle() {
-  Standing found = now();
+  Standing found = standing_now(run_);
   if (std::abs(degrees(found) - degrees(standing_)) <= kLeastRise) found.worst = standing_.worst;
   const bool is_alike = !is_better(standing_, found) && !is_better(found, standing_);
-  if (is_better(standing_, found) || !is_admissible(found) || (is_alike && percentiles() < low_))
+  if (is_better(standing_, found) || !is_admissible(found) || (is_alike && percentiles_of(run_) < low_))
     mesh_->put_back(run_);
 }
 

@@ -11,13 +11,34 @@
 
 namespace hfr {
 
+/// What else may be lost for a larger worst angle.
+enum class Loss {
+  kLittle,  ///< a share of `may_fall` of the 1st and of the 5th percentile
+  /// That, or no more degrees of both together than the worst angle gains, and each share of both together
+  /// half of that which it gains: a worst angle far below the others is worth something of them.
+  kMadeUpFor,
+};
+
 /// The best mesh that a stage has had on its way, by Standing: fewer inverted, fewer flat cells, less
-/// overlap, a larger worst angle. One whose 1st or 5th percentile has lost more than a share of `may_fall`
-/// since the beginning, with no fewer inverted and flat cells, is none. Makes a Snapshot, and another one in
-/// its place with each note() of a better mesh.
+/// overlap, a larger worst angle. One that has lost more than it may since the beginning, with no fewer
+/// inverted and flat cells, is none. Makes a Snapshot, and another one in its place with each note() of a
+/// better mesh.
 class Best {
  public:
-  Best(const Run& run, double may_fall);
+  /// Smallest dihedrals below which 1 and 5 % of the cells lie: decision values.
+  using Percentiles = std::array<double, 2>;
+  /// What is held against what comes.
+  struct Beginning {
+    double worst;  ///< degrees
+    Percentiles low;
+
+    explicit Beginning(const Run& run);
+  };
+
+  Best(const Run& run, double may_fall, Loss loss = Loss::kLittle)
+      : Best(run, may_fall, loss, Beginning(run)) {}
+  /// A stage of several that begin with one another's best, and may lose no more together than one.
+  Best(const Run& run, double may_fall, Loss loss, const Beginning& beginning);
   Best(const Best&) = delete;
   Best& operator=(const Best&) = delete;
 
@@ -28,13 +49,12 @@ class Best {
   void settle();
 
  private:
-  /// Smallest dihedrals below which 1 and 5 % of the cells lie: decision values.
-  using Percentiles = std::array<double, 2>;
-  Standing now() const;
-  Percentiles percentiles() const;
   bool is_admissible(const Standing& found) const;
+  bool makes_up_for(double worst, const Percentiles& low) const;
 
   Run run_;
+  Loss loss_;
+  Beginning beginning_;
   Percentiles least_;
   Standing standing_;
   Percentiles low_;  // of the best mesh

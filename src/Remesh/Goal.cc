@@ -34,7 +34,7 @@ bool attempt_beyond(const Run& run, const GoalEffort& goal) {
          trial.settle();
 }
 
-void reach_in_turn(const Run& run, const GoalEffort& goal) {
+void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best) {
   const std::span<const TargetAngle> all = run.strategy.targets.targets;
   for (std::size_t i = 0; i < all.size() && !run.control.stopped(); ++i) {
     const double now = smallest(run), degrees = all[i].degrees;
@@ -42,7 +42,10 @@ void reach_in_turn(const Run& run, const GoalEffort& goal) {
     const auto targets = all.first(i + 1);
     const bool many_miss = share_below(run.mesh, degrees, run.policy()) > goal.few_miss;
     if (many_miss) improve_all(run, now, targets);
-    if (!attempt(run, degrees, targets)) return;
+    const bool reached = attempt(run, degrees, targets);
+    // What more targets bring may cost more of the other cells than it may.
+    best.note();
+    if (!reached) return;
   }
 }
 

@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_GOAL_HH
 #define HFR_REMESH_GOAL_HH
 
+#include "Remesh/Best.hh"
 #include "Remesh/Run.hh"
 
 namespace hfr {
@@ -18,8 +19,8 @@ bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched
 bool attempt_beyond(const Run& run, const GoalEffort& goal);
 
 /// Works for one target after the other up to the goal: with all cells, and vertices where they are missing,
-/// where many miss it. Ends with the first target that is missed.
-void reach_in_turn(const Run& run, const GoalEffort& goal);
+/// where many miss it. Ends with the first target that is missed. `best` is told of what each has left.
+void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best);
 
 }  // namespace hfr
 

@@ -2,7 +2,9 @@
 #include "Remesh/Pipeline.hh"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "Quality/FoldedFaces.hh"
@@ -14,6 +16,7 @@
 #include "Remesh/Goal.hh"
 #include "Remesh/Jpdc2013.hh"
 #include "Remesh/Polish.hh"
+#include "Remesh/Snapshot.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Targets.hh"
@@ -39,18 +42,6 @@ void mend_invalid(const Run& run) {
   run.control.set_fraction(kUntangled);
 }
 
-bool run_towards_goal(const Run& run, const GoalEffort& goal) {
-  mend_invalid(run);
-  if (goal.polish_only) return polish(run, run.strategy.polish, goal.degrees);
-  if (share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss)
-    return reach_goal(run, goal, /*cells_are_untouched=*/true);
-  Trial trial(run, goal.degrees);
-  improve_all(run, run.strategy.floor, run.strategy.targets.targets);
-  if (reach_goal(run, goal, /*cells_are_untouched=*/false)) return true;
-  trial.settle();
-  return false;
-}
-
 /// Whether the worst angle is below `degrees`, and nothing proves that faces which may not change hold it
 /// where it is.
 bool may_rise(const Run& run, double degrees) {
@@ -60,15 +51,17 @@ bool may_rise(const Run& run, double degrees) {
   return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
 }
 
-/// What a default run claims, where the number of cells was in the way: with more of them, and with more
-/// again while that raises the worst angle; once also where a percentile has fallen for it.
+/// What a default run claims, or the goal if it is less, where the number of cells was in the way: with more
+/// of them, and with more again while they are in the way and that raises the worst angle; once also where a
+/// percentile has fallen for it.
 void reach_claimed(const Run& run) {
-  if (!run.strategy.claimed || (!run.findings.met_cell_bound && run.has_room())) return;
+  if (!run.strategy.claimed || (!run.findings.ever_met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
   Run part = run.with(claimed);
   const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+  const Best::Beginning before(run);
   bool stayed = true;
   double more = 1;  // times the bound that was claimed first
   for (int turn = 0; turn < goal.turns; ++turn, more *= goal.more_cells) {
@@ -76,14 +69,29 @@ void reach_claimed(const Run& run) {
     if (may_grow) part.bounds.max = static_cast<std::size_t>(more * static_cast<double>(claimed.bounds.max));
     const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
     run.findings.forget_cell_bound();
-    Best best(run, goal.may_fall);
-    reach_in_turn(part, goal);
-    const bool rose = smallest() > enough;
+    Best best(run, goal.may_fall, Loss::kMadeUpFor, before);
+    reach_in_turn(part, goal, best);
+    const bool rose = smallest() > enough, was_in_the_way = run.findings.met_cell_bound || !part.has_room();
     best.settle();
     const bool stays = smallest() > enough;
-    if (!may_grow || !rose || !(stays || stayed)) return;
+    if (!may_grow || !was_in_the_way || !rose || !(stays || stayed)) return;
     stayed = stays;
   }
+}
+
+bool run_towards_goal(const Run& run, const GoalEffort& goal) {
+  mend_invalid(run);
+  if (goal.polish_only) return polish(run, run.strategy.polish, goal.degrees);
+  if (share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss) {
+    if (reach_goal(run, goal, /*cells_are_untouched=*/true)) return true;
+  } else {
+    Trial trial(run, goal.degrees);
+    improve_all(run, run.strategy.floor, run.strategy.targets.targets);
+    if (reach_goal(run, goal, /*cells_are_untouched=*/false)) return true;
+    trial.settle();
+  }
+  reach_claimed(run);
+  return n_below(run.mesh, goal.degrees, run.policy()) == 0;
 }
 
 void run_default(const Run& run) {
@@ -92,22 +100,45 @@ void run_default(const Run& run) {
   reach_claimed(run);
 }
 
-/// What a surface that may change has left below what a default run claims, as with one that is frozen.
-void run_frozen(const Run& run) {
-  if (!run.strategy.frozen || run.control.stopped()) return;
+/// Where a run stands: what begins from there again has the same bits.
+struct Beginning {
+  Snapshot mesh;
+  std::uint32_t clock;
+
+  explicit Beginning(const Run& run) : mesh(run), clock(run.work.clock) {}
+  void put_back(const Run& run) {
+    run.work.clock = clock;
+    mesh.put_back(run);
+  }
+};
+
+/// Goes on with a default run with the surface frozen, for what is left below what such a run claims, and
+/// keeps the better of what there was and what comes. `from`: where to begin instead.
+void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   const Strategy& frozen = *run.strategy.frozen;
-  if (!may_rise(run, frozen.claimed->goal->degrees)) return;
-  Best best(run, frozen.claimed->goal->may_fall);
+  if (run.control.stopped() || !may_rise(run, frozen.claimed->goal->degrees)) return;
+  Best best(run, frozen.claimed->goal->may_fall, Loss::kMadeUpFor);
+  if (from) from->put_back(run);
   Run part = run.with(frozen);
   part.surface = nullptr;
   run_default(part);
   best.settle();
 }
 
+/// A default run, whatever the surface may do. Where it lacks inner vertices, what a run that changes the
+/// surface has made of it is no good beginning for one that does not.
+void run_usual(const Run& run) {
+  std::optional<Beginning> before;
+  if (run.strategy.frozen && lacks_vertices(run)) before.emplace(run);
+  run_default(run);
+  if (!run.strategy.frozen) return;
+  run_frozen(run);
+  if (before) run_frozen(run, std::move(before));
+}
+
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
   const Run usual = run.strategy.usual ? run.with(*run.strategy.usual) : run;
-  run_default(usual);
-  run_frozen(usual);
+  run_usual(usual);
   Best best(run, effort.may_fall);
   raise_at_any_cost(run, effort, best);
   best.settle();
@@ -139,8 +170,7 @@ bool run_stages(const Run& run) {
   }
   switch (run.strategy.course) {
     case Course::kDefault:
-      run_default(run);
-      run_frozen(run);
+      run_usual(run);
       return false;
     case Course::kGoal:
       return run_towards_goal(run, *run.strategy.goal);

@@ -24,9 +24,10 @@ struct Findings {
   /// Something was left undone for the number of cells; and the bound on more of them at that time, 0: none.
   bool met_cell_bound = false;
   std::size_t max_cells_met = 0;
+  bool ever_met_cell_bound = false;  ///< also before it was forgotten
 
   void note_cell_bound(const CellBounds& bounds) {
-    met_cell_bound = true;
+    met_cell_bound = ever_met_cell_bound = true;
     max_cells_met = bounds.max;
   }
   void forget_cell_bound() {

@@ -217,25 +217,8 @@ AnyCostEffort any_cost_effort(const Asked& asked, CellBounds bounds) {
   return effort;
 }
 
-}  // namespace
-
-void validate(const ImproveOptions& options) {
-  HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
-              "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
-                  std::to_string(options.min_dihedral.value_or(0)));
-  HFR_REQUIRE(
-      !options.min_dihedral || !options.raise_min_dihedral,
-      "raise_min_dihedral asks for the largest angle that can be had, min_dihedral for a certain one: "
-      "give one of them");
-  HFR_REQUIRE(!options.polish_only || options.min_dihedral,
-              "polish_only is for runs with a goal: give min_dihedral, too");
-  HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
-  HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
-  HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
-  HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
-}
-
-Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t n_cells) {
+/// But for the strategies of other runs that it goes on with.
+Strategy alone(const ImproveOptions& options, const Survey& found, std::size_t n_cells) {
   const Asked asked(options);
   Strategy strategy;
   strategy.course = asked.is_compat()  ? Course::kCompat
@@ -272,29 +255,54 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
   if (asked.any_cost()) strategy.any_cost = any_cost_effort(asked, strategy.bounds);
   if (asked.is_free()) strategy.volume = VolumeEffort{.keeps_angles_only = asked.has_goal()};
   strategy.compat.iterations = asked.iterations_or(strategy.compat.iterations);
+  return strategy;
+}
+
+}  // namespace
+
+void validate(const ImproveOptions& options) {
+  HFR_REQUIRE(!options.min_dihedral || (*options.min_dihedral > 0 && *options.min_dihedral < kLargestGoal),
+              "the smallest dihedral asked for must lie between 0 and 70.5 degrees, not " +
+                  std::to_string(options.min_dihedral.value_or(0)));
+  HFR_REQUIRE(
+      !options.min_dihedral || !options.raise_min_dihedral,
+      "raise_min_dihedral asks for the largest angle that can be had, min_dihedral for a certain one: "
+      "give one of them");
+  HFR_REQUIRE(!options.polish_only || options.min_dihedral,
+              "polish_only is for runs with a goal: give min_dihedral, too");
+  HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
+  HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
+  HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
+  HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
+}
+
+Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t n_cells) {
+  const Asked asked(options);
+  Strategy strategy = alone(options, found, n_cells);
   const auto towards = [&](double goal) {
     ImproveOptions other = options;
     other.min_dihedral = goal;
     other.raise_min_dihedral = false;
-    return std::make_shared<Strategy>(resolve(other, found, n_cells));
+    return std::make_shared<Strategy>(alone(other, found, n_cells));
   };
-  if (strategy.untangle && !(asked.has_goal() && *options.min_dihedral <= kPlainGoal))
-    strategy.plain = towards(kPlainGoal);
+  const double goal = options.min_dihedral.value_or(kLargestGoal);
+  if (strategy.untangle && goal > kPlainGoal) strategy.plain = towards(kPlainGoal);
   if (asked.any_cost() && !asked.coarsens()) {
     ImproveOptions other = options;
     other.raise_min_dihedral = false;
     strategy.usual = std::make_shared<const Strategy>(resolve(other, found, n_cells));
     return strategy;
   }
-  if (!asked.has_goal() && !asked.is_compat() && !asked.limits_iterations() && !asked.coarsens()) {
-    const auto claimed = towards(kClaimedGoal);
+  if (goal > kPlainGoal && !options.polish_only && !asked.is_compat() && !asked.limits_iterations() &&
+      !asked.coarsens()) {
+    const auto claimed = towards(std::min(goal, kClaimedGoal));
     if (options.max_cells == 0 && claimed->bounds.max > 0)
       claimed->bounds.max =
           static_cast<std::size_t>(claimed->goal->more_cells * static_cast<double>(n_cells));
     claimed->pass.first_edge_does = false;  // what is left by then is hard
     strategy.claimed = claimed;
   }
-  if (strategy.claimed && !asked.is_frozen()) {
+  if (strategy.claimed && !asked.has_goal() && !asked.is_frozen()) {
     ImproveOptions other = options;
     other.surface.mode = SurfaceMode::kFrozen;
     strategy.frozen = std::make_shared<const Strategy>(resolve(other, found, n_cells));

@@ -409,9 +409,8 @@ struct Strategy {
   std::shared_ptr<const Strategy> plain;
   /// At any cost: that of the default run, with which it begins.
   std::shared_ptr<const Strategy> usual;
-  /// Without a goal: that of kClaimedGoal, for what is left below it.
+  /// That of kClaimedGoal, or of the goal where that is smaller, for what is left below it.
   std::shared_ptr<const Strategy> claimed;
-
   /// Where the surface may change, without a goal: that of a run with it frozen, for what is left below
   /// kClaimedGoal.
   std::shared_ptr<const Strategy> frozen;

@@ -17,13 +17,6 @@ namespace {
 /// goals that have met their own bound on cells.
 bool is_bounded(const Run& run) { return !run.surface && run.bounds.max > 0; }
 
-/// Whether all but a few vertices stay where they are: inner ones are missing, whatever the angles are.
-bool lacks_vertices(const Run& run) {
-  const auto& frozen = run.work.frozen;
-  const auto n_movable = static_cast<double>(std::count(frozen.begin(), frozen.end(), 0));
-  return n_movable <= run.strategy.throughout.movable * static_cast<double>(frozen.size());
-}
-
 /// `below`: the share of cells below ThroughoutEffort::below.
 bool is_poor_throughout(const Run& run, double below) {
   return lacks_vertices(run) || below > run.strategy.throughout.share;
@@ -40,6 +33,12 @@ void raise_throughout(const Run& run, const ThroughoutEffort& effort, double deg
 }
 
 }  // namespace
+
+bool lacks_vertices(const Run& run) {
+  const auto& frozen = run.work.frozen;
+  const auto n_movable = static_cast<double>(std::count(frozen.begin(), frozen.end(), 0));
+  return n_movable <= run.strategy.throughout.movable * static_cast<double>(frozen.size());
+}
 
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
   const TargetEffort& effort = run.strategy.targets;
