@@ -54,8 +54,8 @@ bool may_rise(const Run& run, double degrees) {
 /// What a default run claims, or the goal if it is less, where the number of cells was in the way: with more
 /// of them, and with more again while they are in the way and that raises the worst angle; once also where a
 /// percentile has fallen for it.
-void reach_claimed(const Run& run) {
-  if (!run.strategy.claimed || (!run.findings.ever_met_cell_bound && run.has_room())) return;
+void reach_claimed(const Run& run, bool met_cell_bound) {
+  if (!run.strategy.claimed || (!met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
@@ -90,14 +90,14 @@ bool run_towards_goal(const Run& run, const GoalEffort& goal) {
     if (reach_goal(run, goal, /*cells_are_untouched=*/false)) return true;
     trial.settle();
   }
-  reach_claimed(run);
+  reach_claimed(run, run.findings.ever_met_cell_bound);
   return n_below(run.mesh, goal.degrees, run.policy()) == 0;
 }
 
 void run_default(const Run& run) {
   mend_invalid(run);
   improve_all(run, run.strategy.floor, run.strategy.targets.targets);
-  reach_claimed(run);
+  reach_claimed(run, run.findings.met_cell_bound);
 }
 
 /// Where a run stands: what begins from there again has the same bits.
