@@ -112,28 +112,45 @@ struct Beginning {
   }
 };
 
-/// Goes on with a default run with the surface frozen, for what is left below what such a run claims, and
-/// keeps the better of what there was and what comes. `from`: where to begin instead.
+/// Does the same with the surface frozen for what is left below what a run claims, and keeps the better of
+/// what there was and what comes. `from`: where to begin instead.
 void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   const Strategy& frozen = *run.strategy.frozen;
-  if (run.control.stopped() || !may_rise(run, frozen.claimed->goal->degrees)) return;
-  Best best(run, frozen.claimed->goal->may_fall, Loss::kMadeUpFor);
+  const GoalEffort& claimed = *frozen.claimed->goal;
+  if (run.control.stopped() || !may_rise(run, claimed.degrees)) return;
+  Best best(run, claimed.may_fall, Loss::kMadeUpFor);
   if (from) from->put_back(run);
   Run part = run.with(frozen);
   part.surface = nullptr;
-  run_default(part);
+  if (frozen.goal)
+    run_towards_goal(part, *frozen.goal);
+  else
+    run_default(part);
   best.settle();
 }
 
-/// A default run, whatever the surface may do. Where it lacks inner vertices, what a run that changes the
-/// surface has made of it is no good beginning for one that does not.
+/// Where to begin a run with the surface frozen, if not with what is left by one that may change it: where
+/// the mesh lacks inner vertices, that is no good beginning.
+std::optional<Beginning> beginning_of_frozen(const Run& run) {
+  std::optional<Beginning> beginning;
+  if (run.strategy.frozen && lacks_vertices(run)) beginning.emplace(run);
+  return beginning;
+}
+
+/// A default run, whatever the surface may do.
 void run_usual(const Run& run) {
-  std::optional<Beginning> before;
-  if (run.strategy.frozen && lacks_vertices(run)) before.emplace(run);
+  auto beginning = beginning_of_frozen(run);
   run_default(run);
-  if (!run.strategy.frozen) return;
-  run_frozen(run);
-  if (before) run_frozen(run, std::move(before));
+  if (run.strategy.frozen) run_frozen(run);
+  if (beginning) run_frozen(run, std::move(beginning));
+}
+
+/// A run towards a goal, whatever the surface may do.
+bool run_to_goal(const Run& run, const GoalEffort& goal) {
+  auto beginning = beginning_of_frozen(run);
+  if (run_towards_goal(run, goal)) return true;
+  if (beginning) run_frozen(run, std::move(beginning));
+  return n_below(run.mesh, goal.degrees, run.policy()) == 0;
 }
 
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
@@ -173,7 +190,7 @@ bool run_stages(const Run& run) {
       run_usual(run);
       return false;
     case Course::kGoal:
-      return run_towards_goal(run, *run.strategy.goal);
+      return run_to_goal(run, *run.strategy.goal);
     case Course::kAnyCost:
       return run_at_any_cost(run, *run.strategy.any_cost);
     case Course::kCompat:

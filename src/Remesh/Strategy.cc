@@ -302,7 +302,7 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     claimed->pass.first_edge_does = false;  // what is left by then is hard
     strategy.claimed = claimed;
   }
-  if (strategy.claimed && !asked.has_goal() && !asked.is_frozen()) {
+  if (strategy.claimed && !asked.is_frozen()) {
     ImproveOptions other = options;
     other.surface.mode = SurfaceMode::kFrozen;
     strategy.frozen = std::make_shared<const Strategy>(resolve(other, found, n_cells));

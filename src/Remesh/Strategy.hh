@@ -410,9 +410,9 @@ struct Strategy {
   /// At any cost: that of the default run, with which it begins.
   std::shared_ptr<const Strategy> usual;
   /// That of kClaimedGoal, or of the goal where that is smaller, for what is left below it.
-  std::shared_ptr<const Strategy> claimed;
-  /// Where the surface may change, without a goal: that of a run with it frozen, for what is left below
-  /// kClaimedGoal.
+  std::shared_ptr<const Strategy> claimed;  /// Where the surface may change: that of the same run with it
+                                            /// frozen, for what is left below that of
+  /// `claimed`.
   std::shared_ptr<const Strategy> frozen;
 
   /// For cells that have fallen below the input's worst angle.

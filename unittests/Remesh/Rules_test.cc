@@ -230,11 +230,10 @@ TEST(Rules, SurfaceThatMayChangeEndsNoLowerThanAFrozenOneBelowTheClaim) {
 }
 
 TEST(Rules, SurfaceThatMayChangeEndsNoLowerThanAFrozenOneWhereThereAreNoInnerVertices) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    for (const bool has_centre : {false, true}) {
-      const TetMesh star =
-          star_of_sphere(has_centre ? std::optional(Vec3{0.6, 0.1, 0.2}) : std::nullopt, seed);
-      ImproveOptions options = serial();
+  for (const std::uint64_t seed : {1, 7, 10}) {
+    const TetMesh star = star_of_sphere(std::nullopt, seed);
+    for (ImproveOptions options : {serial(), towards(15)}) {
+      const double frozen = outcome_of(star, options).worst;
       options.surface.mode = SurfaceMode::kFlat;
       double worst = 0;
       try {
@@ -242,7 +241,7 @@ TEST(Rules, SurfaceThatMayChangeEndsNoLowerThanAFrozenOneWhereThereAreNoInnerVer
       } catch (const InvalidInput& error) {
         GTEST_SKIP() << error.what();  // a build without OpenMesh
       }
-      EXPECT_GE(worst, std::min(15.0, outcome_of(star, serial()).worst) - kLeastRise) << seed;
+      EXPECT_GE(worst, std::min(15.0, frozen) - kLeastRise) << seed;
     }
   }
 }
