@@ -32,8 +32,7 @@ constexpr double kBulkDone = 0.5;
 
 /// Mends what is inverted or flat, and finds out whether what is left can be mended at all.
 void mend_invalid(const Run& run) {
-  if (run.strategy.untangle) {
-    untangle(run, *run.strategy.untangle);
+  if (run.strategy.untangle && !untangle(run, *run.strategy.untangle)) {
     const std::vector<CellHandle> left = invalid_cells(run.mesh, run.policy());
     if (!run.surface && !left.empty())
       run.findings.is_unfillable =
@@ -182,8 +181,9 @@ void improve_all(const Run& run, double floor, std::span<const TargetAngle> targ
 
 bool run_stages(const Run& run) {
   if (run.strategy.plain) {
-    run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal);
-    run.keep(survey(run.mesh, run.policy()).n_invalid == 0);
+    const bool is_valid = run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal) ||
+                          survey(run.mesh, run.policy()).n_invalid == 0;
+    run.keep(is_valid);
   }
   switch (run.strategy.course) {
     case Course::kDefault:

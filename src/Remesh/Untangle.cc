@@ -230,7 +230,7 @@ void reconnect(PassRunner<Untangling>& runner, const Run& run, const UntangleEff
 
 }  // namespace
 
-void untangle(const Run& run, const UntangleEffort& effort) {
+bool untangle(const Run& run, const UntangleEffort& effort) {
   const bool moves = has(run.strategy.pass.ops, Ops::kSmooth);
   const Untangling metric{1.0 / typical_six_volume(run.mesh),
                           run.work.holds_damage ? run.work.floor : kNoFloor};
@@ -239,7 +239,7 @@ void untangle(const Run& run, const UntangleEffort& effort) {
     return moves ? unfold_by_moving(run, effort, iteration) : invalid_cells(run.mesh, run.policy()).size();
   };
   std::size_t n_left = move(1);
-  if (moves && n_left == 0) return;
+  if (moves && n_left == 0) return true;
   // Each restart leaves fewer invalid cells than the one before, or is the last. The runner's count is not
   // asked: a cell that is flat but for rounding may be invalid in its metric only.
   for (int restart = 1; !run.control.stopped(); ++restart) {
@@ -248,10 +248,11 @@ void untangle(const Run& run, const UntangleEffort& effort) {
     const Turn last{restart, Focus{effort.focus[0]}};
     if (runner.n_invalid() > 0) runner.pass(PassKind::kCluster, last);
     if (runner.n_invalid() > 0) runner.pass(PassKind::kInsert, last);
-    if (runner.n_invalid() == 0) return;
+    if (runner.n_invalid() == 0) return false;
     const std::size_t n_before = std::exchange(n_left, move(1 + restart));
-    if (n_left == 0 || n_left >= n_before) return;
+    if (n_left == 0 || n_left >= n_before) return n_left == 0;
   }
+  return false;
 }
 
 }  // namespace hfr

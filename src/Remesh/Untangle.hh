@@ -10,8 +10,8 @@ namespace hfr {
 /// in the metric Untangling, wider and wider while that helps.
 /// Expects: any mesh. Guarantees: never more inverted cells, nor more inverted and flat ones together; the
 /// worst angle may fall (Run::keep() is called before). Ends: when none is left, when neither moving nor
-/// reconnecting has helped, or with the run.
-void untangle(const Run& run, const UntangleEffort& effort);
+/// reconnecting has helped, or with the run. True when none is known to be left.
+bool untangle(const Run& run, const UntangleEffort& effort);
 
 }  // namespace hfr
 
