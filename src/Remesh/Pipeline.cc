@@ -60,15 +60,16 @@ void reach_claimed(const Run& run, bool met_cell_bound) {
   const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
   Run part = run.with(claimed);
   const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
-  const Best::Beginning before(run);
+  std::optional<Best::Beginning> before;
   bool stayed = true;
   double more = 1;  // times the bound that was claimed first
   for (int turn = 0; turn < goal.turns; ++turn, more *= goal.more_cells) {
     if (!may_rise(run, goal.degrees) || run.control.stopped()) return;
+    if (!before) before.emplace(run);
     if (may_grow) part.bounds.max = static_cast<std::size_t>(more * static_cast<double>(claimed.bounds.max));
     const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
     run.findings.forget_cell_bound();
-    Best best(run, goal.may_fall, Loss::kMadeUpFor, before);
+    Best best(run, goal.may_fall, Loss::kMadeUpFor, *before);
     reach_in_turn(part, goal, best);
     const bool rose = smallest() > enough, was_in_the_way = run.findings.met_cell_bound || !part.has_room();
     best.settle();
@@ -111,8 +112,8 @@ struct Beginning {
   }
 };
 
-/// Does the same with the surface frozen for what is left below what a run claims, and keeps the better of
-/// what there was and what comes. `from`: where to begin instead.
+/// The run with the surface frozen, for what is left below what such a run claims: goes on from there, or
+/// begins at `from`, and keeps the better of what there was and what comes.
 void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   const Strategy& frozen = *run.strategy.frozen;
   const GoalEffort& claimed = *frozen.claimed->goal;
