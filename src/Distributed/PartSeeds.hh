@@ -38,7 +38,7 @@ inline std::vector<VertexHandle> removable_seeds(const DistributedMesh& mesh, co
                                                  par::Policy policy) {
   std::vector<VertexHandle> vertices = vertex_seeds(mesh.part(), list, mesh.work().frozen, policy);
   std::erase_if(vertices, [&](VertexHandle v) { return !mesh.is_own(v); });
-  drop_pinched(mesh.part(), mesh.work().star_size, vertices, policy);
+  drop_pinched(mesh.part(), mesh.work(), vertices);
   return vertices;
 }
 

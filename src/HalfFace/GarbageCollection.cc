@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Renumbering of vertices and cells, and the compaction that is one case of it.
+#include <algorithm>
+
 #include "HalfFace/TetMesh.hh"
 #include "HalfFace/TupleUse.hh"
 
@@ -37,7 +39,7 @@ void close_gaps(const std::vector<Handle<Kind>>& to, std::size_t gap, std::size_
   for (std::size_t i = gap; i < to.size(); ++i)
     if (to[i].is_valid()) values[to[i].idx()] = std::move(values[i]);
   values.resize(n_new);
-  constexpr std::size_t kLargestSlack = 8;  // of so many
+  constexpr std::size_t kLargestSlack = 4;  // of so many
   if (values.capacity() - n_new > n_new / kLargestSlack + kLargestSlack) values.shrink_to_fit();
 }
 
@@ -87,10 +89,13 @@ void TetMesh::renumber_attached(const GarbageMap& map, std::size_t n_vertices, s
   hand_index_state_ = kVoid;
 }
 
-void TetMesh::find_incident_cells() {
+void TetMesh::find_incident_cells(par::Policy policy) {
   incident_cell_.assign(points_.size(), CellHandle());
-  for (std::size_t i = cells_.size(); i-- > 0;)  // downwards, so that the smallest cell stays
-    for (VertexHandle v : cells_[i].v) incident_cell_[v.idx()] = CellHandle(i);
+  par::for_targets(policy, cells_.size(), points_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = cells_.size(); i-- > 0;)  // downwards, so that the smallest cell stays
+      for (VertexHandle v : cells_[i].v)
+        if (v.idx() >= begin && v.idx() < end) incident_cell_[v.idx()] = CellHandle(i);
+  });
 }
 
 void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells,
@@ -101,14 +106,16 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
   permute(policy, map.vertices, n_vertices, vertex_status_);
   permute(policy, map.cells, n_cells, regions_);
   permute(policy, map.cells, n_cells, cell_status_);
-  std::vector<Cell> cells(n_cells);
+  std::vector<Cell> cells;
+  cells.reserve(std::max(n_cells, cells_.capacity()));  // what was reserved for more is there afterwards
+  cells.resize(n_cells);
   par::for_each(policy, cells_.size(), [&](std::size_t i) {
     if (map.cells[i].is_valid()) cells[map.cells[i].idx()] = renamed(cells_[i], map);
   });
   cells_ = std::move(cells);
   free_cells_.clear();
   n_deleted_vertices_ = 0;
-  find_incident_cells();
+  find_incident_cells(policy);
 }
 
 GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
@@ -135,7 +142,7 @@ GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
   close_gaps(map.cells, cell_gap, n_cells, cells_);
   free_cells_.clear();
   n_deleted_vertices_ = 0;
-  find_incident_cells();
+  find_incident_cells(options.policy);
   return map;
 }
 

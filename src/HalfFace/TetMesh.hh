@@ -490,7 +490,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
   /// Moves vertices and cells to new places; those with an invalid one go.
   void renumber(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells, par::Policy policy);
   void renumber_attached(const GarbageMap& map, std::size_t n_vertices, std::size_t n_cells);
-  void find_incident_cells();
+  void find_incident_cells(par::Policy policy);
 
   std::vector<Cell> cells_;
   std::vector<int> regions_;               // empty while every cell is in region 0

@@ -5,15 +5,19 @@
 
 #include "HalfFace/CellOrder.hh"
 #include "Parallel/Atomic.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr {
 
-std::vector<std::uint32_t> star_sizes(const TetMesh& mesh) {
+std::vector<std::uint32_t> star_sizes(const TetMesh& mesh, par::Policy policy) {
   std::vector<std::uint32_t> size(mesh.n_vertices(), 0);
-  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
-    if (mesh.is_deleted(CellHandle(i))) continue;
-    for (VertexHandle v : mesh.cell(CellHandle(i)).v) ++size[v.idx()];
-  }
+  par::for_targets(policy, mesh.n_cells(), size.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+      if (mesh.is_deleted(CellHandle(i))) continue;
+      for (VertexHandle v : mesh.cell(CellHandle(i)).v)
+        if (v.idx() >= begin && v.idx() < end) ++size[v.idx()];
+    }
+  });
   return size;
 }
 
@@ -68,21 +72,23 @@ std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy 
   par::for_each(policy, frozen.size(), [&](std::size_t i) {
     if (mesh.is_fixed(VertexHandle(i))) frozen[i] = 1;
   });
-  // Serial: boundary faces are few, and each writes three vertices that it shares with others.
   const bool one_region = !mesh.has_regions();
-  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+  par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
     const CellHandle c(i);
     const auto& mate = mesh.cell(c).mate;
     if (one_region && mate[0].is_valid() && mate[1].is_valid() && mate[2].is_valid() && mate[3].is_valid())
-      continue;
-    if (mesh.is_deleted(c)) continue;
+      return;
+    if (mesh.is_deleted(c)) return;
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(c, k);
       const HalfFaceHandle m = mesh.opposite_halfface(h);
       if (m.is_valid() && (one_region || mesh.region(c) == mesh.region(cell_of(m)))) continue;
-      for (VertexHandle v : mesh.halfface_vertices(h)) frozen[v.idx()] = 1;
+      for (VertexHandle v : mesh.halfface_vertices(h)) {  // shared by faces, which all write the same
+        par::before_shared_access();
+        par::atomic(frozen[v.idx()]).store(1, std::memory_order_relaxed);
+      }
     }
-  }
+  });
   for (const auto& face : mesh.labels().faces.entries())
     for (VertexHandle v : face.vertices) frozen[v.idx()] = 1;
   for (const auto& edge : mesh.labels().edges.entries())
@@ -96,7 +102,7 @@ std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy 
 
 std::vector<std::uint8_t> frozen_vertices(const TetMesh& mesh, par::Policy policy) {
   std::vector<std::uint8_t> frozen = constrained_vertices(mesh, policy);
-  const std::vector<std::uint32_t> size = star_sizes(mesh);
+  const std::vector<std::uint32_t> size = star_sizes(mesh, policy);
   par::for_ranges(policy, frozen.size(), [&](std::size_t begin, std::size_t end) {
     Star star;
     for (std::size_t i = begin; i < end; ++i) {

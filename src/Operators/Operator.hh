@@ -107,7 +107,7 @@ constexpr double seed_nanoseconds() {
 /// inside or a labelled edge, or fixed, itself or with an edge or a face.
 std::vector<std::uint8_t> constrained_vertices(const TetMesh& mesh, par::Policy policy = {});
 /// Number of cells of each vertex.
-std::vector<std::uint32_t> star_sizes(const TetMesh& mesh);
+std::vector<std::uint32_t> star_sizes(const TetMesh& mesh, par::Policy policy = {});
 /// True when the cells of v do not connect through faces, or are too many for a Star: an operator that walks
 /// its star would miss some. `star_size`: all cells of v.
 bool is_pinched(const TetMesh& mesh, VertexHandle v, std::uint32_t star_size, Star& scratch);

@@ -44,18 +44,55 @@ inline std::size_t part_begin(std::size_t n, int n_parts, int part) {
          std::min<std::size_t>(n % static_cast<std::size_t>(n_parts), static_cast<std::size_t>(part));
 }
 
-/// Calls body(begin, end) on even, contiguous parts of [0, n).
+namespace detail {
+/// Hands out block numbers 0, 1, … to n_threads threads until n_blocks are gone.
+void run_blocks(int n_threads, std::size_t n_blocks, void (*body)(void*, std::size_t), void* context);
+
+/// Pieces for each thread that loops are cut into: a thread that is held up leaves the rest to the others.
+inline constexpr int kPiecesAThread = 4;
+
+/// Calls body(piece) for piece = 0 … n_pieces-1; threads take them as they come.
+template <class Body>
+void pieces(int n_threads, int n_pieces, Body&& body) {
+  if (n_threads <= 1) {
+    for (int piece = 0; piece < n_pieces; ++piece) body(piece);
+    return;
+  }
+  using Plain = std::remove_reference_t<Body>;
+  run_blocks(
+      n_threads, static_cast<std::size_t>(n_pieces),
+      [](void* context, std::size_t piece) { (*static_cast<Plain*>(context))(static_cast<int>(piece)); },
+      const_cast<void*>(static_cast<const void*>(&body)));
+}
+inline int pieces_for(int n_threads) { return n_threads <= 1 ? 1 : kPiecesAThread * n_threads; }
+}  // namespace detail
+
+/// Calls body(begin, end) on even, contiguous pieces of [0, n), more than there are threads.
 template <class Body>
 void for_ranges(Policy policy, std::size_t n, Body&& body) {
-  const int n_parts = thread_count(policy, n);
-  parts(n_parts, [&](int part) { body(part_begin(n, n_parts, part), part_begin(n, n_parts, part + 1)); });
+  const int n_threads = thread_count(policy, n), n_pieces = detail::pieces_for(n_threads);
+  detail::pieces(n_threads, n_pieces, [&](int piece) {
+    body(part_begin(n, n_pieces, piece), part_begin(n, n_pieces, piece + 1));
+  });
 }
 
-/// Calls body(i) for each i in [0, n); even, contiguous parts.
+/// Calls body(i) for each i in [0, n).
 template <class Body>
 void for_each(Policy policy, std::size_t n, Body&& body) {
   for_ranges(policy, n, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
+/// Calls body(begin, end) concurrently on even, contiguous parts of [0, n_targets), where each call reads all
+/// of n_items and writes only what its part of the targets gets: in the order of the items, without atomics.
+/// So many parts at most, since each reads everything.
+template <class Body>
+void for_targets(Policy policy, std::size_t n_items, std::size_t n_targets, Body&& body) {
+  constexpr int kMostParts = 8;
+  const int n_parts = std::min(thread_count(policy, n_items), kMostParts);
+  parts(n_parts, [&](int part) {
+    body(part_begin(n_targets, n_parts, part), part_begin(n_targets, n_parts, part + 1));
   });
 }
 
@@ -79,44 +116,39 @@ T exclusive_scan(std::span<T> values) {
 /// Indices i in [0, n) with keep(i), ascending.
 template <class Out = std::uint32_t, class Keep>
 std::vector<Out> compact(Policy policy, std::size_t n, Keep&& keep) {
-  const int n_parts = thread_count(policy, n);
-  std::vector<std::vector<Out>> found(static_cast<std::size_t>(n_parts));
-  parts(n_parts, [&](int part) {
-    auto& mine = found[static_cast<std::size_t>(part)];
-    const std::size_t end = part_begin(n, n_parts, part + 1);
-    for (std::size_t i = part_begin(n, n_parts, part); i < end; ++i)
+  const int n_threads = thread_count(policy, n), n_pieces = detail::pieces_for(n_threads);
+  std::vector<std::vector<Out>> found(static_cast<std::size_t>(n_pieces));
+  detail::pieces(n_threads, n_pieces, [&](int piece) {
+    auto& mine = found[static_cast<std::size_t>(piece)];
+    const std::size_t end = part_begin(n, n_pieces, piece + 1);
+    for (std::size_t i = part_begin(n, n_pieces, piece); i < end; ++i)
       if (keep(i)) mine.push_back(static_cast<Out>(i));
   });
-  if (n_parts == 1) return std::move(found[0]);
+  if (n_pieces == 1) return std::move(found[0]);
   std::size_t total = 0;
-  for (const auto& part : found) total += part.size();
+  for (const auto& piece : found) total += piece.size();
   std::vector<Out> all;
   all.reserve(total);
-  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  for (const auto& piece : found) all.insert(all.end(), piece.begin(), piece.end());
   return all;
 }
 
 /// combine(identity, value(0), …, value(n-1)) for a combine that is associative, commutative and exact
-/// (minimum, maximum, integer sum), so that the result does not depend on the cut into parts.
+/// (minimum, maximum, integer sum), so that the result does not depend on the cut into pieces.
 template <class T, class Value, class Combine>
 T reduce(Policy policy, std::size_t n, T identity, Value&& value, Combine&& combine) {
-  const int n_parts = thread_count(policy, n);
-  std::vector<T> partial(static_cast<std::size_t>(n_parts), identity);
-  parts(n_parts, [&](int part) {
+  const int n_threads = thread_count(policy, n), n_pieces = detail::pieces_for(n_threads);
+  std::vector<T> partial(static_cast<std::size_t>(n_pieces), identity);
+  detail::pieces(n_threads, n_pieces, [&](int piece) {
     T mine = identity;
-    const std::size_t end = part_begin(n, n_parts, part + 1);
-    for (std::size_t i = part_begin(n, n_parts, part); i < end; ++i) mine = combine(mine, value(i));
-    partial[static_cast<std::size_t>(part)] = mine;
+    const std::size_t end = part_begin(n, n_pieces, piece + 1);
+    for (std::size_t i = part_begin(n, n_pieces, piece); i < end; ++i) mine = combine(mine, value(i));
+    partial[static_cast<std::size_t>(piece)] = mine;
   });
   T all = identity;
-  for (const T& part : partial) all = combine(all, part);
+  for (const T& piece : partial) all = combine(all, piece);
   return all;
 }
-
-namespace detail {
-/// Hands out block numbers 0, 1, … to n_threads threads until n_blocks are gone.
-void run_blocks(int n_threads, std::size_t n_blocks, void (*body)(void*, std::size_t), void* context);
-}  // namespace detail
 
 template <class Body>
 void for_each_dynamic(Policy policy, std::size_t n, std::size_t block, Body&& body) {

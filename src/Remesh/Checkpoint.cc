@@ -23,6 +23,13 @@ bool is_more(double a, double b) { return a > b + kRounding * std::abs(b); }
 
 }  // namespace
 
+void restore(TetMesh& mesh, std::shared_ptr<TetMesh> copy) {
+  if (copy.use_count() == 1)
+    mesh.restore(std::move(*copy));
+  else
+    mesh.restore(TetMesh(*copy));
+}
+
 Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy) {
   Standing standing;
   standing.worst = found.worst;
@@ -74,12 +81,12 @@ void Checkpoint::keep(TetMesh& mesh, bool valid, std::size_t n_changes) {
   } else {
     kept_standing_ = n_changes == 0 ? input_ : standing(mesh);
   }
-  kept_.emplace(mesh);
+  kept_ = std::make_shared<TetMesh>(mesh);
   kept_after_ = n_changes;
 }
 
 void Checkpoint::put_back(TetMesh& mesh) {
-  mesh.restore(*std::exchange(kept_, std::nullopt));
+  restore(mesh, std::exchange(kept_, nullptr));
   restored_ = true;
 }
 

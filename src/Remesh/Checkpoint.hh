@@ -4,13 +4,16 @@
 
 #include <functional>
 #include <limits>
-#include <optional>
+#include <memory>
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
+
+/// Makes the mesh what the copy is, and takes the copy for it where nobody else has it.
+void restore(TetMesh& mesh, std::shared_ptr<TetMesh> copy);
 
 /// What no run may leave worse than it was.
 struct Standing {
@@ -42,7 +45,11 @@ class Checkpoint {
   Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy);
 
   const Standing& input() const { return input_; }
-  bool has_copy() const { return kept_.has_value(); }
+  bool has_copy() const { return kept_ != nullptr; }
+  /// The mesh as it was after so many operators, where that is what is kept; it is not to be changed.
+  std::shared_ptr<TetMesh> copy_after(std::size_t n_changes) const {
+    return n_changes == kept_after_ ? kept_ : nullptr;
+  }
   /// Whether the run may end with this mesh.
   bool allows(const TetMesh& mesh) const { return is_no_worse(standing(mesh), input_); }
 
@@ -73,7 +80,7 @@ class Checkpoint {
 
   par::Policy policy_;
   Standing input_;
-  std::optional<TetMesh> kept_;
+  std::shared_ptr<TetMesh> kept_;  // a Snapshot may have it, too
   Standing kept_standing_;
   std::size_t kept_after_ = 0;  // changes
   bool restored_ = false;

@@ -145,7 +145,8 @@ void add_statistics(const TetMesh& mesh, const ImproveOptions& options, const St
                     const Findings& findings, Result& result) {
   result.after = result.changed ? statistics(mesh, options.policy) : result.before;
   explain(mesh, options, strategy, findings.max_cells_met, result);
-  for (const std::uint32_t size : star_sizes(mesh)) result.n_large_stars += size > Star::kCapacity ? 1 : 0;
+  for (const std::uint32_t size : star_sizes(mesh, options.policy))
+    result.n_large_stars += size > Star::kCapacity ? 1 : 0;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
 #include "Operators/AnyOf.hh"
 #include "Operators/ClusterSearch.hh"
 #include "Operators/EdgeRemoval.hh"
@@ -214,7 +215,7 @@ template <class Metric>
 std::vector<VertexHandle> PassRunner<Metric>::removable(const Worklist& list) const {
   const Run& run = this->run();
   std::vector<VertexHandle> vertices = vertex_seeds(run.mesh, list, run.work.frozen, run.policy());
-  drop_pinched(run.mesh, run.work.star_size, vertices, run.policy());
+  drop_pinched(run.mesh, run.work, vertices);
   return vertices;
 }
 
@@ -297,24 +298,33 @@ std::size_t PassRunner<Metric>::fan_pass(const Turn& turn) {
 template <class Metric>
 auto PassRunner<Metric>::worst_apart(const Worklist& list, const Focus& focus) -> std::vector<CellHandle> {
   const auto& quality = run().work.quality;
+  const auto is_worse = [&](Index a, Index b) {
+    return quality[a] != quality[b] ? quality[a] < quality[b] : a < b;
+  };
+  // Whatever has changed is listed, so what waits and is not listed is in order still.
+  std::erase_if(waiting_, [&](Index c) { return list.has(CellHandle(c)) || !(quality[c] < focus.below); });
+  std::vector<Index> listed;
+  std::copy_if(list.cells().begin(), list.cells().end(), std::back_inserter(listed),
+               [&](Index c) { return quality[c] < focus.below; });
+  std::sort(listed.begin(), listed.end(), is_worse);
   std::vector<Index> order;
-  std::set_union(list.cells().begin(), list.cells().end(), waiting_.begin(), waiting_.end(),
-                 std::back_inserter(order));
-  std::erase_if(order, [&](Index c) { return !(quality[c] < focus.below); });
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return quality[a] < quality[b]; });
+  order.reserve(waiting_.size() + listed.size());
+  std::merge(waiting_.begin(), waiting_.end(), listed.begin(), listed.end(), std::back_inserter(order),
+             is_worse);
+  HFR_ASSERT(std::is_sorted(order.begin(), order.end(), is_worse));
   waiting_.clear();
-  std::vector<std::uint8_t> taken(run().mesh.n_vertices(), 0);
+  taken_.resize(run().mesh.n_vertices(), 0);
+  ++choice_;
   std::vector<CellHandle> chosen;
   for (Index c : order) {
     const auto& v = run().mesh.cell(CellHandle(c)).v;
-    if (std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return taken[u.idx()] != 0; })) {
+    if (std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return taken_[u.idx()] == choice_; })) {
       waiting_.push_back(c);
       continue;
     }
-    for (VertexHandle u : v) taken[u.idx()] = 1;
+    for (VertexHandle u : v) taken_[u.idx()] = choice_;
     chosen.push_back(CellHandle(c));
   }
-  std::sort(waiting_.begin(), waiting_.end());
   std::sort(chosen.begin(), chosen.end());
   return chosen;
 }

@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_PASS_RUNNER_HH
 #define HFR_REMESH_PASS_RUNNER_HH
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,8 +87,10 @@ class PassRunner : public PassState {
 
   Metric metric_;
   Selection selection_;
-  std::vector<Index> waiting_;  // for their turn in insert_pass(), ascending
-  double insert_gain_ = 0;      // of the last insert_pass()
+  std::vector<Index> waiting_;        // for their turn in insert_pass(), the worst first
+  std::vector<std::uint32_t> taken_;  // by vertex: the last choice of worst_apart() that took it
+  std::uint32_t choice_ = 0;
+  double insert_gain_ = 0;  // of the last insert_pass()
   SurfacePasses<Metric> surface_;
   std::optional<DevicePasses> device_;  // in volume-length
   std::optional<RankPasses> ranks_;     // in the polish

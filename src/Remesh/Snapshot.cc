@@ -7,8 +7,13 @@
 
 namespace hfr {
 
+Snapshot::Snapshot(const Run& run) : surface_(run.surface), n_changes_(run.control.n_changes()) {
+  if (run.checkpoint) mesh_ = run.checkpoint->copy_after(n_changes_);
+  if (!mesh_) mesh_ = std::make_shared<TetMesh>(run.mesh);
+}
+
 void Snapshot::put_back(const Run& run) {
-  run.mesh.restore(std::move(mesh_));
+  restore(run.mesh, std::move(mesh_));
   surface_.put_back(run.surface);
   run.work.attach(run.mesh, run.policy());
   const Survey found = survey(run.mesh, run.policy());

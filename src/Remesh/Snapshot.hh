@@ -3,6 +3,7 @@
 #define HFR_REMESH_SNAPSHOT_HH
 
 #include <cstddef>
+#include <memory>
 
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Run.hh"
@@ -10,17 +11,17 @@
 
 namespace hfr {
 
-/// A mesh in the middle of a run, with the run's surface, to come back to: 40 bytes a cell.
+/// A mesh in the middle of a run, with the run's surface, to come back to: 40 bytes a cell, none where
+/// the run's checkpoint keeps the same mesh.
 class Snapshot {
  public:
-  explicit Snapshot(const Run& run)
-      : mesh_(run.mesh), surface_(run.surface), n_changes_(run.control.n_changes()) {}
-  const TetMesh& mesh() const { return mesh_; }
+  explicit Snapshot(const Run& run);
+  const TetMesh& mesh() const { return *mesh_; }
   /// With a line in the report. Once only, in the run that it is of.
   void put_back(const Run& run);
 
  private:
-  TetMesh mesh_;
+  std::shared_ptr<TetMesh> mesh_;  // the checkpoint may have it, too
   SurfaceCopy surface_;
   std::size_t n_changes_;
 };

@@ -163,7 +163,7 @@ std::size_t SurfacePasses<Metric>::collapses(const Turn& turn, const Worklist& l
   for (std::size_t i : par::compact<std::size_t>(
            by_cost, all.size(), [&](std::size_t k) { return op.may_gain(run.mesh, all[k]); }))
     vertices.push_back(all[i]);
-  drop_pinched(run.mesh, run.work.star_size, vertices, run.policy());
+  drop_pinched(run.mesh, run.work, vertices);
   std::vector<typename Op::Seed> seeds;
   for (VertexHandle v : vertices) {
     const auto first = static_cast<std::uint32_t>(targets.size());
@@ -174,7 +174,7 @@ std::size_t SurfacePasses<Metric>::collapses(const Turn& turn, const Worklist& l
   RoundCounts counts;
   const auto has_target = [&](VertexHandle v) {
     std::vector<VertexHandle> only = {v};
-    drop_pinched(run.mesh, run.work.star_size, only, run.policy());
+    drop_pinched(run.mesh, run.work, only);
     if (!only.empty()) surface.collapse_targets(v, targets);
     return !targets.empty();
   };

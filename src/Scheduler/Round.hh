@@ -2,6 +2,7 @@
 #ifndef HFR_SCHEDULER_ROUND_HH
 #define HFR_SCHEDULER_ROUND_HH
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -127,6 +128,7 @@ class Round : private detail::RoundCore {
 
  private:
   static constexpr int kPiecesAThread = 16;
+  static constexpr double kPieceNanoseconds = 200'000;  // of dear seeds, so that threads end together
   using Plan = typename Op::Plan;
 
   static const Plan& own(const PlanBase& plan) { return static_cast<const Plan&>(plan); }
@@ -169,7 +171,7 @@ class Round : private detail::RoundCore {
       if (options_.policy.threads > 1 &&
           n_sources < static_cast<std::size_t>(kPiecesAThread * options_.policy.threads))
         return evaluate_in_parts(n_sources, visit_seeds);
-    const int n_pieces = n_threads == 1 ? 1 : kPiecesAThread * n_threads;
+    const int n_pieces = n_threads == 1 ? 1 : n_pieces_for(n_threads, n_sources);
     std::vector<ChunkedArray<Plan>> found(static_cast<std::size_t>(n_pieces));
     std::vector<std::size_t> n_seeds(static_cast<std::size_t>(n_pieces), 0);
     const bool check = needs_admission();
@@ -196,6 +198,12 @@ class Round : private detail::RoundCore {
     candidates_ = std::move(found[0]);
     for (std::size_t p = 1; p < found.size(); ++p) candidates_.append(std::move(found[p]));
     return std::accumulate(n_seeds.begin(), n_seeds.end(), std::size_t{0});
+  }
+
+  int n_pieces_for(int n_threads, std::size_t n_sources) const {
+    const auto dear = static_cast<std::size_t>(static_cast<double>(n_sources) *
+                                               std::min(source_nanoseconds_ / kPieceNanoseconds, 1.0));
+    return std::max(kPiecesAThread * n_threads, static_cast<int>(std::min<std::size_t>(dear, 1024)));
   }
 
   /// The same for few seeds that are dear: step by step, the parts of all seeds together.

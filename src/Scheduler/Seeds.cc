@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Scheduler/Seeds.hh"
 
+#include <algorithm>
+
 #include "Operators/Operator.hh"
 
 namespace hfr {
 namespace {
+
+constexpr std::size_t kVerticesASortedCell = 512;
 
 /// Concatenates emit(cell, out) over the listed cells, in their order.
 template <class Seed, class Emit>
@@ -40,28 +44,34 @@ std::vector<HalfFaceHandle> face_seeds(const TetMesh& mesh, const Worklist& list
 
 std::vector<VertexHandle> vertex_seeds(const TetMesh& mesh, const Worklist& list,
                                        std::span<const std::uint8_t> frozen, par::Policy policy) {
+  std::vector<VertexHandle> vertices;
+  // A few cells sort their vertices; many are cheaper to serve by one look at every vertex of the mesh.
+  if (list.cells().size() < mesh.n_vertices() / kVerticesASortedCell) {
+    for (Index c : list.cells())
+      for (VertexHandle v : mesh.cell(CellHandle(c)).v)
+        if (!frozen[v.idx()]) vertices.push_back(v);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
   std::vector<std::uint8_t> listed(mesh.n_vertices(), 0);
   for (Index c : list.cells())
     for (VertexHandle v : mesh.cell(CellHandle(c)).v) listed[v.idx()] = 1;
   const auto indices =
       par::compact<Index>(policy, mesh.n_vertices(), [&](std::size_t i) { return listed[i] && !frozen[i]; });
-  std::vector<VertexHandle> vertices(indices.size());
+  vertices.resize(indices.size());
   for (std::size_t i = 0; i < indices.size(); ++i) vertices[i] = VertexHandle(indices[i]);
   return vertices;
 }
 
-void drop_pinched(const TetMesh& mesh, std::span<const std::uint32_t> star_size,
-                  std::vector<VertexHandle>& vertices, par::Policy policy) {
-  std::vector<std::uint8_t> pinched(vertices.size(), 0);
-  par::for_ranges(policy, vertices.size(), [&](std::size_t begin, std::size_t end) {
-    Star scratch;
-    for (std::size_t i = begin; i < end; ++i)
-      pinched[i] = is_pinched(mesh, vertices[i], star_size[vertices[i].idx()], scratch);
+void drop_pinched(const TetMesh& mesh, const Workspace& work, std::vector<VertexHandle>& vertices) {
+  Star scratch;
+  std::erase_if(vertices, [&](VertexHandle v) {
+    const std::uint32_t size = work.star_size[v.idx()];
+    if (size > Star::kCapacity) return true;
+    // Rounds make none, so no other star has to be walked.
+    return !work.pinched.empty() && work.pinched[v.idx()] && is_pinched(mesh, v, size, scratch);
   });
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    if (!pinched[i]) vertices[n++] = vertices[i];
-  vertices.resize(n);
 }
 
 }  // namespace hfr

@@ -11,6 +11,7 @@
 
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr {
 
@@ -101,8 +102,7 @@ std::vector<HalfFaceHandle> face_seeds(const TetMesh& mesh, const Worklist& list
 std::vector<VertexHandle> vertex_seeds(const TetMesh& mesh, const Worklist& list,
                                        std::span<const std::uint8_t> frozen, par::Policy policy);
 /// Takes out the vertices whose cells a walk round them would miss in part; see is_pinched().
-void drop_pinched(const TetMesh& mesh, std::span<const std::uint32_t> star_size,
-                  std::vector<VertexHandle>& vertices, par::Policy policy);
+void drop_pinched(const TetMesh& mesh, const Workspace& work, std::vector<VertexHandle>& vertices);
 
 }  // namespace hfr
 

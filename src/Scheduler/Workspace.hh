@@ -49,7 +49,7 @@ struct Workspace {
 
   /// Sizes everything for the mesh, all cells pending. Qualities are left to set_qualities().
   void attach(const TetMesh& mesh, par::Policy policy) {
-    star_size = star_sizes(mesh);
+    star_size = star_sizes(mesh, policy);
     pinched = pinched_vertices(mesh, star_size, policy);
     attach_again(mesh, policy);
   }

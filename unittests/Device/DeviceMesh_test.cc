@@ -65,7 +65,7 @@ class OnDevice : public testing::TestWithParam<DeviceTuning> {
     options.may_lose = may_lose;
     if (kind == DeviceMesh::Kind::kVertex) {
       std::vector<VertexHandle> vertices = vertex_seeds(stand.mesh, list, stand.work.frozen, kSerial);
-      drop_pinched(stand.mesh, stand.work.star_size, vertices, kSerial);
+      drop_pinched(stand.mesh, stand.work, vertices);
       Round<VertexCollapse<VolumeLength>> round(stand.mesh, stand.work, options);
       return round.run({{}, stand.work.quality, stand.work.frozen}, vertices);
     }

@@ -66,7 +66,7 @@ template <class Op, class Make>
 RoundCounts vertex_round(Whole& w, std::uint8_t bit, Make&& make, RoundOptions options) {
   const Worklist list = pending(w.mesh, w.work, bit);
   std::vector<VertexHandle> vertices = vertex_seeds(w.mesh, list, w.work.frozen, {});
-  drop_pinched(w.mesh, w.work.star_size, vertices, {});
+  drop_pinched(w.mesh, w.work, vertices);
   return Round<Op>(w.mesh, w.work, options).run(make(w.work), vertices);
 }
 

@@ -55,6 +55,28 @@ TEST_P(Threads, ReduceGivesTheSerialResult) {
   EXPECT_EQ(reduce(policy(), 0, std::size_t{0}, value, std::plus<>{}), 0U);
 }
 
+TEST_P(Threads, ForTargetsCoversThemOnceForAnyNumberOfItems) {
+  for (const std::size_t n_targets : {0U, 1U, 5U, 100U})
+    for (const std::size_t n_items : {0U, 3U, 1000U}) {
+      std::vector<std::atomic<int>> visits(n_targets);
+      for_targets(policy(), n_items, n_targets, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+      });
+      for (const auto& count : visits) EXPECT_EQ(count, 1);
+    }
+}
+
+TEST_P(Threads, RangesAreInOrderAndLeaveNothingOut) {
+  for (const std::size_t n : {0U, 1U, 7U, 1000U}) {
+    std::vector<std::atomic<int>> visits(n);
+    for_ranges(policy(), n, [&](std::size_t begin, std::size_t end) {
+      EXPECT_LE(begin, end);
+      for (std::size_t i = begin; i < end; ++i) ++visits[i];
+    });
+    for (const auto& count : visits) EXPECT_EQ(count, 1);
+  }
+}
+
 TEST_P(Threads, CompactKeepsTheOrder) {
   const auto kept = compact<std::uint32_t>(policy(), 1000, [](std::size_t i) { return i % 3 == 1; });
   ASSERT_EQ(kept.size(), 333U);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "HalfFace/Writer.hh"
 #include "Operators/Clusters.hh"
@@ -145,6 +146,21 @@ TEST_P(Seeds, EveryFreeVertexOfAListedCellComesOnce) {
   EXPECT_TRUE(std::is_sorted(seeds.begin(), seeds.end()));
   EXPECT_EQ(seeds.size(), expected.size());
   EXPECT_EQ(std::set<VertexHandle>(seeds.begin(), seeds.end()), expected);
+}
+
+TEST(VertexSeeds, AFewListedCellsGiveTheirVerticesInOrder) {
+  const TetMesh mesh = jittered(16, 0.3, 5);
+  const auto frozen = frozen_vertices(mesh);
+  const std::size_t every = mesh.n_cells() / 5;
+  const Worklist list(mesh, {}, [&](CellHandle c) { return c.idx() % every == every / 2; });
+  ASSERT_LT(list.cells().size() * 512, mesh.n_vertices()) << "so few that they are sorted";
+  std::set<VertexHandle> expected;
+  for (Index c : list.cells())
+    for (VertexHandle v : mesh.cell(CellHandle(c)).v)
+      if (!frozen[v.idx()]) expected.insert(v);
+  ASSERT_GT(expected.size(), 8U);
+  EXPECT_EQ(vertex_seeds(mesh, list, frozen, {}),
+            std::vector<VertexHandle>(expected.begin(), expected.end()));
 }
 
 INSTANTIATE_TEST_SUITE_P(Share, Seeds, testing::Values(0.0, 0.1, 0.6, 1.0), [](const auto& test) {

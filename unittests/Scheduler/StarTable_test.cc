@@ -6,6 +6,7 @@
 
 #include "Operators/LimitMeshes.hh"
 #include "Scheduler/Seeds.hh"
+#include "Scheduler/Workspace.hh"
 
 namespace hfr::test {
 namespace {
@@ -84,8 +85,36 @@ TEST(StarTable, PinchedVertexHasTheCellsOfAllItsPartsAndIsNotForRemoval) {
   EXPECT_TRUE(is_pinched(mesh, V(joint - 1), sizes[joint - 1], scratch));
   const StarTable table(mesh, vertices, sizes);
   for (std::size_t i = 0; i < vertices.size(); ++i) expect_link(mesh, vertices[i], table.link(i));
-  drop_pinched(mesh, sizes, vertices, {});
+  Workspace work;
+  work.attach(mesh, {});
+  drop_pinched(mesh, work, vertices);
   EXPECT_EQ(vertices, (std::vector<VertexHandle>{V(0), V(joint)}));
+  for (const int threads : {2, 3, 7, 16}) EXPECT_EQ(star_sizes(mesh, {threads, /*serial_below=*/1}), sizes);
+}
+
+TEST(StarTable, VertexOfMoreCellsThanAStarHoldsIsNotForRemoval) {
+  const TetMesh mesh = built(hub(150));
+  Workspace work;
+  work.attach(mesh, {});
+  std::vector<VertexHandle> large, others;
+  for (VertexHandle v : all_vertices(mesh))
+    (work.star_size[v.idx()] > Star::kCapacity ? large : others).push_back(v);
+  ASSERT_FALSE(large.empty());
+  work.pinched.clear();  // a star may have outgrown that in a round
+  std::vector<VertexHandle> left = all_vertices(mesh);
+  drop_pinched(mesh, work, left);
+  EXPECT_EQ(left, others);
+}
+
+TEST(StarTable, VertexThatIsPinchedNoLongerIsForRemoval) {
+  const TetMesh mesh = jittered(3, 0.2, 1);
+  Workspace work;
+  work.attach(mesh, {});
+  ASSERT_TRUE(work.pinched.empty());
+  work.pinched.assign(mesh.n_vertices(), 1);
+  std::vector<VertexHandle> left = all_vertices(mesh);
+  drop_pinched(mesh, work, left);
+  EXPECT_EQ(left, all_vertices(mesh));
 }
 
 TEST(Colouring, NoTwoVerticesOfACellShareAColour) {

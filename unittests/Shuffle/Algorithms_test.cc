@@ -204,7 +204,7 @@ std::size_t run_kind(State& state, std::uint64_t kind, const Metric& metric, con
     default: {
       Worklist list(state.mesh, options.policy, [](CellHandle) { return true; });
       auto seeds = vertex_seeds(state.mesh, list, state.work.frozen, options.policy);
-      drop_pinched(state.mesh, state.work.star_size, seeds, options.policy);
+      drop_pinched(state.mesh, state.work, seeds);
       Round<VertexCollapse<Metric>> round(state.mesh, state.work, options);
       return round.run({metric, state.work.quality, state.work.frozen}, seeds).winners;
     }
