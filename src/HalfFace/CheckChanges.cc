@@ -16,7 +16,9 @@
 #include <unordered_set>
 
 #include "HalfFace/RawArray.hh"
+#include "Parallel/Atomic.hh"
 #include "Parallel/DisjointSets.hh"
+#include "Parallel/Interleave.hh"
 
 namespace hfr {
 namespace {
@@ -96,7 +98,7 @@ class ChangeChecker {
 
   CheckResult run() {
     mark();
-    if (!arrays_fit() || !cells_fit()) return named(Rule::kDuplicateFace);
+    if (!cells_fit()) return named(Rule::kDuplicateFace);
     const std::vector<VertexHandle> doubtful = vertices_in_doubt();
     if (doubtful.empty()) return {};
     const auto now = defects_of(mesh_, doubtful);
@@ -146,13 +148,37 @@ class ChangeChecker {
     }
   }
 
-  /// The free list holds the deleted cells, and handles were not renumbered.
-  bool arrays_fit() const {
+  /// Handles were not renumbered, the free list holds the deleted cells, and cells that are new, or share a
+  /// face with one that is or was there, fit their vertices and mates. One look at all cells; counts those of
+  /// marked vertices on the way.
+  bool cells_fit() {
     if (mesh_.n_cells() < before_.n_cells() || mesh_.n_vertices() < before_.n_vertices()) return false;
-    const std::size_t n_deleted = par::reduce(
-        policy_, mesh_.n_cells(), std::size_t{0},
-        [&](std::size_t i) -> std::size_t { return mesh_.is_deleted(CellHandle(i)) ? 1 : 0; },
-        [](std::size_t a, std::size_t b) { return a + b; });
+    n_cells_of_.assign(mesh_.n_vertices(), 0);
+    struct Seen {
+      std::size_t n_deleted = 0;
+      bool fit = true;
+    };
+    const Seen seen = par::reduce(
+        policy_, mesh_.n_cells(), Seen{},
+        [&](std::size_t i) -> Seen {
+          const CellHandle c(i);
+          if (mesh_.is_deleted(c)) return {1, true};
+          int n_near = 0;
+          for (VertexHandle v : mesh_.cell(c).v) {
+            if (v.idx() >= near_.size()) return {0, false};
+            if (near_[v.idx()] == 0) continue;
+            ++n_near;
+            par::before_shared_access();
+            par::atomic(n_cells_of_[v.idx()]).fetch_add(1, std::memory_order_relaxed);
+          }
+          return {0, n_near < 3 || cell_fits(c)};
+        },
+        [](Seen a, Seen b) {
+          return Seen{a.n_deleted + b.n_deleted, a.fit && b.fit};
+        });
+    return seen.fit && free_list_fits(seen.n_deleted);
+  }
+  bool free_list_fits(std::size_t n_deleted) const {
     std::vector<CellHandle> free = mesh_.free_cells();
     std::sort(free.begin(), free.end());
     if (free.size() != n_deleted || std::adjacent_find(free.begin(), free.end()) != free.end()) return false;
@@ -160,21 +186,6 @@ class ChangeChecker {
                        [&](CellHandle c) { return c.idx() < mesh_.n_cells() && mesh_.is_deleted(c); });
   }
 
-  /// Cells that are new, or share a face with one that is or was there, fit their vertices and mates.
-  bool cells_fit() const {
-    return par::reduce(
-        policy_, mesh_.n_cells(), true,
-        [&](std::size_t i) {
-          if (mesh_.is_deleted(CellHandle(i))) return true;
-          int n_near = 0;
-          for (VertexHandle v : mesh_.cell(CellHandle(i)).v) {
-            if (v.idx() >= near_.size()) return false;
-            n_near += near_[v.idx()];
-          }
-          return n_near < 3 || cell_fits(CellHandle(i));
-        },
-        [](bool a, bool b) { return a && b; });
-  }
   bool cell_fits(CellHandle c) const {
     const Cell& k = mesh_.cell(c);
     for (std::size_t i = 0; i < 4; ++i) {
@@ -197,14 +208,10 @@ class ChangeChecker {
 
   /// Of the marked ones, those that the quick test does not prove sound, ascending.
   std::vector<VertexHandle> vertices_in_doubt() const {
-    std::vector<std::uint32_t> n_cells_of(mesh_.n_vertices(), 0);
-    for (std::size_t i = 0; i < mesh_.n_cells(); ++i)
-      if (!mesh_.is_deleted(CellHandle(i)))
-        for (VertexHandle v : mesh_.cell(CellHandle(i)).v) ++n_cells_of[v.idx()];
     std::vector<VertexHandle> doubtful;
     for (Index v : par::compact<Index>(
              policy_.for_items_of(kVertexNanoseconds), near_.size(),
-             [&](std::size_t i) { return near_[i] != 0 && !is_sound(VertexHandle(i), n_cells_of[i]); }))
+             [&](std::size_t i) { return near_[i] != 0 && !is_sound(VertexHandle(i), n_cells_of_[i]); }))
       doubtful.push_back(VertexHandle(v));
     return doubtful;
   }
@@ -306,7 +313,8 @@ class ChangeChecker {
   const TetMesh& mesh_;
   const TetMesh& before_;
   par::Policy policy_;
-  std::vector<std::uint8_t> near_;
+  std::vector<std::uint8_t> near_;         // per vertex: 1 where marked
+  std::vector<std::uint32_t> n_cells_of_;  // of marked vertices
 };
 
 }  // namespace
