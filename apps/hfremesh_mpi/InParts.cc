@@ -166,7 +166,7 @@ class PartsRun {
       reporting(ExitCode::kCannotRead, [&] {
         const bool is_index = std::filesystem::path(line_.input).extension() == ".pvtu";
         for (const std::string& note :
-             is_index ? mpi::read_pvtu(mesh_, line_.input) : mpi::read_vtu(mesh_, line_.input))
+             is_index ? mpi::read_pvtu(mesh_, line_.input) : mpi::read_ranges(mesh_, line_.input))
           say("{}: {}", line_.input, note);
       });
       return;
