@@ -15,6 +15,8 @@ using Open = std::unique_ptr<MeshShare> (*)(const std::filesystem::path&, const 
 Open opener(const std::filesystem::path& path) {
   const std::string extension = lower(path.extension().string());
   if (extension == ".vtu") return vtu_share;
+  if (extension == ".mesh" || extension == ".meshb") return medit_share;
+  if (extension == ".msh") return gmsh_share;
   return nullptr;
 }
 

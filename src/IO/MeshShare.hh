@@ -88,7 +88,7 @@ class MeshShare {
   std::vector<std::string> notes_;
 };
 
-/// By extension: .vtu of raw appended data. `at_once`: elements of a portion, about.
+/// By extension: .vtu of raw appended data, .mesh, .meshb, .msh. `at_once`: elements of a portion, about.
 std::unique_ptr<MeshShare> open_share(const std::filesystem::path& path, const Processes& processes,
                                       std::uint64_t at_once);
 /// Whether open_share() knows the extension.
@@ -97,6 +97,10 @@ bool has_shares(const std::filesystem::path& path);
 // By format.
 std::unique_ptr<MeshShare> vtu_share(const std::filesystem::path& path, const Processes& processes,
                                      std::uint64_t at_once);
+std::unique_ptr<MeshShare> medit_share(const std::filesystem::path& path, const Processes& processes,
+                                       std::uint64_t at_once);
+std::unique_ptr<MeshShare> gmsh_share(const std::filesystem::path& path, const Processes& processes,
+                                      std::uint64_t at_once);
 
 }  // namespace hfr::io
 
