@@ -11,6 +11,8 @@
 #include <sys/resource.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -45,8 +47,12 @@ void add_options(Command command, PartsLine& line) {
   command.example("mpirun -n 4 hfremesh-mpi parts --generate 150 150 150 -o bad.pvtu", "20 million cells");
   command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.pvtu --min-dihedral 15",
                   "with the bits of hfremesh --polish-only");
-  command.option("IN", line.input,
-                 "What to read: .pvtu, an index of pieces, or .vtu, of which each rank reads a range");
+  command.example("mpirun -n 4 hfremesh-mpi parts part.msh -o part.vtu --min-dihedral 15",
+                  "a file of which no rank reads all");
+  command.option(
+      "IN", line.input,
+      "What to read: .pvtu, an index of pieces, or .vtu, .mesh, .meshb or .msh, of which each rank "
+      "reads a range");
   command
       .option(
           "-o,--output", line.output,
@@ -101,10 +107,12 @@ void require_sound(const PartsLine& line) {
   const auto refuse = [](const std::string& why) { throw Failure(ExitCode::kUsage, "parts: " + why); };
   if (line.input.empty() == line.counts.empty()) refuse("give either IN or --generate NX NY NZ");
   const std::string in = extension(line.input);
-  if (!line.input.empty() && in != ".pvtu" && in != ".vtu")
+  constexpr std::array kRead = {".pvtu", ".vtu", ".mesh", ".meshb", ".msh"};
+  if (!line.input.empty() && std::find(kRead.begin(), kRead.end(), in) == kRead.end())
     refuse(
         line.input +
-        ": meshes in parts are read from .pvtu and .vtu; hfremesh-mpi without 'parts' reads other formats");
+        ": meshes in parts are read from .pvtu, .vtu, .mesh, .meshb and .msh; hfremesh-mpi without 'parts' "
+        "reads other formats");
   const std::string out = extension(line.output);
   if (!line.output.empty() && out != ".pvtu" && out != ".vtu")
     refuse(line.output + ": meshes in parts are written as .pvtu or .vtu");
@@ -166,7 +174,7 @@ class PartsRun {
       reporting(ExitCode::kCannotRead, [&] {
         const bool is_index = std::filesystem::path(line_.input).extension() == ".pvtu";
         for (const std::string& note :
-             is_index ? mpi::read_pvtu(mesh_, line_.input) : mpi::read_vtu(mesh_, line_.input))
+             is_index ? mpi::read_pvtu(mesh_, line_.input) : mpi::read_ranges(mesh_, line_.input))
           say("{}: {}", line_.input, note);
       });
       return;

@@ -178,14 +178,25 @@ struct HeldCell {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 4> v{};
   double quality = 0;
+  std::uint64_t labels = 0;  ///< of what hangs on its vertices, edges and faces: a hash
 };
 struct HeldVertex {
   std::uint64_t number = 0;
   Vec3 point;
 };
 
+std::uint64_t hash_of_labels(const DistributedMesh& mesh, CellHandle c) {
+  std::uint64_t sum = 0;
+  for (const LabelRecord& r : mesh.labels_of({&c, 1}, mesh.part().cell(c).v)) {
+    std::uint64_t h = mix64(r.number ^ static_cast<std::uint64_t>(r.kind) << 56);
+    for (std::uint64_t v : r.v) h = mix64(h ^ v);
+    sum += mix64(h ^ static_cast<std::uint32_t>(r.value));
+  }
+  return sum;
+}
+
 HeldCell held(const DistributedMesh& mesh, CellHandle c) {
-  HeldCell one{mesh.number(c), {}, mesh.work().quality[c.idx()]};
+  HeldCell one{mesh.number(c), {}, mesh.work().quality[c.idx()], hash_of_labels(mesh, c)};
   for (std::size_t k = 0; k < 4; ++k) one.v[k] = mesh.number(mesh.part().cell(c).v[k]);
   return one;
 }
@@ -231,6 +242,7 @@ Fault compare_with_owners(DistributedMesh& mesh) {
       }
       const HeldCell mine = held(mesh, c);
       if (mine.v != theirs.v || mine.quality != theirs.quality) say("cell " + std::to_string(theirs.number));
+      if (mine.labels != theirs.labels) say("what is labelled of cell " + std::to_string(theirs.number));
     }
     for (const HeldVertex& theirs : in.get_all<HeldVertex>()) {
       const VertexHandle v = mesh.vertex_at(theirs.number);

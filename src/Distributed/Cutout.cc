@@ -117,11 +117,13 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   std::sort(corners.begin(), corners.end());
   corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
   for (VertexHandle v : corners) vertices_.push_back(parts.record(v));
+  std::vector<LabelRecord> labels = parts.labels_of(mine, corners);
   std::vector<Packer> to(comm.n_ranks());
   if (comm.rank() != 0) {
     to[0].put_all(taken);
     to[0].put_all(vertices_);
     to[0].put_all(cell_records);
+    if (!labels.empty()) to[0].put_all(labels);
   }
   const std::vector<Comm::Message> came = comm.exchange(to);
   if (comm.rank() != 0) {
@@ -137,6 +139,7 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
     append(taken);
     append(vertices_);
     append(cell_records);
+    if (!in.at_end()) append(labels);
   }
   std::sort(taken.begin(), taken.end());
   sort_by_number(vertices_);
@@ -146,6 +149,7 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   work_.holds_damage = parts.work().holds_damage;
   first_new_ = parts.n_vertices();
   build(std::move(cell_records), taken);
+  labels_.add(mesh_, labels, [this](std::uint64_t n) { return vertex_at(n); });
 }
 
 /// `taken`: numbers of vertices, ascending.
@@ -172,13 +176,12 @@ void Cutout::build(std::vector<CellRecord> cells, const std::vector<std::uint64_
     work_.quality.push_back(r.quality);
     work_.pending.push_back(r.pending);
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), r.v[k],
-                                       [](const VertexRecord& v, std::uint64_t n) { return v.number < n; });
-      const VertexHandle v(at - vertices_.begin());
+      const VertexHandle v = vertex_at(r.v[k]);
       writer.cell(c).v[k] = v;
       writer.cell(c).mate[k] = HalfFaceHandle();
       if (!is_taken[v.idx()]) rim_.is_rim[i] = 1;
-      if (!mesh_.incident_cell(v).is_valid() || at->incident == r.number) writer.set_incident_cell(v, c);
+      if (!mesh_.incident_cell(v).is_valid() || vertices_[v.idx()].incident == r.number)
+        writer.set_incident_cell(v, c);
     }
     mesh_.set_region(c, r.region);
   }
@@ -202,6 +205,14 @@ void Cutout::match_faces() {
     writer.set_mate(faces[i].second, faces[i - 1].second);
     writer.set_mate(faces[i - 1].second, faces[i].second);
   }
+}
+
+/// Of those that it was built with.
+VertexHandle Cutout::vertex_at(std::uint64_t number) const {
+  const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), number,
+                                   [](const VertexRecord& v, std::uint64_t n) { return v.number < n; });
+  return at != vertices_.end() && at->number == number ? VertexHandle(at - vertices_.begin())
+                                                       : VertexHandle();
 }
 
 CellHandle Cutout::cell_at(std::uint64_t number) const {

@@ -36,14 +36,20 @@ class Cutout {
   /// What the whole is to be told of them.
   DistributedMesh::VertexRecord record(VertexHandle v) const;
   DistributedMesh::CellRecord record(CellHandle c) const;
+  std::vector<LabelRecord> labels_of(std::span<const CellHandle> cells,
+                                     std::span<const VertexHandle> vertices) const {
+    return labels_.of(mesh_, cells, vertices, [this](VertexHandle v) { return number(v); });
+  }
 
  private:
   void build(std::vector<DistributedMesh::CellRecord> cells, const std::vector<std::uint64_t>& taken);
+  VertexHandle vertex_at(std::uint64_t number) const;
   void match_faces();
 
   TetMesh mesh_;
   Workspace work_;
   CutRim rim_;
+  PartLabels labels_;
   std::vector<DistributedMesh::VertexRecord> vertices_;  // as they were
   std::vector<std::uint64_t> cell_number_;               // by slot; the first n_sorted_ ascend
   std::size_t n_sorted_ = 0;

@@ -20,9 +20,13 @@ std::uint64_t face_number(std::uint64_t cell, int corner) {
 }  // namespace
 
 std::string DistributedMesh::reason_against(const TetMesh& mesh, const Workspace& work) {
-  const Labels& labels = mesh.labels();
-  if (!labels.faces.empty() || !labels.edges.empty() || !labels.vertices.empty()) return "labels";
-  if (!mesh.locks().empty()) return "fixed edges, faces or patches";
+  const auto has_loose = [&](const auto& map) {
+    const std::vector<std::uint8_t> used = used_entries(mesh, map);
+    return std::find(used.begin(), used.end(), 0) != used.end();
+  };
+  if (has_loose(mesh.labels().faces) || has_loose(mesh.labels().edges) || has_loose(mesh.locks().faces) ||
+      has_loose(mesh.locks().edges))
+    return "labelled or fixed edges or faces that no cell has";
   if (!mesh.properties().cells.empty()) return "cell properties";
   if (!work.pinched.empty()) return "vertices whose cells do not connect through faces";
   for (std::size_t c = 0; c < mesh.n_cells(); ++c)
@@ -42,6 +46,7 @@ void DistributedMesh::scatter(const TetMesh* mesh, const Workspace* work, std::s
   Block mine = comm_.hand_out([&](int rank) { return cut->message(rank); });
   cut.reset();
   build_part(mine, policy);
+  scatter_labels(mesh, owner);
 }
 
 void DistributedMesh::build_part(Block& block, par::Policy policy) {
@@ -66,6 +71,7 @@ void DistributedMesh::build_part(Block& block, par::Policy policy) {
   later_.clear();
   n_sorted_ = cell_number_.size();
   mesh_ = TetMesh();
+  labels_ = PartLabels();
   mesh_.reserve_vertices(in.point.size());
   for (Vec3 p : in.point) mesh_.add_vertex(p);
   TetMesh::Writer writer(mesh_);
@@ -92,6 +98,7 @@ void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint6
   n_vertices_ = n_vertices;
   free_.clear();
   mesh_ = std::move(piece.mesh);
+  labels_ = PartLabels();
   vertex_number_ = std::move(piece.vertex_number);
   cell_number_ = std::move(piece.cell_number);
   owner_ = std::move(piece.owner);
@@ -111,7 +118,8 @@ void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint6
   for (std::size_t v = 0; v < pinched.size(); ++v)
     HFR_REQUIRE(!pinched[v] || !is_own(VertexHandle(v)),
                 "vertex " + std::to_string(vertex_number_[v]) +
-                    ": its cells do not connect through faces; a mesh in parts cannot have that yet");
+                    ": its cells do not connect through faces, or are more than " +
+                    std::to_string(Star::kCapacity) + "; a mesh in parts cannot have that yet");
 }
 
 VertexHandle DistributedMesh::vertex_at(std::uint64_t number) const {
@@ -182,7 +190,8 @@ auto DistributedMesh::record(CellHandle c) const -> CellRecord {
   return r;
 }
 
-void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells) {
+void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells,
+                            std::span<const LabelRecord> labels) {
   std::vector<VertexRecord> fresh;
   for (const VertexRecord& r : vertices)
     if (!vertex_at(r.number).is_valid()) fresh.push_back(r);
@@ -190,6 +199,7 @@ void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<co
   write_cells(cells);
   link(cells);
   match_open_faces();
+  add_labels(labels);
   TetMesh::Writer writer(mesh_);
   for (const VertexRecord& r : vertices) {
     const VertexHandle v = vertex_at(r.number);
@@ -323,6 +333,7 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> records) {
   for (std::size_t v = 0; v < n; ++v) writer.set_incident_cell(VertexHandle(v), incident[v]);
   for (std::size_t i = 0; i < n_old; ++i)
     if (mesh_.is_deleted(VertexHandle(i))) writer.mark_deleted(to[i]);
+  PartLabels::move(mesh_, mesh, to);
   RankSets one(n, comm_.size()), two(n, comm_.size()), known(n, comm_.size());
   for (std::size_t v = 0; v < n; ++v) {
     one.set_only(v, owners[v]);

@@ -10,14 +10,13 @@
 #include <vector>
 
 #include "hfremesh/Distributed/Comm.hh"
+#include "hfremesh/Distributed/PartLabels.hh"
 #include "hfremesh/Distributed/Partition.hh"
 #include "hfremesh/Distributed/RankSets.hh"
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr::mpi {
-
-inline constexpr std::uint64_t kNoNumber = std::numeric_limits<std::uint64_t>::max();
 
 /// A mesh that is cut among the ranks. Each vertex has an owner, for good; a cell belongs to the owner of its
 /// vertex with the smallest number. A rank holds the cells with a vertex of its own and two layers of cells
@@ -28,16 +27,16 @@ inline constexpr std::uint64_t kNoNumber = std::numeric_limits<std::uint64_t>::m
 /// stand in the order of their numbers; cells in any order, each slot for one number as long as the part
 /// lives. Nothing of it depends on who owns what but who does the work.
 ///
-/// What has to be equal on all parts that hold it is: cells, their qualities and pending bits, points, and
-/// within two edges of own vertices change stamps, star sizes and incident cells.
+/// What has to be equal on all parts that hold it is: cells, their qualities and pending bits, points, what
+/// hangs on the vertices, edges and faces of cells (labels, and what is fixed), and within two edges of own
+/// vertices change stamps, star sizes and incident cells.
 class DistributedMesh {
  public:
   explicit DistributedMesh(Comm& comm) : comm_(comm) {}
   DistributedMesh(const DistributedMesh&) = delete;
   DistributedMesh& operator=(const DistributedMesh&) = delete;
 
-  /// Why a mesh cannot be cut yet; empty where it can. Labels and locks, cell properties and bits, pinched
-  /// vertices.
+  /// Why a mesh cannot be cut yet; empty where it can. Cell properties and bits, pinched vertices.
   static std::string reason_against(const TetMesh& mesh, const Workspace& work);
 
   /// Hands out the mesh and the workspace of rank 0, attached to it and with its qualities; `owner`: of each
@@ -56,6 +55,15 @@ class DistributedMesh {
   /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
   /// qualities yet. Throws InvalidInput where cells of a vertex do not connect through faces.
   void assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
+  /// After assemble(), for what a file says of vertices, edges and faces: each on the rank that owns its
+  /// smallest vertex, with its place in the file as its number, maybe several times. Of several labels of a
+  /// vertex the first one counts, of an edge or a face the last one, which has the place and the order of the
+  /// first. Returns notes, the same on all ranks. Throws InvalidInput where no cell has such an edge or face.
+  /// All take part.
+  std::vector<std::string> attach_labels(std::vector<LabelRecord> records);
+  /// To all ranks that hold a cell with these vertices, and into this part. Each on the rank that owns its
+  /// smallest vertex. All take part.
+  void hand_out_labels(std::span<const LabelRecord> records);
 
   /// What gather() brings.
   enum class Gather : std::uint8_t {
@@ -144,14 +152,28 @@ class DistributedMesh {
   };
   VertexRecord record(VertexHandle v) const;
   CellRecord record(CellHandle c) const;
+  /// Of these vertices, and of the edges and faces of these cells.
+  std::vector<LabelRecord> labels_of(std::span<const CellHandle> cells,
+                                     std::span<const VertexHandle> vertices) const {
+    return labels_.of(mesh_, cells, vertices, [this](VertexHandle v) { return number(v); });
+  }
+  const PartLabels& label_numbers() const { return labels_; }
   /// Writes what came. Records of owners count where there are several of a vertex; of a cell all are equal,
   /// but for mates, which a rank may have as they were before. So what they do not tell is found by vertices:
-  /// faces of the cells that are written, and those that detach() has opened since the last call.
-  void apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells);
+  /// faces of the cells that are written, and those that detach() has opened since the last call. `labels`:
+  /// of these vertices and cells.
+  void apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells,
+             std::span<const LabelRecord> labels);
 
  private:
   void build_part(Block& block, par::Policy policy);
+  void scatter_labels(const TetMesh* mesh, std::span<const int> owner);
   void insert_vertices(std::span<const VertexRecord> fresh);
+  void add_labels(std::span<const LabelRecord> records) {
+    labels_.add(mesh_, records, [this](std::uint64_t n) { return vertex_at(n); });
+  }
+  void refuse_loose(std::span<const LabelRecord> records) const;
+  std::vector<std::uint8_t> has_cell(std::span<const LabelRecord> records) const;
   void write_cells(std::span<const CellRecord> cells);
   void link(std::span<const CellRecord> cells);
   void match_open_faces();
@@ -167,6 +189,7 @@ class DistributedMesh {
   Comm& comm_;
   TetMesh mesh_;
   Workspace work_;
+  PartLabels labels_;
   std::vector<std::uint64_t> vertex_number_;  // ascending
   std::vector<int> owner_;
   std::vector<std::uint64_t> cell_number_;  // by slot; the first n_sorted_ ascend

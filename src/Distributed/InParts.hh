@@ -87,16 +87,20 @@ void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
 
 /// What write_pvtu() has written, by any number of ranks: piece i is read by rank i mod n, and points that
 /// several ranks have come to belong to the first of them. Throws InvalidInput where pieces have no "number",
-/// numbers have gaps, or there are other elements than tetrahedra; IoError where a file is missing. Regions
-/// come along; returns the names of other arrays, which are left out, of the pieces that this rank has read.
+/// numbers have gaps, or there are other elements than tetrahedra, triangles and edges; IoError where a file
+/// is missing. Labels, names and fixed vertices come along; returns the names of other arrays, which are left
+/// out, of the pieces that this rank has read.
 std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
-/// One .vtu of tetrahedra whose arrays are raw appended data, as write_vtu() and io::write() make it: each
-/// rank reads a range of the points and one of the cells, and none the whole. Regions come along; other
-/// arrays are left out, and named in what is returned, on all ranks. Throws InvalidInput for other elements,
-/// labelled or fixed vertices, and .vtu of another form; IoError where the file cannot be read.
-/// `at_once`: cells that a rank reads and sends away before it reads on.
-std::vector<std::string> read_vtu(DistributedMesh& mesh, const std::filesystem::path& path,
-                                  std::uint64_t at_once = 1'000'000);
+/// One file, of which each rank reads a range of the points and one of the elements, and none the whole: .vtu
+/// whose arrays are raw appended data, as write_vtu() and io::write() make it; .mesh, .meshb, and .msh as
+/// text of version 2.2 or 4.1, with each entry on a line of its own. Points and elements have the numbers,
+/// and labels the order, that io::read() gives them. Labels, names and fixed vertices come along; other
+/// arrays are left out, and named in what is returned, on all ranks. Throws InvalidInput for other elements
+/// than tetrahedra, triangles and edges, for files of another form, and for triangles and edges of no
+/// tetrahedron; IoError where the file cannot be read. `at_once`: elements that a rank reads and sends away
+/// before it reads on, about.
+std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
+                                     std::uint64_t at_once = 1'000'000);
 
 }  // namespace hfr::mpi
 

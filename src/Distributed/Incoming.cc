@@ -225,8 +225,22 @@ DistributedMesh::Piece Incoming::piece() {
   return piece;
 }
 
+void Incoming::send_labels(Incoming& to) {
+  std::vector<std::vector<LabelRecord>> sent(comm_.n_ranks());
+  for (const LabelRecord& r : std::exchange(labels_, {}))
+    sent[static_cast<std::size_t>(points_[place(r.smallest_vertex(), 0)].owner)].push_back(r);
+  std::vector<Packer> packed(comm_.n_ranks());
+  for (std::size_t r = 0; r < sent.size(); ++r)
+    if (!sent[r].empty()) packed[r].put_all(std::exchange(sent[r], {}));
+  for (const Comm::Message& message : comm_.exchange(packed)) {
+    const auto came = Unpacker(message.bytes).get_all<LabelRecord>();
+    to.labels_.insert(to.labels_.end(), came.begin(), came.end());
+  }
+}
+
 void Incoming::hand_to_owners(Incoming& to) {
   unite();
+  send_labels(to);
   send(
       [&](const CornerRecord&, const Places& at, std::vector<int>& receivers) {
         for (Index i : at) receivers.push_back(owner(i));
@@ -235,7 +249,7 @@ void Incoming::hand_to_owners(Incoming& to) {
   if (&to == this) keep_near(0);
 }
 
-void Incoming::make_parts(DistributedMesh& mesh) {
+std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh) {
   unite();
   for (int edges = 1; edges <= 2; ++edges) {
     const Sets near = near_own(edges);
@@ -246,6 +260,7 @@ void Incoming::make_parts(DistributedMesh& mesh) {
         *this);
   }
   mesh.assemble(piece(), n_points_, n_cells_);
+  return mesh.attach_labels(std::exchange(labels_, {}));
 }
 
 }  // namespace hfr::mpi

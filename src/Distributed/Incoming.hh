@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "Distributed/Comm.hh"
@@ -35,6 +36,9 @@ class Incoming {
   /// Any order; the same thing may come twice. The points of a cell have to be there on its rank.
   void add(const PointRecord& point) { points_.push_back(point); }
   void add(const CornerRecord& cell) { cells_.push_back(cell); }
+  /// On the rank that owns its smallest vertex, or on one that has this point when hand_to_owners() is
+  /// called.
+  void add(const LabelRecord& label) { labels_.push_back(label); }
   void reserve_cells(std::size_t n) { cells_.reserve(n); }
 
   /// The first rank that has a point owns it. Each rank answers for a range of numbers; that it has seen all
@@ -45,11 +49,12 @@ class Incoming {
     n_points_ = n_points;
     n_cells_ = n_cells;
   }
-  /// Each cell to the owners of its vertices, with its points, into `to` of these ranks; where that is this
-  /// object itself, only what belongs here stays. All take part.
+  /// Each cell to the owners of its vertices, with its points, into `to` of these ranks, and each label to
+  /// the owner of its smallest vertex; where that is this object itself, only what belongs here stays. All
+  /// take part.
   void hand_to_owners(Incoming& to);
-  /// From what owners have to the parts. All take part.
-  void make_parts(DistributedMesh& mesh);
+  /// From what owners have to the parts. Returns notes on labels. All take part.
+  std::vector<std::string> make_parts(DistributedMesh& mesh);
 
  private:
   using Places = std::array<Index, 4>;
@@ -66,11 +71,13 @@ class Incoming {
   Sets near_own(int edges) const;
   /// Leaves cells with a vertex within so many edges of own ones, and the points of these and own ones.
   void keep_near(std::uint8_t most);
+  void send_labels(Incoming& to);
   DistributedMesh::Piece piece();
 
   Comm& comm_;
   std::vector<PointRecord> points_;
   std::vector<CornerRecord> cells_;
+  std::vector<LabelRecord> labels_;
   std::uint64_t n_points_ = 0, n_cells_ = 0;
 };
 

@@ -39,6 +39,7 @@ struct Change {
   std::vector<std::uint64_t> removed;
   std::vector<DistributedMesh::VertexRecord> vertices;
   std::vector<DistributedMesh::CellRecord> cells;
+  std::vector<LabelRecord> labels;
 };
 
 /// The round on a cutout. Slots are those of the whole.
@@ -126,6 +127,7 @@ void CutoutRound::finish(std::span<const Commit> commits) {
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (VertexHandle v : vertices) change.vertices.push_back(cutout_.record(v));
+    change.labels = cutout_.labels_of(commit.created, vertices);
     change.vertices.back().owner = change.vertices.front().owner;  // the new one is the last of all
   }
 }
@@ -225,6 +227,7 @@ void run_on_cutout(DistributedMesh& parts, Cutout& cutout, const Ranks::Dig& dig
     said.put_all(change.removed);
     said.put_all(change.vertices);
     said.put_all(change.cells);
+    said.put_all(change.labels);
   }
 }
 
@@ -241,11 +244,13 @@ RoundCounts follow(DistributedMesh& parts, Unpacker& in) {
   ++parts.work().clock;
   std::vector<DistributedMesh::VertexRecord> vertices;
   std::vector<DistributedMesh::CellRecord> cells;
+  std::vector<LabelRecord> labels;
   std::vector<CellHandle> gone;
   for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
     const auto removed = in.get_all<std::uint64_t>();
     const auto v = in.get_all<DistributedMesh::VertexRecord>();
     const auto c = in.get_all<DistributedMesh::CellRecord>();
+    const auto l = in.get_all<LabelRecord>();
     // Whoever has to hold one of the new cells holds one of those that they stand for.
     const std::size_t n_before = gone.size();
     for (std::uint64_t number : removed)
@@ -254,9 +259,10 @@ RoundCounts follow(DistributedMesh& parts, Unpacker& in) {
     if (gone.size() == n_before) continue;
     vertices.insert(vertices.end(), v.begin(), v.end());
     cells.insert(cells.end(), c.begin(), c.end());
+    labels.insert(labels.end(), l.begin(), l.end());
   }
   for (CellHandle c : gone) parts.detach(c);
-  if (!gone.empty()) parts.apply(vertices, cells);
+  if (!gone.empty()) parts.apply(vertices, cells, labels);
   PartRound(parts).bring_near(!gone.empty());
   return counts;
 }

@@ -404,6 +404,8 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
     to[r].put_all(push.removed);
     to[r].put_all(vertices);
     to[r].put_all(cells);
+    const std::vector<LabelRecord> labels = mesh_.labels_of(push.cells, push.vertices);
+    if (!labels.empty()) to[r].put_all(labels);
   }
   const auto [came, n_touched, n_messages] = comm_.exchange(to, is_touched ? 1 : 0);
   const bool is_any_touched = n_touched + n_messages > 0;
@@ -413,6 +415,7 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
     for (CellHandle c : commit.removed) done.insert(mesh_.number(c));
   std::vector<VertexRecord> vertices;
   std::vector<CellRecord> cells;
+  std::vector<LabelRecord> labels;
   for (const Comm::Message& message : came) {
     Unpacker in(message.bytes);
     for (std::uint64_t number : in.get_all<std::uint64_t>()) {
@@ -424,8 +427,11 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
     vertices.insert(vertices.end(), v.begin(), v.end());
     const auto c = in.get_all<CellRecord>();
     cells.insert(cells.end(), c.begin(), c.end());
+    if (in.at_end()) continue;
+    const auto l = in.get_all<LabelRecord>();
+    labels.insert(labels.end(), l.begin(), l.end());
   }
-  mesh_.apply(vertices, cells);
+  mesh_.apply(vertices, cells, labels);
   return {true, is_any_touched};
 }
 

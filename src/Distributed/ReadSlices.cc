@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,20 +14,25 @@
 #include "Distributed/Incoming.hh"
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Reorder.hh"
-#include "IO/VtuSlices.hh"
+#include "IO/MeshShare.hh"
 
 namespace hfr::mpi {
 namespace {
 
-/// Even ranges of numbers, one a rank.
+/// Ranges of the numbers of points, one a rank.
 class Slices {
  public:
-  Slices(const Comm& comm, std::uint64_t n) : n_ranks_(comm.n_ranks()), n_(n) {}
-  std::uint64_t begin(std::uint64_t rank) const { return (rank * n_ + n_ranks_ - 1) / n_ranks_; }
-  std::size_t rank_of(std::uint64_t number) const { return number * n_ranks_ / n_; }
+  explicit Slices(std::span<const std::uint64_t> begins) : begins_(begins) {}
+  std::uint64_t begin(std::uint64_t rank) const { return begins_[rank]; }
+  /// Of a number that there is. A range may be empty.
+  std::size_t rank_of(std::uint64_t number) const {
+    return static_cast<std::size_t>(std::upper_bound(begins_.begin(), begins_.end(), number) -
+                                    begins_.begin()) -
+           1;
+  }
 
  private:
-  std::uint64_t n_ranks_, n_;
+  std::span<const std::uint64_t> begins_;
 };
 
 /// Of the points of all ranks.
@@ -79,6 +86,18 @@ class Passage {
     exchange_points(to, incoming);
   }
 
+  /// To the owner of the smallest vertex, by the rank that has read this.
+  void send_labels(const std::vector<LabelRecord>& labels, Incoming& incoming) {
+    std::vector<std::vector<LabelRecord>> to(comm_.n_ranks());
+    for (const LabelRecord& r : labels) to[slices_.rank_of(r.smallest_vertex())].push_back(r);
+    std::vector<std::vector<LabelRecord>> on(comm_.n_ranks());
+    const std::uint64_t first = slices_.begin(static_cast<std::uint64_t>(comm_.rank()));
+    exchange_labels(to, [&](const LabelRecord& r) {
+      on[static_cast<std::size_t>(points_[r.smallest_vertex() - first].owner)].push_back(r);
+    });
+    exchange_labels(on, [&](const LabelRecord& r) { incoming.add(r); });
+  }
+
   void send_cells(const std::vector<CornerRecord>& cells, Incoming& incoming) {
     std::vector<std::vector<std::uint64_t>> wanted(comm_.n_ranks());
     for (const CornerRecord& c : cells)
@@ -103,6 +122,14 @@ class Passage {
   }
 
  private:
+  template <class Use>
+  void exchange_labels(std::vector<std::vector<LabelRecord>>& to, Use&& use) {
+    std::vector<Packer> packed(comm_.n_ranks());
+    for (std::size_t r = 0; r < to.size(); ++r)
+      if (!to[r].empty()) packed[r].put_all(std::exchange(to[r], {}));
+    for (const Comm::Message& message : comm_.exchange(packed))
+      for (const LabelRecord& r : Unpacker(message.bytes).get_all<LabelRecord>()) use(r);
+  }
   void exchange_points(std::vector<std::vector<PointRecord>>& to, Incoming& incoming) {
     std::vector<Packer> packed(comm_.n_ranks());
     for (std::size_t r = 0; r < to.size(); ++r)
@@ -116,54 +143,99 @@ class Passage {
   std::vector<PointRecord> points_;  // of this rank's slice
 };
 
-std::vector<PointRecord> read_points(Comm& comm, const Slices& slices, io::VtuSlices& file) {
-  const auto rank = static_cast<std::uint64_t>(comm.rank());
-  std::uint64_t number = slices.begin(rank);
-  const std::vector<Vec3> points = file.points(number, slices.begin(rank + 1));
-  const CurveOwners owner(comm, points);
-  std::vector<PointRecord> records;
-  records.reserve(points.size());
-  for (const Vec3& p : points) records.push_back({number++, p, owner(p)});
-  return records;
+io::Processes processes(Comm& comm) {
+  return {static_cast<std::size_t>(comm.rank()), comm.n_ranks(),
+          [&comm](std::span<const std::byte> mine) { return comm.all_gather(mine); }};
 }
 
-std::vector<CornerRecord> read_cells(io::VtuSlices& file, std::uint64_t begin, std::uint64_t end) {
-  const auto corners = file.cells(begin, end);
-  std::vector<std::int32_t> regions;
-  if (file.has_regions()) regions = file.regions(begin, end);
-  std::vector<CornerRecord> records;
-  records.reserve(corners.size());
-  for (std::size_t c = 0; c < corners.size(); ++c)
-    records.push_back({begin + c, corners[c], regions.empty() ? 0 : regions[c]});
-  return records;
-}
+/// What this rank reads of a file, as records.
+class ShareReader {
+ public:
+  ShareReader(Comm& comm, io::MeshShare& share) : comm_(comm), share_(share) {}
+
+  std::vector<PointRecord> points() {
+    const io::SharePoints read = share_.points();
+    const CurveOwners owner(comm_, read.points);
+    std::vector<PointRecord> records;
+    records.reserve(read.points.size());
+    std::uint64_t number = read.first;
+    for (const Vec3& p : read.points) records.push_back({number++, p, owner(p)});
+    for (std::size_t i = 0; i < read.labels.size(); ++i)
+      if (read.labels[i] != 0) label_vertex(read.first + i, read.labels[i]);
+    for (std::size_t i = 0; i < read.fixed.size(); ++i)
+      if (read.fixed[i] != 0) fix(read.first + i);
+    return records;
+  }
+
+  /// Portion i, or nothing where there are no more; its labels are kept.
+  std::vector<CornerRecord> cells(std::size_t i) {
+    std::vector<CornerRecord> records;
+    if (i >= share_.n_portions()) return records;
+    const io::ShareItems items = share_.portion(i);
+    records.reserve(items.cells.corners.size());
+    std::uint64_t number = items.cells.first;
+    for (std::size_t c = 0; c < items.cells.corners.size(); ++c)
+      records.push_back({number++, items.cells.corners[c], items.cells.labels[c]});
+    label(items.triangles, LabelRecord::Kind::kFace);
+    label(items.edges, LabelRecord::Kind::kEdge);
+    for (const auto& [v, value] : items.vertex_labels) label_vertex(v, value);
+    for (std::uint64_t v : items.fixed) fix(v);
+    return records;
+  }
+
+  const std::vector<LabelRecord>& labels() const { return labels_; }
+
+ private:
+  template <std::size_t N>
+  void label(const io::ShareElements<N>& elements, LabelRecord::Kind kind) {
+    LabelRecord r;
+    r.kind = kind;
+    r.number = elements.first;
+    for (std::size_t i = 0; i < elements.corners.size(); ++i, ++r.number) {
+      std::copy(elements.corners[i].begin(), elements.corners[i].end(), r.v.begin());
+      r.value = elements.labels[i];
+      labels_.push_back(r);
+    }
+  }
+  void label_vertex(std::uint64_t v, std::int32_t value) {
+    // Shares of ranks follow on one another in the file.
+    const std::uint64_t number = (static_cast<std::uint64_t>(comm_.rank()) << 40) + labels_.size();
+    labels_.push_back({{v, kNoNumber, kNoNumber}, number, value, LabelRecord::Kind::kVertex});
+  }
+  void fix(std::uint64_t v) {
+    labels_.push_back({{v, kNoNumber, kNoNumber}, 0, 0, LabelRecord::Kind::kFixedVertex});
+  }
+
+  Comm& comm_;
+  io::MeshShare& share_;
+  std::vector<LabelRecord> labels_;
+};
 
 }  // namespace
 
-std::vector<std::string> read_vtu(DistributedMesh& mesh, const std::filesystem::path& path,
-                                  std::uint64_t at_once) {
+std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
+                                     std::uint64_t at_once) {
   Comm& comm = mesh.comm();
   const Comm::InPhase phase(comm, Phase::kHandOut);
-  io::VtuSlices file(path);
-  HFR_REQUIRE(file.n_points() > 0 && file.n_cells() > 0, path.string() + ": it has no cells");
-  const Slices points(comm, file.n_points()), cells(comm, file.n_cells());
+  const std::unique_ptr<io::MeshShare> share = io::open_share(path, processes(comm), at_once);
+  const Slices slices(share->point_begins());
   Incoming incoming(comm);
-  incoming.set_size(file.n_points(), file.n_cells());
+  incoming.set_size(share->n_points(), share->n_cells());
   {
-    Passage passage(comm, points, read_points(comm, points, file));
+    ShareReader reader(comm, *share);
+    Passage passage(comm, slices, reader.points());
     passage.send_points(incoming);
-    // All ranks take part in as many turns as the longest slice has.
-    const auto rank = static_cast<std::uint64_t>(comm.rank());
-    const std::uint64_t longest = (file.n_cells() + comm.n_ranks() - 1) / comm.n_ranks();
-    const std::uint64_t end = cells.begin(rank + 1);
-    incoming.reserve_cells(longest + longest / 4);
-    for (std::uint64_t done = 0; done < longest; done += at_once) {
-      const std::uint64_t from = std::min(cells.begin(rank) + done, end);
-      passage.send_cells(read_cells(file, from, std::min(from + at_once, end)), incoming);
-    }
+    // All ranks take part in as many turns as the longest share has.
+    const auto n_turns = static_cast<std::size_t>(-comm.min(-static_cast<double>(share->n_portions())));
+    const std::uint64_t even = share->n_cells() / comm.n_ranks();
+    incoming.reserve_cells(even + even / 4);
+    for (std::size_t i = 0; i < n_turns; ++i) passage.send_cells(reader.cells(i), incoming);
+    passage.send_labels(reader.labels(), incoming);
   }
-  incoming.make_parts(mesh);
-  return file.notes();
+  std::vector<std::string> notes = share->notes();
+  for (std::string& note : incoming.make_parts(mesh)) notes.push_back(std::move(note));
+  mesh.part().labels().names = share->names();
+  return notes;
 }
 
 }  // namespace hfr::mpi

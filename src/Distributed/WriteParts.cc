@@ -68,29 +68,111 @@ std::vector<CellHandle> own_cells(const DistributedMesh& mesh) {
   return cells;
 }
 
-bool has_regions(DistributedMesh& mesh) {
-  const TetMesh& part = mesh.part();
-  bool has = false;
-  for (std::size_t c = 0; c < part.n_cells() && part.has_regions() && !has; ++c)
-    has = !part.is_deleted(CellHandle(c)) && part.region(CellHandle(c)) != 0;
-  return mesh.comm().sum(has ? 1 : 0) > 0;
+/// An edge or a face with a label; of those, a rank writes the ones whose smallest vertex it owns.
+template <std::size_t N>
+struct Labelled {
+  std::uint64_t number = 0;
+  std::array<VertexHandle, N> v;
+  std::int32_t label = 0;
+};
+
+/// In the order of numbers. `number_of`: entry → number.
+template <std::size_t N, class NumberOf>
+std::vector<Labelled<N>> own_labelled(const DistributedMesh& mesh, const TupleMap<N, int>& map,
+                                      NumberOf&& number_of) {
+  std::vector<Labelled<N>> own;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const auto& entry = map.entries()[i];
+    if (mesh.is_own(*std::min_element(entry.vertices.begin(), entry.vertices.end())))
+      own.push_back({number_of(i), entry.vertices, static_cast<std::int32_t>(entry.value)});
+  }
+  std::sort(own.begin(), own.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
+  return own;
 }
 
-/// What own cells have, and own points that are in none.
-io::MeshData piece_of(const DistributedMesh& mesh, const Numbering& numbering, bool with_regions) {
+/// What hangs on own vertices, edges and faces, and what of it there is in the whole.
+class OwnLabels {
+ public:
+  explicit OwnLabels(DistributedMesh& mesh) {
+    const TetMesh& part = mesh.part();
+    const Labels& labels = part.labels();
+    const PartLabels& numbers = mesh.label_numbers();
+    faces = own_labelled(mesh, labels.faces, [&](std::size_t i) { return numbers.face_number(i); });
+    edges = own_labelled(mesh, labels.edges, [&](std::size_t i) { return numbers.edge_number(i); });
+    const auto is_set = [](const auto& one) { return one.label != 0; };
+    bool has_region =
+        std::any_of(faces.begin(), faces.end(), is_set) || std::any_of(edges.begin(), edges.end(), is_set);
+    for (std::size_t c = 0; c < part.n_cells() && part.has_regions() && !has_region; ++c)
+      has_region = !part.is_deleted(CellHandle(c)) && part.region(CellHandle(c)) != 0;
+    std::array<std::uint64_t, 5> sums = {faces.size(), edges.size(), has_region ? 1U : 0U, 0, 0};
+    for (VertexHandle v : own_vertices(mesh)) {
+      sums[3] += labels.vertex(v) != 0 ? 1 : 0;
+      sums[4] += part.is_fixed(v) ? 1 : 0;
+    }
+    mesh.comm().sum(sums);
+    n_faces = sums[0];
+    n_edges = sums[1];
+    with_regions = sums[2] > 0;
+    with_vertex_labels = sums[3] > 0;
+    with_fixed = sums[4] > 0;
+    io::MeshData named;
+    named.names = labels.names;
+    names = io::names_text(named);
+  }
+
+  std::vector<Labelled<3>> faces;
+  std::vector<Labelled<2>> edges;
+  std::uint64_t n_faces = 0, n_edges = 0;               ///< of the whole
+  bool with_regions = false;                            ///< or labels of faces or edges
+  bool with_vertex_labels = false, with_fixed = false;  ///< vertices
+  std::string names;                                    ///< as names_text() has them
+};
+
+/// Into the piece, by the places of its points.
+template <std::size_t N>
+void put_labelled(const std::vector<Labelled<N>>& own, const std::vector<Index>& place,
+                  std::vector<std::array<Index, N>>& items, std::vector<int>& labels,
+                  std::vector<double>& numbers) {
+  for (const Labelled<N>& one : own) {
+    auto& item = items.emplace_back();
+    for (std::size_t k = 0; k < N; ++k) item[k] = place[one.v[k].idx()];
+    labels.push_back(one.label);
+    numbers.push_back(static_cast<double>(one.number));
+  }
+}
+
+/// The points of a piece: own ones, and those that its cells and labels have; place of each, or none.
+std::vector<Index> places_in_piece(const DistributedMesh& mesh, const std::vector<CellHandle>& cells,
+                                   const OwnLabels& labels) {
+  std::vector<Index> place(mesh.part().n_vertices(), VertexHandle::kInvalid);
+  const auto take = [&](const auto& vertices) {
+    for (VertexHandle v : vertices) place[v.idx()] = 0;
+  };
+  take(own_vertices(mesh));
+  for (CellHandle c : cells) take(mesh.part().cell(c).v);
+  for (const auto& face : labels.faces) take(face.v);
+  for (const auto& edge : labels.edges) take(edge.v);
+  Index n = 0;
+  for (Index& at : place)
+    if (at != VertexHandle::kInvalid) at = n++;
+  return place;
+}
+
+io::MeshData piece_of(const DistributedMesh& mesh, const Numbering& numbering, const OwnLabels& labels) {
   const TetMesh& part = mesh.part();
   const std::vector<CellHandle> cells = own_cells(mesh);
-  std::vector<Index> place(part.n_vertices(), VertexHandle::kInvalid);
-  for (VertexHandle v : own_vertices(mesh)) place[v.idx()] = 0;
-  for (CellHandle c : cells)
-    for (VertexHandle v : part.cell(c).v) place[v.idx()] = 0;
+  const std::vector<Index> place = places_in_piece(mesh, cells, labels);
   io::MeshData data;
-  io::Field points{"number", 1, false, {}}, numbers{"number", 1, false, {}};
+  const std::string number(io::kVtkNumberArray);
+  io::Field points{number, 1, false, {}}, numbers{number, 1, false, {}};
+  io::Field fixed{std::string(io::kVtkFixedArray), 1, true, {}};  // also where none of this piece is
   for (std::size_t i = 0; i < place.size(); ++i) {
     if (place[i] == VertexHandle::kInvalid) continue;
-    place[i] = static_cast<Index>(data.points.size());
-    data.points.push_back(part.point(VertexHandle(i)));
-    points.values.push_back(static_cast<double>(numbering(VertexHandle(i))));
+    const VertexHandle v(i);
+    data.points.push_back(part.point(v));
+    points.values.push_back(static_cast<double>(numbering(v)));
+    if (labels.with_vertex_labels) data.vertex_labels.push_back(part.labels().vertex(v));
+    fixed.values.push_back(part.is_fixed(v) ? 1 : 0);
   }
   data.cells.reserve(cells.size());
   numbers.values.reserve(cells.size());
@@ -98,8 +180,12 @@ io::MeshData piece_of(const DistributedMesh& mesh, const Numbering& numbering, b
     auto& corners = data.cells.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) corners[k] = place[part.cell(c).v[k].idx()];
     numbers.values.push_back(static_cast<double>(numbering(c)));
-    if (with_regions) data.regions.push_back(part.region(c));
+    if (labels.with_regions) data.regions.push_back(part.region(c));
   }
+  put_labelled(labels.faces, place, data.triangles, data.triangle_labels, data.triangle_numbers);
+  put_labelled(labels.edges, place, data.edges, data.edge_labels, data.edge_numbers);
+  data.names = part.labels().names;
+  if (labels.with_fixed) data.point_fields.push_back(std::move(fixed));
   data.point_fields.push_back(std::move(points));
   data.cell_fields.push_back(std::move(numbers));
   return data;
@@ -125,20 +211,23 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-void write_index(const std::filesystem::path& path, int n_ranks, bool with_regions) {
+void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels& labels) {
   io::OutputFile out(path);
+  const auto declare = [&](const char* type, std::string_view name) {
+    out.text("<PDataArray type=\"").text(type).text("\" Name=\"").text(name);
+    out.text("\" NumberOfComponents=\"1\"/>\n");
+  };
   out.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"");
   out.text(std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian");
   out.text("\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n");
-  out.text(
-      "<PPointData>\n<PDataArray type=\"Float64\" Name=\"number\" "
-      "NumberOfComponents=\"1\"/>\n</PPointData>\n");
-  out.text("<PCellData>\n");
-  if (with_regions)
-    out.text("<PDataArray type=\"Int32\" Name=\"")
-        .text(io::kVtkRegionArray)
-        .text("\" NumberOfComponents=\"1\"/>\n");
-  out.text("<PDataArray type=\"Float64\" Name=\"number\" NumberOfComponents=\"1\"/>\n</PCellData>\n");
+  out.text("<PPointData>\n");
+  if (labels.with_vertex_labels) declare("Int32", io::kVtkLabelArray);
+  if (labels.with_fixed) declare("Int32", io::kVtkFixedArray);
+  declare("Float64", io::kVtkNumberArray);
+  out.text("</PPointData>\n<PCellData>\n");
+  if (labels.with_regions) declare("Int32", io::kVtkRegionArray);
+  declare("Float64", io::kVtkNumberArray);
+  out.text("</PCellData>\n");
   out.text(
       "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n");
   for (int r = 0; r < n_ranks; ++r)
@@ -210,109 +299,161 @@ class VtuLayout {
     const char* type;
     std::uint64_t components, n, size;  // numbers, and bytes of each
     std::uint64_t begin = 0;            // of its bytes in the file
+    bool is_there = true;
   };
 
-  VtuLayout(std::uint64_t n_points, std::uint64_t n_cells, bool with_regions) {
+  VtuLayout(std::uint64_t n_points, std::uint64_t n_tets, const OwnLabels& labels)
+      : n_cells(n_tets), n_faces(labels.n_faces), n_edges(labels.n_edges) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
-    const bool narrow = sizeof(Index) == 4 && n_points <= kMost, narrow_ends = n_cells <= kMost / 4;
+    const std::uint64_t n_items = n_cells + n_faces + n_edges;
+    const bool narrow = sizeof(Index) == 4 && n_points <= kMost, narrow_ends = n_items <= kMost / 4;
+    names = {"FieldData", io::kVtkNamesArray, "UInt8", 1, labels.names.size(), 1, 0, !labels.names.empty()};
     points = {"Points", "Points", "Float64", 3, 3 * n_points, 8};
-    corners = {"Cells", "connectivity", narrow ? "Int32" : "Int64", 1, 4 * n_cells, narrow ? 4U : 8U};
-    ends = {"Cells", "offsets", narrow_ends ? "Int32" : "Int64", 1, n_cells, narrow_ends ? 4U : 8U};
-    types = {"Cells", "types", "UInt8", 1, n_cells, 1};
-    regions = {"CellData", io::kVtkRegionArray, "Int32", 1, with_regions ? n_cells : 0, 4};
+    corners = {"Cells", "connectivity", narrow ? "Int32" : "Int64", 1, end_of(n_items), narrow ? 4U : 8U};
+    ends = {"Cells", "offsets", narrow_ends ? "Int32" : "Int64", 1, n_items, narrow_ends ? 4U : 8U};
+    types = {"Cells", "types", "UInt8", 1, n_items, 1};
+    vertex_labels = {"PointData", io::kVtkLabelArray, "Int32", 1, n_points, 4, 0, labels.with_vertex_labels};
+    fixed = {"PointData", io::kVtkFixedArray, "Int32", 1, n_points, 4, 0, labels.with_fixed};
+    regions = {"CellData", io::kVtkRegionArray, "Int32", 1, n_items, 4, 0, labels.with_regions};
     head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"";
     head_ += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    head_ += "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" +
-             std::to_string(n_points) + "\" NumberOfCells=\"" + std::to_string(n_cells) + "\">\n";
-    std::vector<Array*> there = arrays();
-    if (!with_regions) there.pop_back();
-    std::uint64_t offset = 0;
-    for (const char* section : {"Points", "Cells", "PointData", "CellData"}) {
-      head_ += std::string("<") + section + ">\n";
-      for (Array* array : there)
-        if (std::string_view(array->section) == section) {
-          head_ += std::string("<DataArray type=\"") + array->type + "\" Name=\"" + std::string(array->name) +
-                   "\" NumberOfComponents=\"" + std::to_string(array->components) +
-                   "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
-          array->begin = offset + sizeof(std::uint64_t);
-          offset = array->begin + array->n * array->size;
-        }
-      head_ += std::string("</") + section + ">\n";
-    }
+    head_ += "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n";
+    if (names.is_there) put_section("FieldData");
+    head_ += "<Piece NumberOfPoints=\"" + std::to_string(n_points) + "\" NumberOfCells=\"" +
+             std::to_string(n_items) + "\">\n";
+    for (const char* section : {"Points", "Cells", "PointData", "CellData"}) put_section(section);
     head_ += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-    for (Array* array : there) array->begin += head_.size();
-    end_ = head_.size() + offset;
+    for (Array* array : arrays()) array->begin += head_.size();
+    end_ += head_.size();
   }
 
-  Array points, corners, ends, types, regions;
-  std::vector<Array*> arrays() { return {&points, &corners, &ends, &types, &regions}; }
+  /// Corners of the elements before number i: tetrahedra, then faces, then edges.
+  std::uint64_t end_of(std::uint64_t i) const {
+    const std::uint64_t in_cells = std::min(i, n_cells), in_faces = std::min(i - in_cells, n_faces);
+    return 4 * in_cells + 3 * in_faces + 2 * (i - in_cells - in_faces);
+  }
+
+  std::uint64_t n_cells, n_faces, n_edges;
+  Array names, points, corners, ends, types, vertex_labels, fixed, regions;
+  /// Those that are there, in the order of the file.
+  std::vector<Array*> arrays() {
+    std::vector<Array*> all = {&names, &points, &corners, &ends, &types, &vertex_labels, &fixed, &regions};
+    std::erase_if(all, [](const Array* array) { return !array->is_there; });
+    return all;
+  }
   const std::string& head() const { return head_; }
   std::uint64_t end() const { return end_; }  ///< of the arrays
   static constexpr std::string_view kTail = "\n</AppendedData>\n</VTKFile>\n";
 
  private:
+  void put_section(std::string_view section) {
+    head_ += "<" + std::string(section) + ">\n";
+    for (Array* array : arrays()) {
+      if (array->section != section) continue;
+      head_ += std::string("<DataArray type=\"") + array->type + "\" Name=\"" + std::string(array->name) +
+               "\" NumberOfComponents=\"" + std::to_string(array->components);
+      if (array == &names) head_ += "\" NumberOfTuples=\"" + std::to_string(array->n);
+      head_ += "\" format=\"appended\" offset=\"" + std::to_string(end_) + "\"/>\n";
+      array->begin = end_ + sizeof(std::uint64_t);
+      end_ = array->begin + array->n * array->size;
+    }
+    head_ += "</" + std::string(section) + ">\n";
+  }
+
   std::string head_;
   std::uint64_t end_ = 0;
 };
 
-/// The share of one rank: own points and cells, and of what all know its slice.
+/// The share of one rank: own points, cells and labels, and of what all know its slice.
 class VtuShare {
  public:
-  VtuShare(DistributedMesh& mesh, const Numbering& numbering, VtuLayout& layout,
+  VtuShare(DistributedMesh& mesh, const Numbering& numbering, const OwnLabels& labels, VtuLayout& layout,
            const std::filesystem::path& temporary)
-      : mesh_(mesh), part_(mesh.part()), numbering_(numbering), layout_(layout), file_(temporary) {}
+      : mesh_(mesh),
+        part_(mesh.part()),
+        numbering_(numbering),
+        labels_(labels),
+        layout_(layout),
+        file_(temporary) {}
 
-  void write(bool with_regions) {
-    for (VertexHandle v : own_vertices(mesh_))
-      file_.put(layout_.points.begin + sizeof(Vec3) * numbering_(v), part_.point(v));
+  void write() {
+    write_vertices();
     const std::vector<CellHandle> cells = own_cells(mesh_);
     if (layout_.corners.size == 4)
       write_corners<std::int32_t>(cells);
     else
       write_corners<std::int64_t>(cells);
-    if (with_regions)
-      for (CellHandle c : cells)
-        file_.put(layout_.regions.begin + sizeof(std::int32_t) * numbering_(c),
-                  static_cast<std::int32_t>(part_.region(c)));
+    if (labels_.with_regions) write_labels(cells);
     if (layout_.ends.size == 4)
       write_ends<std::int32_t>();
     else
       write_ends<std::int64_t>();
-    for_slice([&](std::uint64_t c) { file_.put(layout_.types.begin + c, io::kVtkTetra); });
-    if (mesh_.comm().rank() == 0) write_frame(with_regions);
+    for_slice([&](std::uint64_t i) {
+      const std::uint64_t n = layout_.n_cells;
+      file_.put(layout_.types.begin + i, i < n                     ? io::kVtkTetra
+                                         : i < n + layout_.n_faces ? io::kVtkTriangle
+                                                                   : io::kVtkLine);
+    });
+    if (mesh_.comm().rank() == 0) write_frame();
     file_.finish();
   }
 
  private:
+  void write_vertices() {
+    const std::vector<VertexHandle> vertices = own_vertices(mesh_);
+    for (VertexHandle v : vertices)
+      file_.put(layout_.points.begin + sizeof(Vec3) * numbering_(v), part_.point(v));
+    const auto put = [&](const VtuLayout::Array& array, auto&& value) {
+      if (!array.is_there) return;
+      for (VertexHandle v : vertices)
+        file_.put(array.begin + sizeof(std::int32_t) * numbering_(v), static_cast<std::int32_t>(value(v)));
+    };
+    put(layout_.vertex_labels, [&](VertexHandle v) { return part_.labels().vertex(v); });
+    put(layout_.fixed, [&](VertexHandle v) { return part_.is_fixed(v) ? 1 : 0; });
+  }
   template <class T>
   void write_corners(const std::vector<CellHandle>& cells) {
-    for (CellHandle c : cells) {
-      std::array<T, 4> corners{};
-      for (std::size_t k = 0; k < 4; ++k) corners[k] = static_cast<T>(numbering_(part_.cell(c).v[k]));
-      file_.put(layout_.corners.begin + sizeof corners * numbering_(c), corners);
-    }
+    const auto put = [&](std::uint64_t item, const auto& vertices) {
+      std::array<T, std::tuple_size_v<std::remove_cvref_t<decltype(vertices)>>> corners{};
+      for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = static_cast<T>(numbering_(vertices[k]));
+      file_.put(layout_.corners.begin + sizeof(T) * layout_.end_of(item), corners);
+    };
+    for (CellHandle c : cells) put(numbering_(c), part_.cell(c).v);
+    for (const auto& face : labels_.faces) put(layout_.n_cells + face.number, face.v);
+    for (const auto& edge : labels_.edges) put(layout_.n_cells + layout_.n_faces + edge.number, edge.v);
+  }
+  void write_labels(const std::vector<CellHandle>& cells) {
+    const auto put = [&](std::uint64_t item, int label) {
+      file_.put(layout_.regions.begin + sizeof(std::int32_t) * item, static_cast<std::int32_t>(label));
+    };
+    for (CellHandle c : cells) put(numbering_(c), part_.region(c));
+    for (const auto& face : labels_.faces) put(layout_.n_cells + face.number, face.label);
+    for (const auto& edge : labels_.edges) put(layout_.n_cells + layout_.n_faces + edge.number, edge.label);
   }
   template <class T>
   void write_ends() {
-    for_slice(
-        [&](std::uint64_t c) { file_.put(layout_.ends.begin + sizeof(T) * c, static_cast<T>(4 * (c + 1))); });
+    for_slice([&](std::uint64_t i) {
+      file_.put(layout_.ends.begin + sizeof(T) * i, static_cast<T>(layout_.end_of(i + 1)));
+    });
   }
   template <class Body>
   void for_slice(Body&& body) {
     const std::uint64_t n = mesh_.comm().n_ranks(), r = static_cast<std::uint64_t>(mesh_.comm().rank());
-    for (std::uint64_t c = r * numbering_.n_cells() / n; c < (r + 1) * numbering_.n_cells() / n; ++c) body(c);
+    const std::uint64_t n_items = layout_.types.n;
+    for (std::uint64_t i = r * n_items / n; i < (r + 1) * n_items / n; ++i) body(i);
   }
-  void write_frame(bool with_regions) {
+  void write_frame() {
     file_.put_text(0, layout_.head());
     for (const VtuLayout::Array* array : layout_.arrays())
-      if (array != &layout_.regions || with_regions)
-        file_.put(array->begin - sizeof(std::uint64_t), std::uint64_t{array->n * array->size});
+      file_.put(array->begin - sizeof(std::uint64_t), std::uint64_t{array->n * array->size});
+    if (layout_.names.is_there) file_.put_text(layout_.names.begin, labels_.names);
     file_.put_text(layout_.end(), VtuLayout::kTail);
   }
 
   DistributedMesh& mesh_;
   const TetMesh& part_;
   const Numbering& numbering_;
+  const OwnLabels& labels_;
   VtuLayout& layout_;
   OffsetFile file_;
 };
@@ -321,20 +462,20 @@ class VtuShare {
 
 void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const Numbering numbering(mesh);
-  const bool with_regions = has_regions(mesh);
+  const OwnLabels labels(mesh);
   const std::filesystem::path piece = path.parent_path() / piece_name(path, mesh.comm().rank());
   std::error_code error;
   std::filesystem::create_directory(piece.parent_path(), error);  // by whoever comes first
-  io::write_mesh(piece, piece_of(mesh, numbering, with_regions));
+  io::write_mesh(piece, piece_of(mesh, numbering, labels));
   mesh.comm().sum(0);  // all pieces are there, or a rank has failed
-  if (mesh.comm().rank() == 0) write_index(path, mesh.comm().size(), with_regions);
+  if (mesh.comm().rank() == 0) write_index(path, mesh.comm().size(), labels);
   mesh.comm().sum(0);
 }
 
 void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const Numbering numbering(mesh);
-  const bool with_regions = has_regions(mesh);
-  VtuLayout layout(numbering.n_vertices(), numbering.n_cells(), with_regions);
+  const OwnLabels labels(mesh);
+  VtuLayout layout(numbering.n_vertices(), numbering.n_cells(), labels);
   std::optional<io::OutputFile> file;
   std::string name;
   if (mesh.comm().rank() == 0) {
@@ -343,7 +484,7 @@ void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path) {
     if (name.empty()) throw IoError(path.string() + ": cannot be written at offsets: it is no regular file");
   }
   const std::vector<char> temporary = mesh.comm().all_gather(std::span<const char>(name.data(), name.size()));
-  VtuShare(mesh, numbering, layout, std::string(temporary.begin(), temporary.end())).write(with_regions);
+  VtuShare(mesh, numbering, labels, layout, std::string(temporary.begin(), temporary.end())).write();
   mesh.comm().sum(0);  // all shares are there, or a rank has failed
   if (file) file->commit();
   mesh.comm().sum(0);

@@ -37,6 +37,9 @@ struct MeshData {
   std::map<std::pair<int, int>, std::string> names;
   std::vector<Field> point_fields;
   std::vector<Field> cell_fields;
+  /// Of a piece of a mesh (.vtu): the numbers of its triangles and edges in the whole, which are those of the
+  /// cell field "number" behind the tetrahedra's; or empty.
+  std::vector<double> triangle_numbers, edge_numbers;
   /// One line each, for the user: what was linearised, skipped or dropped while reading.
   std::vector<std::string> notes;
 };

@@ -74,6 +74,10 @@ void validate(const MeshData& mesh, const std::string& name) {
   check_labels(mesh.triangle_labels, mesh.triangles.size(), "triangle labels", name);
   check_labels(mesh.edge_labels, mesh.edges.size(), "edge labels", name);
   check_labels(mesh.vertex_labels, n_points, "vertex labels", name);
+  if (!mesh.triangle_numbers.empty())
+    check_length(mesh.triangle_numbers.size(), mesh.triangles.size(), "numbers of triangles", name);
+  if (!mesh.edge_numbers.empty())
+    check_length(mesh.edge_numbers.size(), mesh.edges.size(), "numbers of edges", name);
   check_fields(mesh.point_fields, n_points, "point", name);
   check_fields(mesh.cell_fields, mesh.cells.size(), "cell", name);
 }

@@ -83,14 +83,6 @@ constexpr CellType kCellTypes[] = {
     {81, "BEZIER_PYRAMID", Kind::kRefused, 0, false},
 };
 
-/// Cell arrays that hold labels, in order of preference; case does not matter. The first one that is in the
-/// file and holds one integer a cell is taken, the others stay fields.
-constexpr std::string_view kCellLabelNames[] = {"region",        "regions",     "material",  "materials",
-                                                "materialids",   "material_id", "medit:ref", "gmsh:physical",
-                                                "label",         "labels",      "regionid",  "region_id",
-                                                "cellentityids", "cell_tags",   "subdomain", "attribute"};
-constexpr std::string_view kPointLabelNames[] = {"label", "labels", "medit:ref", "vertex_label"};
-
 std::string counted(std::size_t n, const std::string& what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
@@ -268,7 +260,7 @@ void GridConverter::distribute_cell_labels() {
   mesh_.triangle_labels.assign(mesh_.triangles.size(), 0);
   mesh_.edge_labels.assign(mesh_.edges.size(), 0);
   const std::optional<Field> labels =
-      take_labels(grid_.cell_arrays, kCellLabelNames, "cell", grid_.file, mesh_.notes);
+      take_labels(grid_.cell_arrays, kVtkCellLabelNames, "cell", grid_.file, mesh_.notes);
   if (!labels) return;
   if (only_tetrahedra()) {
     mesh_.regions.assign(labels->values.begin(), labels->values.end());
@@ -291,6 +283,10 @@ void GridConverter::distribute_cell_fields() {
   if (only_tetrahedra()) return;
   for (Field& field : mesh_.cell_fields) {
     const auto n = static_cast<std::size_t>(field.components);
+    if (n == 1 && field.name == kVtkNumberArray) {
+      for (const std::size_t cell : triangles_) mesh_.triangle_numbers.push_back(field.values[cell]);
+      for (const std::size_t cell : edges_) mesh_.edge_numbers.push_back(field.values[cell]);
+    }
     const auto nonzero = static_cast<std::size_t>(
         std::count_if(field.values.begin(), field.values.end(), [](double v) { return v != 0.0; }));
     std::vector<double> kept;
@@ -302,7 +298,7 @@ void GridConverter::distribute_cell_fields() {
     const auto kept_nonzero =
         static_cast<std::size_t>(std::count_if(kept.begin(), kept.end(), [](double v) { return v != 0.0; }));
     field.values = std::move(kept);
-    if (kept_nonzero != nonzero) {
+    if (kept_nonzero != nonzero && field.name != kVtkNumberArray) {
       mesh_.notes.push_back("cell field '" + field.name +
                             "': only its values on tetrahedra are kept, those on other cells are dropped");
     }
@@ -311,7 +307,7 @@ void GridConverter::distribute_cell_fields() {
 
 void GridConverter::take_point_arrays() {
   std::vector<Field>& fields = grid_.point_arrays;
-  if (const auto labels = take_labels(fields, kPointLabelNames, "point", grid_.file, mesh_.notes)) {
+  if (const auto labels = take_labels(fields, kVtkPointLabelNames, "point", grid_.file, mesh_.notes)) {
     mesh_.vertex_labels.assign(labels->values.begin(), labels->values.end());
   }
   const auto fixed = std::find_if(fields.begin(), fields.end(), [](const Field& field) {

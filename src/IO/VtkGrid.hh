@@ -2,6 +2,7 @@
 #ifndef HFR_IO_VTK_GRID_HH
 #define HFR_IO_VTK_GRID_HH
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -19,6 +20,17 @@ inline constexpr std::string_view kVtkRegionArray = "region";  ///< cells: regio
 inline constexpr std::string_view kVtkLabelArray = "label";    ///< points: vertex label
 inline constexpr std::string_view kVtkFixedArray = "fixed";    ///< points: 1 where the vertex is fixed
 inline constexpr std::string_view kVtkNamesArray = "names";    ///< field data: bytes of names_text()
+inline constexpr std::string_view kVtkNumberArray =
+    "number";  ///< of points and cells of a piece, in the whole
+
+/// Cell arrays that hold labels, in order of preference; case does not matter. The first one that is in the
+/// file and holds one integer a cell is taken, the others stay fields.
+inline constexpr std::array<std::string_view, 16> kVtkCellLabelNames = {
+    "region",        "regions",       "material",  "materials", "materialids", "material_id",
+    "medit:ref",     "gmsh:physical", "label",     "labels",    "regionid",    "region_id",
+    "cellentityids", "cell_tags",     "subdomain", "attribute"};
+inline constexpr std::array<std::string_view, 4> kVtkPointLabelNames = {"label", "labels", "medit:ref",
+                                                                        "vertex_label"};
 
 inline constexpr std::uint8_t kVtkLine = 3;
 inline constexpr std::uint8_t kVtkTriangle = 5;

@@ -43,11 +43,10 @@ class VtuSlices::Header {
     const XMLElement& grid = child(*root, "UnstructuredGrid");
     const XMLElement& piece = child(grid, "Piece");
     if (piece.NextSiblingElement("Piece")) file_.fail(std::string(kWhatIsNeeded));
-    if (grid.FirstChildElement("FieldData")) file_.notes_.push_back("field data (names of labels) left out");
     file_.n_points_ = number(piece, "NumberOfPoints");
-    file_.n_cells_ = number(piece, "NumberOfCells");
+    file_.n_items_ = number(piece, "NumberOfCells");
     // What follows is multiplied by at most 24.
-    if (std::max(file_.n_points_, file_.n_cells_) > file_.size_)
+    if (std::max(file_.n_points_, file_.n_items_) > file_.size_)
       file_.fail("it announces more points or cells than it has bytes");
     file_.points_ = array(child(child(piece, "Points"), "DataArray"));
     if (file_.points_.components != 3) file_.fail("points must have 3 components");
@@ -56,6 +55,7 @@ class VtuSlices::Header {
     file_.ends_ = named(cells, "offsets");
     file_.types_ = named(cells, "types");
     read_labels(piece);
+    if (const XMLElement* const data = grid.FirstChildElement("FieldData")) read_names(*data);
   }
 
  private:
@@ -109,28 +109,57 @@ class VtuSlices::Header {
     file_.fail("there is no array '" + std::string(name) + "'");
   }
 
-  void read_labels(const XMLElement& piece) {
-    const auto each = [&](const char* section, auto&& use) {
-      const XMLElement* const arrays = piece.FirstChildElement(section);
+  /// The array by which the reader for shared memory goes, too: the best name of those that hold labels.
+  static std::string label_array(const XMLElement* arrays, std::span<const std::string_view> names) {
+    for (const std::string_view name : names)
       for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
-           e = e->NextSiblingElement())
-        use(*arrays, attribute(*e, "Name"));
-    };
-    each("PointData", [&](const XMLElement&, std::string_view name) {
-      if (name == kVtkLabelArray || name == kVtkFixedArray)
-        file_.fail(
-            "meshes in parts do not have labelled or fixed faces, edges and vertices yet, and this one "
-            "has an array '" +
-            shown(name) + "' of points");
-      file_.notes_.push_back("array '" + shown(name) + "' of points left out");
-    });
-    each("CellData", [&](const XMLElement& arrays, std::string_view name) {
-      if (name == kVtkRegionArray)
-        file_.regions_ = named(arrays, name);
-      else
-        file_.notes_.push_back("array '" + shown(name) + "' of cells left out");
-    });
+           e = e->NextSiblingElement()) {
+        const std::string_view components = attribute(*e, "NumberOfComponents");
+        const auto type = vtu_number_type(attribute(*e, "type"));
+        if (lower(std::string(attribute(*e, "Name"))) == name && (components.empty() || components == "1") &&
+            type && is_integer(*type))
+          return std::string(attribute(*e, "Name"));
+      }
+    return {};
   }
+  void read_labels(const XMLElement& piece) {
+    const XMLElement* const of_points = piece.FirstChildElement("PointData");
+    const XMLElement* const of_cells = piece.FirstChildElement("CellData");
+    const std::string labels = label_array(of_points, kVtkPointLabelNames),
+                      fixed = label_array(of_points, {{kVtkFixedArray}}),
+                      regions = label_array(of_cells, kVtkCellLabelNames);
+    if (!labels.empty()) file_.vertex_labels_ = named(*of_points, labels);
+    if (!fixed.empty()) file_.fixed_ = named(*of_points, fixed);
+    if (!regions.empty()) file_.regions_ = named(*of_cells, regions);
+    const auto note_others = [&](const XMLElement* arrays, const char* of) {
+      for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
+           e = e->NextSiblingElement()) {
+        const std::string_view name = attribute(*e, "Name");
+        if (arrays == of_points ? name != labels && name != fixed : name != regions)
+          file_.notes_.push_back("array '" + shown(name) + "' of " + of + " left out");
+      }
+    };
+    note_others(of_points, "points");
+    note_others(of_cells, "cells");
+  }
+  void read_names(const XMLElement& data) {
+    for (const XMLElement* e = data.FirstChildElement("DataArray"); e;
+         e = e->NextSiblingElement("DataArray")) {
+      if (attribute(*e, "Name") != kVtkNamesArray) {
+        file_.notes_.push_back("array '" + shown(attribute(*e, "Name")) + "' of the whole left out");
+        continue;
+      }
+      const Array names = array(*e);
+      const std::uint64_t n = file_.announced(names);
+      if (names.type != NumberType::kUInt8 || n > kMostNames || n > file_.size_ - names.begin)
+        file_.fail("array '" + std::string(kVtkNamesArray) + "': these are no names of labels");
+      MeshData read;
+      io::read_names(file_.bytes(names.begin, n), read);
+      file_.names_ = std::move(read.names);
+    }
+  }
+
+  static constexpr std::uint64_t kMostNames = std::uint64_t{1} << 24;
 
   VtuSlices& file_;
   std::uint64_t first_byte_;  // of appended data
@@ -144,10 +173,12 @@ VtuSlices::VtuSlices(const std::filesystem::path& path) : name_(path.string()) {
   if (error || !in_) throw IoError(name_ + ": cannot be opened" + (error ? ": " + error.message() : ""));
   Header(*this, head()).read();
   require_length(points_, n_points_);
-  require_length(corners_, 4 * n_cells_);
-  require_length(ends_, n_cells_);
-  require_length(types_, n_cells_);
-  if (has_regions()) require_length(regions_, n_cells_);
+  require_length(ends_, n_items_);
+  require_length(types_, n_items_);
+  require_length(corners_, n_items_ == 0 ? 0 : ends(n_items_ - 1, n_items_)[0]);
+  if (regions_.components > 0) require_length(regions_, n_items_);
+  if (vertex_labels_.components > 0) require_length(vertex_labels_, n_points_);
+  if (fixed_.components > 0) require_length(fixed_, n_points_);
 }
 
 void VtuSlices::fail(const std::string& message) const { throw InvalidInput(name_ + ": " + message); }
@@ -178,19 +209,23 @@ std::string VtuSlices::bytes(std::uint64_t begin, std::uint64_t n) {
   return bytes;
 }
 
-void VtuSlices::require_length(const Array& array, std::uint64_t n) {
+/// Bytes that the word before an array tells.
+std::uint64_t VtuSlices::announced(const Array& array) {
   const std::uint64_t word = coding_.wide_header ? 8 : 4;
   const std::string text = bytes(array.begin - word, word);
-  const std::uint64_t announced = word == 8 ? loaded<std::uint64_t>(text.data(), coding_.swap)
-                                            : loaded<std::uint32_t>(text.data(), coding_.swap);
-  const std::uint64_t needed = n * array.components * size_of(array.type);
+  return word == 8 ? loaded<std::uint64_t>(text.data(), coding_.swap)
+                   : loaded<std::uint32_t>(text.data(), coding_.swap);
+}
+
+void VtuSlices::require_length(const Array& array, std::uint64_t n) {
+  const std::uint64_t found = announced(array), word = coding_.wide_header ? 8 : 4;
   const std::string where =
       "at byte " + std::to_string(array.begin - word) + ": array '" + shown(array.name) + "'";
-  if (announced != needed)
-    fail(where + ": it has " + std::to_string(announced) + " bytes, but " + std::to_string(needed) +
-         " are needed for " + std::to_string(n_points_) + " points and " + std::to_string(n_cells_) +
-         " tetrahedra: meshes in parts have no other elements yet; without labelled triangles and edges "
-         "it would be read, and hfremesh-mpi without 'parts' takes them");
+  const std::uint64_t needed = n * array.components * size_of(array.type);
+  if (found != needed || n > size_)  // which no product of it has more than 64 bits for
+    fail(where + ": it has " + std::to_string(found) + " bytes, but " + std::to_string(n) +
+         " entries are needed for " + std::to_string(n_points_) + " points and " + std::to_string(n_items_) +
+         " cells");
   if (needed > size_ - array.begin) fail(where + ": the file ends too early");
 }
 
@@ -215,43 +250,109 @@ std::vector<Vec3> VtuSlices::points(std::uint64_t begin, std::uint64_t end) {
   return points;
 }
 
-std::vector<std::array<std::uint64_t, 4>> VtuSlices::cells(std::uint64_t begin, std::uint64_t end) {
-  const auto refuse = [&](std::uint64_t cell, const std::string& message) {
-    fail("cell " + std::to_string(cell) + ": " + message);
-  };
-  {
-    const auto types = numbers<std::int64_t>(types_, begin, end),
-               ends = numbers<std::int64_t>(ends_, begin, end);
-    for (std::uint64_t c = begin; c < end; ++c)
-      if (types[c - begin] != kVtkTetra || static_cast<std::uint64_t>(ends[c - begin]) != 4 * (c + 1))
-        refuse(c, "meshes in parts have tetrahedra of four vertices alone");
+std::vector<std::uint8_t> VtuSlices::types(std::uint64_t begin, std::uint64_t end) {
+  std::vector<std::uint8_t> types;
+  types.reserve(end - begin);
+  for (std::int64_t type : numbers<std::int64_t>(types_, begin, end)) {
+    if (type != kVtkTetra && type != kVtkTriangle && type != kVtkLine)
+      fail(
+          "cell " + std::to_string(begin + types.size()) +
+          ": meshes in parts have tetrahedra, triangles and lines of as many vertices as these have corners, "
+          "and this is of type " +
+          std::to_string(type));
+    types.push_back(static_cast<std::uint8_t>(type));
   }
-  // Ranges of the array of corners have four numbers for each cell.
-  Array by_cell = corners_;
-  by_cell.components = 4;
-  const std::vector<std::int64_t> corners = numbers<std::int64_t>(by_cell, begin, end);
-  std::vector<std::array<std::uint64_t, 4>> cells(end - begin);
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    for (std::size_t k = 0; k < 4; ++k) {
-      cells[c][k] = static_cast<std::uint64_t>(corners[4 * c + k]);
-      if (cells[c][k] >= n_points_)
-        refuse(begin + c, "vertex " + std::to_string(corners[4 * c + k]) + " is out of range (there are " +
-                              std::to_string(n_points_) + " points)");
-      for (std::size_t j = 0; j < k; ++j)
-        if (cells[c][j] == cells[c][k]) refuse(begin + c, "two of its vertices are the same");
-    }
-  return cells;
+  return types;
 }
 
-std::vector<std::int32_t> VtuSlices::regions(std::uint64_t begin, std::uint64_t end) {
-  const std::vector<std::int64_t> values = numbers<std::int64_t>(regions_, begin, end);
-  std::vector<std::int32_t> regions(values.size());
-  for (std::size_t c = 0; c < values.size(); ++c) {
-    regions[c] = static_cast<std::int32_t>(values[c]);
-    if (regions[c] != values[c])
-      fail("cell " + std::to_string(begin + c) + ": its region has more than 32 bits");
+/// Where the corners of these elements end; within the file, and ascending.
+std::vector<std::uint64_t> VtuSlices::ends(std::uint64_t begin, std::uint64_t end) {
+  std::vector<std::uint64_t> ends;
+  ends.reserve(end - begin);
+  for (std::int64_t one : numbers<std::int64_t>(ends_, begin, end)) {
+    const std::uint64_t least = ends.empty() ? 0 : ends.back();
+    if (one < 0 || static_cast<std::uint64_t>(one) > size_ || static_cast<std::uint64_t>(one) < least)
+      fail("cell " + std::to_string(begin + ends.size()) + ": its offset " + std::to_string(one) +
+           " does not ascend, or there are not so many corners");
+    ends.push_back(static_cast<std::uint64_t>(one));
   }
-  return regions;
+  return ends;
+}
+
+VtuSlices::Kinds VtuSlices::kinds(std::uint64_t begin, std::uint64_t end) {
+  Kinds kinds;
+  for (std::uint8_t type : types(begin, end))
+    ++(type == kVtkTetra ? kinds.cells : type == kVtkTriangle ? kinds.triangles : kinds.edges);
+  return kinds;
+}
+
+template <std::size_t N>
+void VtuSlices::take(ShareElements<N>& elements, std::uint64_t number, const std::int64_t* corners,
+                     std::int32_t label) const {
+  const auto refuse = [&](const std::string& message) {
+    fail("cell " + std::to_string(number) + ": " + message);
+  };
+  auto& v = elements.corners.emplace_back();
+  for (std::size_t k = 0; k < N; ++k) {
+    v[k] = static_cast<std::uint64_t>(corners[k]);
+    if (v[k] >= n_points_)
+      refuse("vertex " + std::to_string(corners[k]) + " is out of range (there are " +
+             std::to_string(n_points_) + " points)");
+    for (std::size_t j = 0; j < k; ++j)
+      if (v[j] == v[k]) refuse("two of its vertices are the same");
+  }
+  elements.labels.push_back(label);
+}
+
+ShareItems VtuSlices::items(std::uint64_t begin, std::uint64_t end) {
+  ShareItems items;
+  if (begin == end) return items;
+  const std::vector<std::uint8_t> types = this->types(begin, end);
+  const std::vector<std::uint64_t> ends = this->ends(begin, end);
+  const std::uint64_t first = begin == 0 ? 0 : this->ends(begin - 1, begin)[0];
+  std::vector<std::int32_t> labels(types.size(), 0);
+  if (regions_.components > 0) labels = this->labels(regions_, "cell", begin, end);
+  for (std::size_t i = 0, at = first; i < types.size(); at = ends[i++]) {
+    const std::uint64_t n = types[i] == kVtkTetra ? 4 : types[i] == kVtkTriangle ? 3 : 2;
+    if (ends[i] < at || ends[i] - at != n)
+      fail("cell " + std::to_string(begin + i) + ": it has another number of corners than its type");
+  }
+  const std::vector<std::int64_t> corners = numbers<std::int64_t>(corners_, first, ends.back());
+  for (std::size_t i = 0, at = 0; i < types.size(); at = ends[i++] - first) {
+    if (types[i] == kVtkTetra) take(items.cells, begin + i, &corners[at], labels[i]);
+    if (types[i] == kVtkTriangle) take(items.triangles, begin + i, &corners[at], labels[i]);
+    if (types[i] == kVtkLine) take(items.edges, begin + i, &corners[at], labels[i]);
+  }
+  return items;
+}
+
+std::vector<std::int32_t> VtuSlices::labels(const Array& array, const char* of, std::uint64_t begin,
+                                            std::uint64_t end) {
+  const std::vector<std::int64_t> values = numbers<std::int64_t>(array, begin, end);
+  std::vector<std::int32_t> labels(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    labels[i] = static_cast<std::int32_t>(values[i]);
+    if (labels[i] != values[i])
+      fail(std::string(of) + " " + std::to_string(begin + i) + ": its label has more than 32 bits");
+  }
+  return labels;
+}
+
+std::vector<std::int32_t> VtuSlices::vertex_labels(std::uint64_t begin, std::uint64_t end) {
+  if (vertex_labels_.components == 0) return {};
+  return labels(vertex_labels_, "point", begin, end);
+}
+
+std::vector<std::uint8_t> VtuSlices::fixed(std::uint64_t begin, std::uint64_t end) {
+  std::vector<std::uint8_t> fixed;
+  if (fixed_.components == 0) return fixed;
+  fixed.reserve(end - begin);
+  for (std::int64_t value : numbers<std::int64_t>(fixed_, begin, end)) {
+    if (value != 0 && value != 1)
+      fail("point " + std::to_string(begin + fixed.size()) + ": 0 or 1 has to stand in the array 'fixed'");
+    fixed.push_back(static_cast<std::uint8_t>(value));
+  }
+  return fixed;
 }
 
 }  // namespace hfr::io

@@ -6,33 +6,47 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "HalfFace/Vec3.hh"
+#include "IO/MeshShare.hh"
 #include "IO/VtuData.hh"
 
 namespace hfr::io {
 
-/// A .vtu of tetrahedra whose arrays are raw appended data, read a range at a time: each of several processes
-/// reads its own, and none the whole. All functions throw InvalidInput for what such a file may not have, and
-/// IoError where it cannot be read.
+/// A .vtu of tetrahedra, and triangles and lines among them, whose arrays are raw appended data, read a range
+/// at a time: each of several processes reads its own, and none the whole. All functions throw InvalidInput
+/// for what such a file may not have, and IoError where it cannot be read.
 class VtuSlices {
  public:
   /// Reads what stands before the arrays, and compares the lengths that they announce.
   explicit VtuSlices(const std::filesystem::path& path);
 
   std::uint64_t n_points() const { return n_points_; }
-  std::uint64_t n_cells() const { return n_cells_; }
-  bool has_regions() const { return regions_.components > 0; }
-  /// What the file has beside points, tetrahedra and regions.
+  /// Tetrahedra, triangles and lines.
+  std::uint64_t n_items() const { return n_items_; }
+  const std::map<std::pair<int, int>, std::string>& names() const { return names_; }
+  /// What the file has beside points, elements, their labels and names.
   const std::vector<std::string>& notes() const { return notes_; }
 
   // Those with the numbers begin … end-1.
   std::vector<Vec3> points(std::uint64_t begin, std::uint64_t end);
-  std::vector<std::array<std::uint64_t, 4>> cells(std::uint64_t begin, std::uint64_t end);
-  std::vector<std::int32_t> regions(std::uint64_t begin, std::uint64_t end);
+  std::vector<std::int32_t> vertex_labels(std::uint64_t begin, std::uint64_t end);  ///< empty: none has one
+  std::vector<std::uint8_t> fixed(std::uint64_t begin, std::uint64_t end);          ///< empty: none is
+  struct Kinds {
+    std::uint64_t cells = 0, triangles = 0, edges = 0;
+    Kinds& operator+=(const Kinds& o) {
+      cells += o.cells, triangles += o.triangles, edges += o.edges;
+      return *this;
+    }
+  };
+  Kinds kinds(std::uint64_t begin, std::uint64_t end);
+  /// Their numbers among their kind are left 0, and so are the labels where the file has none.
+  ShareItems items(std::uint64_t begin, std::uint64_t end);
 
  private:
   struct Array {
@@ -46,16 +60,25 @@ class VtuSlices {
   [[noreturn]] void fail(const std::string& message) const;
   std::string head();
   std::string bytes(std::uint64_t begin, std::uint64_t n);
+  std::uint64_t announced(const Array& array);
   void require_length(const Array& array, std::uint64_t n);
   template <class T>
   std::vector<T> numbers(const Array& array, std::uint64_t begin, std::uint64_t end);
+  std::vector<std::int32_t> labels(const Array& array, const char* of, std::uint64_t begin,
+                                   std::uint64_t end);
+  std::vector<std::uint8_t> types(std::uint64_t begin, std::uint64_t end);
+  std::vector<std::uint64_t> ends(std::uint64_t begin, std::uint64_t end);
+  template <std::size_t N>
+  void take(ShareElements<N>& elements, std::uint64_t number, const std::int64_t* corners,
+            std::int32_t label) const;
 
   std::string name_;
   std::ifstream in_;
   std::uint64_t size_ = 0;
   VtuCoding coding_;
-  std::uint64_t n_points_ = 0, n_cells_ = 0;
-  Array points_, corners_, ends_, types_, regions_;
+  std::uint64_t n_points_ = 0, n_items_ = 0;
+  Array points_, corners_, ends_, types_, regions_, vertex_labels_, fixed_;
+  std::map<std::pair<int, int>, std::string> names_;
   std::vector<std::string> notes_;
 };
 

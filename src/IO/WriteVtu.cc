@@ -210,7 +210,18 @@ std::vector<OutArray> VtuWriter::cell_arrays() {
   std::vector<OutArray> arrays;
   if (const auto regions = vtk_regions(mesh_); !regions.empty())
     arrays.push_back(array<std::int32_t>(std::string(kVtkRegionArray), 1, own(regions)));
-  for (const Field& field : mesh_.cell_fields) arrays.push_back(field_array(field, n_vtk_cells(mesh_)));
+  for (const Field& field : mesh_.cell_fields) {
+    const bool is_number =
+        field.name == kVtkNumberArray && field.components == 1 && field.values.size() == mesh_.cells.size();
+    if (!is_number || (mesh_.triangle_numbers.empty() && mesh_.edge_numbers.empty())) {
+      arrays.push_back(field_array(field, n_vtk_cells(mesh_)));
+      continue;
+    }
+    Field longer = field;
+    for (const auto* numbers : {&mesh_.triangle_numbers, &mesh_.edge_numbers})
+      longer.values.insert(longer.values.end(), numbers->begin(), numbers->end());
+    arrays.push_back(array<double>(field.name, 1, own(longer.values)));
+  }
   return arrays;
 }
 

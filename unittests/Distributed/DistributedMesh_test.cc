@@ -52,7 +52,10 @@ TEST(DistributedMesh, RefusesByNameWhatItCannotCut) {
   Whole whole(valid_box(3, 0, 1), VolumeLength{});
   EXPECT_EQ(mpi::DistributedMesh::reason_against(whole.mesh, whole.work), "");
   whole.mesh.labels().edges.set({V(0), V(1)}, 7);
-  EXPECT_EQ(mpi::DistributedMesh::reason_against(whole.mesh, whole.work), "labels");
+  EXPECT_EQ(mpi::DistributedMesh::reason_against(whole.mesh, whole.work), "");
+  whole.mesh.labels().edges.set({V(0), V(whole.mesh.n_vertices() - 2)}, 7);
+  EXPECT_EQ(mpi::DistributedMesh::reason_against(whole.mesh, whole.work),
+            "labelled or fixed edges or faces that no cell has");
 }
 
 TEST(Comm, ARankThatFailsEndsTheWaitOfAllOthers) {

@@ -111,10 +111,13 @@ TEST(MpiImprove, DefaultRunsAreThoseOfSharedMemory) {
   expect_that_of_shared_memory(valid_box(3, 0.4, 1), options, true);
 }
 
-TEST(MpiImprove, LabelledMeshesAreLeftToOneRank) {
+TEST(MpiImprove, LabelledMeshesAreThoseOfSharedMemory) {
   TetMesh mesh = valid_box(5, 0.45, 2);
-  for (HalfFaceHandle h : mesh.boundary_halffaces()) mesh.labels().faces.set(mesh.halfface_vertices(h), 4);
-  expect_that_of_shared_memory(mesh, short_run(8), false);
+  for (HalfFaceHandle h : mesh.halffaces())
+    if (mesh.is_boundary(h) || h.idx() % 97 == 0) mesh.labels().faces.set(mesh.halfface_vertices(h), 4);
+  mesh.labels().edges.set({mesh.cell(C(300)).v[0], mesh.cell(C(300)).v[2]}, 5);
+  mesh.set_fixed(mesh.cell(C(100)).v[1]);
+  expect_that_of_shared_memory(mesh, short_run(8), true);
 }
 
 /// Whatever a rank is doing when it fails, all ranks end, and all know why. Calls are counted in a run that

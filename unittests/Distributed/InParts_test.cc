@@ -12,6 +12,7 @@
 #include <set>
 
 #include "Distributed/Parts.hh"
+#include "Distributed/SharedFolder.hh"
 #include "HalfFace/Check.hh"
 #include "IO/Assemble.hh"
 #include "IO/MeshFile.hh"
@@ -191,29 +192,6 @@ TEST(InParts, ACheckFindsWhatOneRankHasWrong) {
               HasSubstr("as rank " + std::to_string(bad) + " holds it"));
 }
 
-std::string bytes_of(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A folder that all ranks know; it goes with the object of rank 0.
-class SharedFolder {
- public:
-  explicit SharedFolder(mpi::Comm& comm) : comm_(comm) {
-    std::string name;
-    if (comm.rank() == 0) name = mine_.emplace().path().string();
-    const auto all = comm.all_gather(std::span<const char>(name.data(), name.size()));
-    path_ = std::string(all.begin(), all.end());
-  }
-  ~SharedFolder() { comm_.sum(0); }  // others still look at it
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  mpi::Comm& comm_;
-  std::optional<ScratchFolder> mine_;
-  std::filesystem::path path_;
-};
-
 TEST(InParts, OneFileHasTheBytesOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
@@ -371,7 +349,7 @@ TEST(InParts, RangesOfOneFileAreTheMesh) {
   comm.sum(0);
   for (const std::uint64_t at_once : {100, 5000}) {
     mpi::DistributedMesh parts(comm);
-    EXPECT_THAT(mpi::read_vtu(parts, path, at_once), testing::IsEmpty());
+    EXPECT_THAT(mpi::read_ranges(parts, path, at_once), testing::IsEmpty());
     parts.work().set_qualities(parts.part(), MinSine2{}, {});
     EXPECT_EQ(parts.n_cells(), mesh.n_cells());
     EXPECT_EQ(parts.n_vertices(), mesh.n_vertices());
@@ -402,7 +380,7 @@ TEST(InParts, FilesThatCannotBeReadInRangesAreRefusedOnAllRanks) {
     mpi::Comm comm(MPI_COMM_WORLD);
     mpi::DistributedMesh parts(comm);
     try {
-      mpi::read_vtu(parts, path);
+      mpi::read_ranges(parts, path);
     } catch (const mpi::RankFailed& failed) {
       return failed.what();
     } catch (const std::exception& error) {
@@ -433,7 +411,7 @@ TEST(InParts, FilesThatCannotBeReadInRangesAreRefusedOnAllRanks) {
   };
   std::string bytes = good;
   bytes[number_of("types") + mesh.n_cells() - 1] = 12;
-  EXPECT_THAT(refusal(bytes), HasSubstr("cell 47: meshes in parts have tetrahedra"));
+  EXPECT_THAT(refusal(bytes), HasSubstr("cell 47: meshes in parts have tetrahedra, triangles and lines"));
   bytes = good;
   bytes[number_of("connectivity") + 16 * mesh.n_cells() - 4] = 27;
   EXPECT_THAT(refusal(bytes), HasSubstr("cell 47: vertex 27 is out of range"));
@@ -444,7 +422,7 @@ TEST(InParts, FilesThatCannotBeReadInRangesAreRefusedOnAllRanks) {
   if (world.rank() == 0) std::filesystem::remove(path, error);
   world.sum(0);
   mpi::DistributedMesh parts(world);
-  EXPECT_THROW(mpi::read_vtu(parts, path), IoError);
+  EXPECT_THROW(mpi::read_ranges(parts, path), IoError);
 }
 
 TEST(InParts, RegionsStayWithTheirCells) {

@@ -241,6 +241,53 @@ TEST(PartRound, AllKindsInTurnAreThoseOfSharedMemory) {
     });
 }
 
+/// Labels and locks all over the mesh keep the rounds from much, and from the same things.
+TEST(PartRound, WhatIsLabelledOrFixedStaysAsInSharedMemory) {
+  using Edge = EdgeRemoval<MinSine2>;
+  using Face = MultiFaceRemoval<MinSine2>;
+  using Node = VertexCollapse<MinSine2>;
+  TetMesh mesh = valid_box(8, 0.48, 3);
+  for (HalfFaceHandle h : mesh.halffaces())
+    if (mix64(h.idx()) % 60 == 0) mesh.labels().faces.set(mesh.halfface_vertices(h), 4);
+  std::size_t n = 0;
+  for (EdgeHandle e : mesh.edges())
+    if (const auto at = mix64(++n) % 40; at == 0)
+      mesh.labels().edges.set(mesh.edge_vertices(e), 5);
+    else if (at == 1)
+      mesh.set_fixed(e);
+  for (FaceHandle f : mesh.faces())
+    if (mix64(f.idx()) % 90 == 1) mesh.set_fixed(f);
+  mesh.labels().vertices.assign(mesh.n_vertices(), 0);
+  for (VertexHandle v : mesh.vertices()) {
+    if (v.idx() % 5 == 2) mesh.labels().vertices[v.idx()] = 6;
+    if (v.idx() % 17 == 3) mesh.set_fixed(v);
+  }
+  expect_same_for_parts(mesh, MinSine2{}, 4, 200, [&](auto& m) {
+    RoundCounts counts;
+    for (int r = 0; r < 2; ++r)
+      counts += edge_round<Edge>(
+          m, 1,
+          [](const Workspace& w) {
+            return Edge{{}, w.quality};
+          },
+          options());
+    counts += edge_round<Face>(
+        m, 2,
+        [](const Workspace& w) {
+          return Face{{}, w.quality};
+        },
+        options());
+    counts += vertex_round<Node>(
+        m, 4,
+        [](const Workspace& w) {
+          return Node{{}, w.quality, w.frozen};
+        },
+        options());
+    counts += smooth(m, 16, MaxMinSearch{}, MinSine2{});
+    return counts;
+  });
+}
+
 TEST(PartRound, BoundsOnCellsHoldForTheWhole) {
   using Op = VertexCollapse<VolumeLength>;
   RoundOptions bounded = options();

@@ -25,6 +25,8 @@
 namespace hfr::test {
 namespace {
 
+using io::ShareItems;
+
 TetMesh meshed() {
   const generate::Arrays arrays = generate::box({2, 3, 2});
   TetMesh mesh = build(arrays.points, arrays.cells);
@@ -41,11 +43,13 @@ std::string bytes_of(const std::filesystem::path& path) {
 std::string fault(const std::filesystem::path& path) {
   try {
     io::VtuSlices file(path);
-    const std::uint64_t n = file.n_points(), m = file.n_cells();
+    const std::uint64_t n = file.n_points(), m = file.n_items();
     EXPECT_EQ(file.points(0, n).size(), n);
-    EXPECT_EQ(file.cells(0, m).size(), m);
-    const std::uint64_t n_regions = file.has_regions() ? file.regions(0, m).size() : m;
-    EXPECT_EQ(n_regions, m);
+    file.vertex_labels(0, n);
+    file.fixed(0, n);
+    const ShareItems items = file.items(0, m);
+    EXPECT_EQ(items.cells.corners.size() + items.triangles.corners.size() + items.edges.corners.size(), m);
+    EXPECT_EQ(items.cells.labels.size(), items.cells.corners.size());
     return {};
   } catch (const InvalidInput& error) {
     return error.what();
@@ -61,8 +65,7 @@ TEST(VtuSlices, RangesAreTheMesh) {
   io::write(path, mesh);
   io::VtuSlices file(path);
   ASSERT_EQ(file.n_points(), mesh.n_vertices());
-  ASSERT_EQ(file.n_cells(), mesh.n_cells());
-  ASSERT_TRUE(file.has_regions());
+  ASSERT_EQ(file.n_items(), mesh.n_cells());
   EXPECT_THAT(file.notes(), testing::IsEmpty());
   for (const std::uint64_t n : {1, 7, 1000}) {
     for (std::uint64_t from = 0; from < mesh.n_vertices(); from += n) {
@@ -74,8 +77,9 @@ TEST(VtuSlices, RangesAreTheMesh) {
     }
     for (std::uint64_t from = 0; from < mesh.n_cells(); from += n) {
       const std::uint64_t to = std::min<std::uint64_t>(from + n, mesh.n_cells());
-      const auto cells = file.cells(from, to);
-      const auto regions = file.regions(from, to);
+      const ShareItems items = file.items(from, to);
+      const auto& cells = items.cells.corners;
+      const auto& regions = items.cells.labels;
       ASSERT_EQ(cells.size(), to - from);
       for (std::size_t c = 0; c < cells.size(); ++c) {
         EXPECT_EQ(regions[c], mesh.region(CellHandle(from + c)));
@@ -85,7 +89,7 @@ TEST(VtuSlices, RangesAreTheMesh) {
     }
   }
   EXPECT_TRUE(file.points(5, 5).empty());
-  EXPECT_TRUE(file.cells(mesh.n_cells(), mesh.n_cells()).empty());
+  EXPECT_TRUE(file.items(mesh.n_cells(), mesh.n_cells()).cells.corners.empty());
 }
 
 TEST(VtuSlices, AFileThatEndsAnywhereIsRefusedInOneLine) {
@@ -187,8 +191,8 @@ TEST(VtuSlices, NumbersOfAnyKindAndByteOrder) {
       ASSERT_EQ(fault(path), "");
       io::VtuSlices file(path);
       EXPECT_EQ(file.points(3, 5), (std::vector<Vec3>{{0, 0, 1}, {0.5, 2, 300}}));
-      EXPECT_EQ(file.cells(1, 2), (std::vector<std::array<std::uint64_t, 4>>{{1, 2, 3, 4}}));
-      EXPECT_EQ(file.regions(0, 2), (std::vector<std::int32_t>{-2, 500}));
+      EXPECT_EQ(file.items(1, 2).cells.corners, (std::vector<std::array<std::uint64_t, 4>>{{1, 2, 3, 4}}));
+      EXPECT_EQ(file.items(0, 2).cells.labels, (std::vector<std::int32_t>{-2, 500}));
       const TetMesh whole = io::read(path);
       EXPECT_EQ(whole.n_cells(), 2U);
       EXPECT_EQ(whole.region(CellHandle(1)), 500);
@@ -204,9 +208,34 @@ TEST(VtuSlices, OtherArraysAreNamed) {
   io::write(path, mesh);
   io::VtuSlices file(path);
   EXPECT_THAT(file.notes(), testing::ElementsAre("array 'height' of points left out"));
+}
+
+TEST(VtuSlices, LabelsAndNamesOfAllKinds) {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "a.vtu";
+  TetMesh mesh = meshed();
   mesh.set_fixed(VertexHandle(3));
+  const auto& v = mesh.cell(CellHandle(2)).v;
+  mesh.labels().faces.set({v[2], v[0], v[1]}, 5);
+  mesh.labels().edges.set({v[3], v[0]}, -6);
+  mesh.labels().vertices.assign(mesh.n_vertices(), 0);
+  mesh.labels().vertices[4] = 8;
+  mesh.labels().names[{2, 5}] = "a side";
   io::write(path, mesh);
-  EXPECT_THAT(fault(path), testing::HasSubstr("array 'fixed' of points"));
+  ASSERT_EQ(fault(path), "");
+  io::VtuSlices file(path);
+  EXPECT_EQ(file.n_items(), mesh.n_cells() + 2);
+  const ShareItems items = file.items(mesh.n_cells() - 1, mesh.n_cells() + 2);
+  EXPECT_EQ(items.cells.corners.size(), 1U);
+  EXPECT_EQ(items.triangles.corners,
+            (std::vector<std::array<std::uint64_t, 3>>{{v[2].idx(), v[0].idx(), v[1].idx()}}));
+  EXPECT_EQ(items.triangles.labels, (std::vector<std::int32_t>{5}));
+  EXPECT_EQ(items.edges.corners, (std::vector<std::array<std::uint64_t, 2>>{{v[3].idx(), v[0].idx()}}));
+  EXPECT_EQ(items.edges.labels, (std::vector<std::int32_t>{-6}));
+  EXPECT_EQ(file.fixed(2, 5), (std::vector<std::uint8_t>{0, 1, 0}));
+  EXPECT_EQ(file.vertex_labels(3, 6), (std::vector<std::int32_t>{0, 8, 0}));
+  EXPECT_EQ(file.names(), mesh.labels().names);
+  EXPECT_THAT(file.notes(), testing::IsEmpty());
 }
 
 }  // namespace
