@@ -112,23 +112,79 @@ def check_meshes(page, checks):
         checks.expect(f"cells {side} have their angles: {counted[3]}", counted[3] < 0.25)
 
 
+def check_first_view(page, checks):
+    """The mesh fills its view, and no part of it is outside."""
+    checks.set("axis", "none", "change")
+    page.run("byId('reset').click()")
+    page.frame()
+    for i in (0, 1):
+        left, right, top, bottom = page.run(f"""(() => {{
+          const {{ width, height }} = byId('canvas-{i}');
+          const copy = Object.assign(document.createElement('canvas'), {{ width, height }}).getContext('2d');
+          copy.drawImage(byId('canvas-{i}'), 0, 0);
+          const {{ data }} = copy.getImageData(0, 0, width, height);
+          const paper = [...data.slice(0, 3)], box = [width, -1, height, -1];
+          for (let y = 0; y < height; ++y)
+            for (let x = 0; x < width; ++x)
+              if (paper.some((c, k) => Math.abs(c - data[4 * (width * y + x) + k]) > 8)) {{
+                box[0] = Math.min(box[0], x); box[1] = Math.max(box[1], x);
+                box[2] = Math.min(box[2], y); box[3] = Math.max(box[3], y);
+              }}
+          return [box[0] / width, box[1] / width, box[2] / height, box[3] / height];
+        }})()""")
+        checks.expect(f"mesh {i} fills the first view: {left:.2f} {right:.2f} {top:.2f} {bottom:.2f}",
+                      max(right - left, bottom - top) > 0.8)
+        checks.expect(f"all of mesh {i} is in the first view", min(left, top) > 0.01 and max(right, bottom) < 0.99)
+
+
+def tables_that_overflow(page):
+    return page.run("[...document.querySelectorAll('.scroll')].filter((t) => t.scrollWidth > t.clientWidth).length")
+
+
+def check_narrow(page, checks):
+    checks.expect("a narrow page is not wider than its window",
+                  page.run("document.documentElement.scrollWidth <= document.documentElement.clientWidth"))
+    checks.expect("tables are wider than a narrow window", tables_that_overflow(page) > 0)
+    page.run("document.querySelectorAll('details').forEach((d) => { d.open = true; }); 0")
+    page.frame()
+    checks.expect("they, and no others, are reached by the keyboard", page.run(
+        "[...document.querySelectorAll('.scroll')].every((t) => (t.scrollWidth > t.clientWidth) === (t.tabIndex === 0))"))
+
+
+def check_paper(page, checks):
+    page.run("document.querySelectorAll('#stuck details').forEach((d) => { d.open = false; }); 0")
+    page.send("Emulation.setEmulatedMedia", media="print")
+    page.run("window.dispatchEvent(new Event('beforeprint')); 0")
+    page.frame()
+    checks.expect("all lists of cells are open on paper",
+                  page.run("[...document.querySelectorAll('#stuck details')].map((d) => d.open).join()") == "true")
+    checks.expect("no table is cut off on paper", tables_that_overflow(page) == 0)
+
+
 def main(tool):
     browser = find_browser()
     if browser is None:
         print("skipped: no Chromium here (Debian: chromium)")
         sys.exit(77)
     with tempfile.TemporaryDirectory() as folder:
-        mesh, out, file = (f"{folder}/{name}" for name in ("in.mesh", "out.mesh", "page.html"))
+        mesh, out, file, ball, round_file = (f"{folder}/{name}" for name in (
+            "in.mesh", "out.mesh", "page.html", "ball.mesh", "ball.html"))
         subprocess.run([tool, "generate", "cavity", "-o", mesh, "-q"], check=True)
         subprocess.run([tool, mesh, "-o", out, "--report", file, "-q"], check=True)
-        with Page(browser, 1280, 1000) as page:
-            page.open(file)
-            checks = Checks(page)
-            check_views(page, checks)
-            check_lists(page, checks)
-            check_meshes(page, checks)
-            checks.expect("no error on the console", not page.faults)
-            print(f"{checks.n} checks passed")
+        subprocess.run([tool, "generate", "ball", "-o", ball, "-q"], check=True)
+        subprocess.run([tool, "report", ball, ball, "-o", round_file, "-q"], check=True)
+        n = 0
+        # On A4 with Chromium's margins 718 pixels are left.
+        for width, name, looks in ((1280, file, (check_views, check_lists, check_meshes)), (400, file, (check_narrow,)),
+                                   (718, file, (check_paper,)), (1280, round_file, (check_first_view,))):
+            with Page(browser, width, 1000) as page:
+                page.open(name)
+                checks = Checks(page)
+                for look in looks:
+                    look(page, checks)
+                checks.expect("no error on the console", not page.faults)
+                n += checks.n
+        print(f"{n} checks passed")
 
 
 main(sys.argv[1])

@@ -3,6 +3,9 @@
 
 const escapeText = (text) => String(text).replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
 
+/** Text in which names of options are set as code, so that no line ends within one. */
+const prose = (text) => escapeText(text).replace(/--[a-z][a-z-]*/g, "<code>$&</code>");
+
 /** About `n` round numbers from 0 to `highest`. */
 function ticks(highest, n) {
   if (!(highest > 0)) return [0];

@@ -15,8 +15,8 @@ function showWords() {
     (isRun ? ` in ${seconds(report.seconds.improve)}, ${report.threads} ${report.threads === 1 ? "thread" : "threads"}` +
       (report.options.dry_run ? "; a dry run, no mesh was written" : `; written to ${meshes[1].name}`) : "");
   const [good, line] = verdict(report);
-  const part = (heading, lines) => `<div><h3>${heading}</h3><ul>${lines.map((l) => `<li>${escapeText(l)}</li>`).join("")}</ul></div>`;
-  byId("words").innerHTML = `<p class="verdict ${good ? "good" : "bad"}"><strong>${escapeText(line)}</strong></p><div class="summary">` +
+  const part = (heading, lines) => `<div><h3>${heading}</h3><ul>${lines.map((l) => `<li>${prose(l)}</li>`).join("")}</ul></div>`;
+  byId("words").innerHTML = `<p class="verdict ${good ? "good" : "bad"}"><strong>${prose(line)}</strong></p><div class="summary">` +
     part("What was wrong", whatWasWrong(report.before)) + part("What was done", whatWasDone(report)) +
     part("What is left, and why", whatIsLeft(report)) + "</div>";
 }
@@ -92,8 +92,8 @@ function showStuck() {
   byId("stuck-heading").textContent = groups.has("") ? "Poorest cells of the mesh after" : "Cells that are left, by reason";
   byId("stuck-lists").innerHTML = groups.size === 0 ? "<p>None.</p>" : [...groups].map(([reason, cells]) => {
     const all = reason && report.limits ? report.limits.counts[reason] : cells.length;
-    const words = REASONS[reason] ? `<p>${escapeText(REASONS[reason][0][0].toUpperCase() + whyAndWhat(reason, report.options).slice(1))}</p>` : "";
-    const more = all > cells.length ? `<p class="hint">The worst ${cells.length} of ${count(all)}; --ids lists all.</p>` : "";
+    const words = REASONS[reason] ? `<p>${prose(REASONS[reason][0][0].toUpperCase() + whyAndWhat(reason, report.options).slice(1))}</p>` : "";
+    const more = all > cells.length ? `<p class="hint">The worst ${cells.length} of ${count(all)}; <code>--ids</code> lists all.</p>` : "";
     return `<details ${cells.length <= 20 ? "open" : ""}><summary>${escapeText(reason || "the poorest")}: ${some(all, "cell", "cells")}</summary>` +
       `${words}${more}<div class="scroll">${table("", head, cells.map(row))}</div></details>`;
   }).join("");
@@ -126,7 +126,7 @@ function showParts() {
 
 function showNotes() {
   const notes = report.notes || [];
-  byId("note-list").innerHTML = notes.map((note) => `<li>${escapeText(note)}</li>`).join("");
+  byId("note-list").innerHTML = notes.map((note) => `<li>${prose(note)}</li>`).join("");
   byId("notes").hidden = notes.length === 0;
   byId("footer").textContent = "Angles are dihedral angles in degrees; numbers of cells count from 0. Figures are those of the JSON " +
     "report of the same run; coordinates in the views are rounded to 1/65,536 of the bounding box.";
@@ -144,11 +144,11 @@ const app = {
     const high = [0, 1, 2].map((i) => Math.max(...boxes.map((b) => b.high[i])));
     const frame = { low, high, centre: scaled(0.5, added(low, high)), radius: 0.5 * Math.hypot(...subtract(high, low)) || 1 };
     this.frame = frame;
-    this.camera = new Camera(subtract(high, low), frame.radius);
-    this.camera.reset(this.aspect());
+    this.camera = new Camera(subtract(high, low));
     Object.assign(this.state, { axis: this.camera.frontAxis, beyond: this.camera.side });
     const packs = await Promise.all([0, 1].map((i) => inflate(byId(`mesh-${i}`).textContent)));
     this.views = packs.map((bytes, i) => new MeshView(byId(`canvas-${i}`), unpack(bytes, meshes[i].packed), meshes[i].packed, frame));
+    this.camera.fit(this.views.flatMap((view) => view.outline()), this.aspect());
     this.stale = { limit: true, cut: true };
     byId("axis").value = String(this.state.axis);
     this.listen();
@@ -304,6 +304,26 @@ function withoutView(error) {
   byId("canvases").hidden = byId("controls").hidden = byId("view-hint").hidden = true;
 }
 
-matchMedia("(max-width: 560px)").addEventListener("change", showCharts);
-for (const show of [showWords, showCharts, showFigures, showTime, showStuck, showParts, showNotes, captions]) show();
+/** On paper the lists of cells are open. */
+function openForPrint() {
+  let closed = [];
+  window.addEventListener("beforeprint", () => {
+    closed = [...document.querySelectorAll("#stuck details:not([open])")];
+    for (const list of closed) list.open = true;
+  });
+  window.addEventListener("afterprint", () => { for (const list of closed) list.open = false; });
+}
+
+/** A table that is wider than its place can be moved by the arrow keys, too. */
+function reachTables() {
+  const look = (tables) => tables.forEach(({ target: t }) => {
+    if (t.scrollWidth > t.clientWidth) t.tabIndex = 0;
+    else t.removeAttribute("tabindex");
+  });
+  const resized = new ResizeObserver(look);
+  document.querySelectorAll(".scroll").forEach((t) => resized.observe(t));
+}
+
+matchMedia("(max-width: 560px)").addEventListener("change", () => { showCharts(); reachTables(); });
+for (const show of [showWords, showCharts, showFigures, showTime, showStuck, showParts, showNotes, captions, openForPrint, reachTables]) show();
 window.ready = app.start().catch(withoutView).then(() => { document.documentElement.dataset.ready = app.views ? "view" : "text"; });

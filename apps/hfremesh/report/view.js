@@ -63,7 +63,7 @@ const inner = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 /** Eye of both views. Lengths are in radii of the box of both meshes, about its middle. */
 class Camera {
   /** z is up, unless the box is flat in it; the eye is on the side where the box is wide. */
-  constructor(extent, radius) {
+  constructor(extent) {
     this.up = extent[2] < 0.5 * Math.min(extent[0], extent[1]) ? 1 : 2;
     const other = this.up === 2 ? 1 : 2;
     const axis = (i) => [0, 1, 2].map((k) => (k === i ? 1 : 0));
@@ -72,11 +72,13 @@ class Camera {
     this.base = [axis(this.right), axis(this.up), crossed(axis(this.right), axis(this.up))];
     /** +1 where the eye is on the side of larger coordinates. */
     this.side = Math.sign(this.base[2][this.frontAxis]);
-    this.corners = [-0.5, 0.5].flatMap((x) => [-0.5, 0.5].flatMap((y) => [-0.5, 0.5].map((z) =>
-      [(x * extent[0]) / radius, (y * extent[1]) / radius, (z * extent[2]) / radius])));
-    this.reset(1);
+    this.outline = [[0, 0, 0]];
   }
-  /** As near as the whole box is seen. */
+  /** From here on the first view is the nearest one that these points are seen from. */
+  fit(outline, aspect) {
+    this.outline = outline;
+    this.reset(aspect);
+  }
   reset(aspect) {
     this.turn = 0.49;
     this.rise = 0.38;
@@ -90,7 +92,7 @@ class Camera {
   }
   sees(aspect) {
     const m = this.matrix(aspect);
-    return this.corners.every((p) => {
+    return this.outline.every((p) => {
       const [x, y, , w] = [0, 1, 2, 3].map((row) => m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row]);
       return Math.max(Math.abs(x), Math.abs(y)) < 0.93 * w;
     });
@@ -242,6 +244,29 @@ class MeshView {
         put(v[0], v[1], v[2], codes[i], i);
       }
     });
+  }
+  /** The vertices of the surface that are farthest out, one for each of 64 directions; lengths are those of Camera. */
+  outline() {
+    const { skin, points, nVertices } = this.mesh;
+    const isOutside = new Uint8Array(nVertices);
+    for (const v of skin) isOutside[v] = 1;
+    const found = [];
+    for (let i = 0, n = 64; i < n; ++i) {
+      const z = (2 * i + 1) / n - 1, turn = 2.399963 * i, r = Math.sqrt(1 - z * z);
+      const [x1, y1, z1] = [r * Math.cos(turn), r * Math.sin(turn), z].map((d, axis) => d * this.step[axis]);
+      let best = -1, most = -Infinity;
+      for (let v = 0, k = 0; v < nVertices; ++v, k += 3) {
+        if (!isOutside[v]) continue;
+        const far = x1 * points[k] + y1 * points[k + 1] + z1 * points[k + 2];
+        if (far > most) {
+          most = far;
+          best = k;
+        }
+      }
+      if (best >= 0) found.push([0, 1, 2].map((axis) =>
+        (this.low[axis] + this.step[axis] * points[best + axis] - this.frame.centre[axis]) / this.frame.radius));
+    }
+    return found;
   }
   setPicked(cell) {
     const { cells, points } = this.mesh;
