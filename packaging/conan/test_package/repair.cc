@@ -12,7 +12,8 @@ int main() {
   const hfr::Result result = hfr::improve(mesh);
   hfr::io::write("repaired.vtu", mesh);
   const std::size_t n_read = hfr::io::read("repaired.vtu").n_cells();
-  std::cout << "hfremesh " << HFR_VERSION << ": " << result.before.inverted.size() << " inverted cells before, "
-            << result.invalid_cells.size() << " after; " << n_read << " cells read again\n";
+  std::cout << "hfremesh " << HFR_VERSION << ": " << result.before.inverted.size()
+            << " inverted cells before, " << result.invalid_cells.size() << " after; " << n_read
+            << " cells read again\n";
   return result.goal_reached && n_read == mesh.n_cells() ? 0 : 1;
 }
