@@ -7,6 +7,7 @@ namespace hfr {
 namespace {
 
 constexpr const char* kSource = "hfr: source of the vertex";
+constexpr const char* kOrigin = "hfr: origin of the cell";
 
 /// Where h goes; an empty list: it stays. Handles beyond the list are newer than it.
 template <class H>
@@ -26,9 +27,15 @@ MapRecorder::MapRecorder(TetMesh& mesh, const TetMesh* before)
       source_(mesh.request_vertex_property<Index>(kSource, VertexHandle::kInvalid)) {
   for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i] = mesh.cell(CellHandle(i)).v;
   for (std::size_t i = 0; i < n_vertices_; ++i) source_[VertexHandle(i)] = VertexHandle(i).idx();
+  if (mesh.properties().cells.empty()) return;
+  origin_ = mesh.request_cell_property<Index>(kOrigin, CellHandle::kInvalid);
+  for (std::size_t i = 0; i < n_cells_; ++i) (*origin_)[CellHandle(i)] = CellHandle(i).idx();
 }
 
-MapRecorder::~MapRecorder() { mesh_.properties().vertices.remove(kSource); }
+MapRecorder::~MapRecorder() {
+  mesh_.properties().vertices.remove(kSource);
+  if (origin_) mesh_.properties().cells.remove(kOrigin);
+}
 
 MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy) {
   MeshMaps maps;
@@ -56,6 +63,7 @@ MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, p
     // A slot may have been filled with another cell, or with the same again.
     const auto& now = mesh_.cell(c).v;
     if (vertices != now && AnyOrder::key(vertices) != AnyOrder::key(now)) return;
+    if (origin_ && (*origin_)[c] != CellHandle(i).idx()) return;
     maps.cells[i] = c;
     maps.old_cells[c.idx()] = CellHandle(i);
   });

@@ -3,6 +3,7 @@
 #define HFR_REMESH_MAP_RECORDER_HH
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
@@ -13,10 +14,10 @@ namespace hfr {
 /// Makes the maps of a run.
 class MapRecorder {
  public:
-  /// Before the run. Adds a property to the vertices. `before`: a copy of the mesh that outlives this object;
-  /// without one the vertices of the cells are copied, 16 bytes a cell.
+  /// Before the run. Adds a property to the vertices, and one to cells that have others. `before`: a copy of
+  /// the mesh that outlives this object; without one the vertices of the cells are copied, 16 bytes a cell.
   explicit MapRecorder(TetMesh& mesh, const TetMesh* before = nullptr);
-  /// Takes the property away, if maps() has not.
+  /// Takes them away.
   ~MapRecorder();
   MapRecorder(const MapRecorder&) = delete;
   MapRecorder& operator=(const MapRecorder&) = delete;
@@ -35,6 +36,9 @@ class MapRecorder {
   std::size_t n_vertices_, n_cells_;
   std::vector<std::array<VertexHandle, 4>> cells_;
   VertexProperty<Index> source_;
+  /// By cell: the old one whose properties it has. A cell may go and come again in its old place, with the
+  /// properties of another that was there in between: then it is not what it was.
+  std::optional<CellProperty<Index>> origin_;
 };
 
 }  // namespace hfr

@@ -64,9 +64,20 @@ Cavities::Cavities(const TetMesh& old, const TetMesh& now, const Edits& edits, p
       const Index j = place_in(old_cells_, cell_of(m));
       if (j < n_old && old_cells_[j] == cell_of(m)) sets.join(static_cast<Index>(i), j);
     }
-  for (std::size_t i = 0; i < new_cells_.size(); ++i)
-    for (const Overlap& part : overlaps_.of(i))
+  for (std::size_t i = 0; i < new_cells_.size(); ++i) {
+    const auto parts = overlaps_.of(i);
+    for (const Overlap& part : parts)
       sets.join(place_in(old_cells_, part.old_cell), static_cast<Index>(n_old + i));
+    // Where the surface has moved out, a cell may lie beyond the old mesh as a whole: it shares with those
+    // beside it, or what it holds would come from nowhere.
+    if (!parts.empty()) continue;
+    for (const HalfFaceHandle m : now.cell(new_cells_[i]).mate) {
+      if (!m.is_valid()) continue;
+      const Index j = place_in(new_cells_, cell_of(m));
+      if (j < new_cells_.size() && new_cells_[j] == cell_of(m))
+        sets.join(static_cast<Index>(n_old) + j, static_cast<Index>(n_old + i));
+    }
+  }
   constexpr Index kNone = std::numeric_limits<Index>::max();
   std::vector<Index> number(n, kNone);  // by the smallest member
   for (std::size_t i = 0; i < n; ++i) {
@@ -117,7 +128,8 @@ Conserved conserve(const Cavities& cavities, std::span<const double> old_values,
       out.values[i] = value;
       missing -= cavities.new_volume(i) * density(new_density, i) * value;
     }
-    if (cavity.old_cells.empty()) {  // beyond the old mesh: nothing is handed on
+    if (cavity.old_cells.empty()) {  // beyond the old mesh, with nobody to share with
+      out.lost += missing;
       continue;
     }
     // Twice: the second time for what the first one has rounded.

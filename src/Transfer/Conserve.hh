@@ -11,8 +11,9 @@
 
 namespace hfr {
 
-/// The changed cells of a mesh, old and new, cut into cavities: the largest sets such that no old cell of one
-/// shares volume or a face with an old or new cell of another. What the old cells of a cavity hold is what
+/// The changed cells of a mesh, old and new, cut into cavities: the smallest sets such that no old cell of
+/// one shares volume or a face with an old or new cell of another, and that a new cell which covers nothing
+/// of the old mesh is in the set of the new cells on its faces. What the old cells of a cavity hold is what
 /// its new cells share.
 class Cavities {
  public:
@@ -43,7 +44,9 @@ class Cavities {
 struct Conserved {
   std::vector<double> values;  ///< of the new cells, by their place in the list
   double integral = 0;         ///< what the old cells held
-  double lost = 0;             ///< what of it found no place within the bounds of its cavity
+  /// What of it found no place within the bounds of its cavity; less than 0 where these, or the fallback of
+  /// cells beyond the old mesh with no changed one beside them, add something.
+  double lost = 0;
 };
 
 /// Each new cell has the mean of what it covers; then what rounding, or a surface that has changed, makes the

@@ -111,6 +111,45 @@ TEST(MeshMaps, ScatteredMeshesThatAreReorderedForTheRunAreMappedAllTheSame) {
   EXPECT_GT(expect_maps(before, mesh, result.maps), before.n_cells() / 2);
 }
 
+TEST(MeshMaps, CellThatCameAgainWithThePropertiesOfAnotherIsNotKept) {
+  TetMesh mesh = small_cavity(4);
+  auto value = mesh.request_cell_property<int>("value");
+  const std::vector<std::string> names = mesh.properties().cells.names();
+  {
+    MapRecorder recorder(mesh);
+    mesh.copy_cell_data(C(3), C(7));  // what a round does for a cell in a slot that had been freed
+    const MeshMaps maps = recorder.maps({}, {});
+    for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+      EXPECT_EQ(maps.cells[i], i == 7 ? CellHandle() : C(i));
+      EXPECT_EQ(maps.old_cells[i], i == 7 ? CellHandle() : C(i));
+    }
+  }
+  EXPECT_EQ(mesh.properties().cells.names(), names);
+}
+
+TEST(MeshMaps, KeptCellsHaveThePropertiesThatTheyHad) {
+  for (const SurfaceMode mode : {SurfaceMode::kFrozen, SurfaceMode::kFlat, SurfaceMode::kFree}) {
+#ifndef HFR_HAS_SURFACE
+    if (mode != SurfaceMode::kFrozen) continue;
+#endif
+    TetMesh mesh = small_cavity(8);
+    auto number = mesh.request_cell_property<std::size_t>("number");
+    for (CellHandle c : mesh.cells()) number[c] = c.idx();
+    ImproveOptions options = serial();
+    options.maps = true;
+    options.surface.mode = mode;
+    const Result result = improve(mesh, options);
+    std::size_t n_kept = 0;
+    for (CellHandle c : mesh.cells()) {
+      const CellHandle old = result.maps.old_cells[c.idx()];
+      if (!old.is_valid()) continue;
+      ++n_kept;
+      EXPECT_EQ(number[c], old.idx());
+    }
+    EXPECT_GT(n_kept, 100U);
+  }
+}
+
 TEST(MeshMaps, MeshThatStaysIsMappedToItself) {
   TetMesh mesh = jittered(4, 0.05, 1);
   ImproveOptions options = serial();

@@ -85,6 +85,51 @@ TEST(Conserve, MomentumStaysWhereDensitiesWeigh) {
   EXPECT_NEAR(after, before, 1e-13 * std::abs(before));
 }
 
+/// A cell, and the same with another one on its largest face, beyond the old mesh as a whole; the corner
+/// across from that one moves by `step`.
+TwoMeshes grown(double step) {
+  TwoMeshes two;
+  std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  two.old = build(points, std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
+  points[0] = {step, step, step};
+  points.push_back({1, 1, 1});
+  two.now = build(points, std::vector<std::array<Index, 4>>{{0, 1, 2, 3}, {4, 1, 3, 2}});
+  const auto vertices = two.old.vertices();
+  two.maps = {};
+  two.maps.vertices = two.maps.old_vertices = two.maps.sources = {vertices.begin(), vertices.end()};
+  two.maps.old_vertices.push_back({});
+  two.maps.sources.push_back(VertexHandle(1));
+  two.maps.cells = {CellHandle(0)};
+  two.maps.old_cells = {CellHandle(0), CellHandle()};
+  return two;
+}
+
+TEST(Conserve, CellBeyondTheOldMeshSharesWithTheChangedOneBesideIt) {
+  const TwoMeshes two = grown(0.1);
+  const Cavities cavities(two.old, two.now, two.edits(), {});
+  ASSERT_EQ(cavities.new_cells().size(), 2U);
+  EXPECT_EQ(cavities.cavities().size(), 1U);
+  const std::vector<double> old = {2}, elsewhere = {7, 7};
+  const Conserved conserved = conserve(cavities, old, {}, {}, elsewhere);
+  double holds = 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(conserved.values[i], 2) << "the only value that the cavity had";
+    holds += cavities.new_volume(i) * conserved.values[i];
+  }
+  EXPECT_LT(conserved.lost, 0);
+  EXPECT_NEAR(holds + conserved.lost, conserved.integral, 1e-15);
+}
+
+TEST(Conserve, WhatACellBeyondTheOldMeshHasWithNobodyBesideItIsSaid) {
+  const TwoMeshes two = grown(0);
+  const Cavities cavities(two.old, two.now, two.edits(), {});
+  ASSERT_EQ(cavities.new_cells().size(), 1U);
+  const Conserved conserved = conserve(cavities, {}, {}, {}, std::vector<double>{7});
+  EXPECT_EQ(conserved.values[0], 7);
+  EXPECT_EQ(conserved.integral, 0);
+  EXPECT_NEAR(conserved.lost, -7 * cavities.new_volume(0), 1e-15);
+}
+
 TEST(Conserve, InvertedOldCellsCountNegatively) {
   // The cavity's inverted cells overlap others: what they hold is taken off again.
   generate::Arrays bent =
