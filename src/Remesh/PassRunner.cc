@@ -7,7 +7,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "HalfFace/Errors.hh"
 #include "Operators/AnyOf.hh"
 #include "Operators/ClusterSearch.hh"
 #include "Operators/EdgeRemoval.hh"
@@ -301,8 +300,13 @@ auto PassRunner<Metric>::worst_apart(const Worklist& list, const Focus& focus) -
   const auto is_worse = [&](Index a, Index b) {
     return quality[a] != quality[b] ? quality[a] < quality[b] : a < b;
   };
-  // Whatever has changed is listed, so what waits and is not listed is in order still.
-  std::erase_if(waiting_, [&](Index c) { return list.has(CellHandle(c)) || !(quality[c] < focus.below); });
+  // Whatever a round or a pass has changed is listed, so what waits and is not listed is in order still,
+  // unless another mesh was put back meanwhile.
+  std::erase_if(waiting_, [&](Index c) {
+    return c >= quality.size() || list.has(CellHandle(c)) || !(quality[c] < focus.below);
+  });
+  if (!std::is_sorted(waiting_.begin(), waiting_.end(), is_worse))
+    std::sort(waiting_.begin(), waiting_.end(), is_worse);
   std::vector<Index> listed;
   std::copy_if(list.cells().begin(), list.cells().end(), std::back_inserter(listed),
                [&](Index c) { return quality[c] < focus.below; });
@@ -311,7 +315,6 @@ auto PassRunner<Metric>::worst_apart(const Worklist& list, const Focus& focus) -
   order.reserve(waiting_.size() + listed.size());
   std::merge(waiting_.begin(), waiting_.end(), listed.begin(), listed.end(), std::back_inserter(order),
              is_worse);
-  HFR_ASSERT(std::is_sorted(order.begin(), order.end(), is_worse));
   waiting_.clear();
   taken_.resize(run().mesh.n_vertices(), 0);
   ++choice_;
