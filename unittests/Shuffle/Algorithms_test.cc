@@ -107,7 +107,10 @@ TEST(ShuffledAlgorithms, StarsAndColoursAreThoseOfOneThread) {
     }
     const StarTable one(mesh, vertices, sizes, kOneThread);
     const auto first_fit = colour_vertices(mesh, vertices, one, kOneThread);
+    const auto constrained = constrained_vertices(mesh, kOneThread);
     shuffle(seed);
+    ASSERT_EQ(star_sizes(mesh, policy), sizes);
+    ASSERT_EQ(constrained_vertices(mesh, policy), constrained);
     const StarTable many(mesh, vertices, sizes, policy);
     for (std::size_t i = 0; i < vertices.size(); ++i)
       ASSERT_TRUE(std::ranges::equal(one.link(i), many.link(i)));
