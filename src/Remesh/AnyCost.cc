@@ -40,6 +40,12 @@ class Climb {
     for (const PatchEffort& effort : effort_.patches)
       search_patches(run_, effort_.targets.back().degrees, effort);
   }
+  /// Of cells that came to be below that, on the way to what is larger.
+  void mend(double degrees) {
+    PolishEffort effort = effort_.polish;
+    effort.gain = 1;  // few cells, and moves alone bring most of them back
+    if (smallest() < degrees) polish(run_, effort, degrees);
+  }
   double smallest() const { return smallest_dihedral(run_.mesh, run_.policy()); }
 
  private:
@@ -78,10 +84,12 @@ void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort, Best& best
   if (effort.refine) refine(run, *effort.refine);
   for (double at_start = 0; has_risen(climb.smallest(), at_start, effort.again) && !run.control.stopped();) {
     climb.while_it_rises();
+    climb.mend(best.worst());
     best.note();
     if (at_start == 0 && effort.refine_again) refine(run, *effort.refine_again);
     at_start = climb.smallest();
     climb.search_worst();
+    climb.mend(best.worst());
     best.note();
   }
 }

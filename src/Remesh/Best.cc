@@ -76,6 +76,8 @@ bool Best::makes_up_for(double worst, const Percentiles& low) const {
   return sum >= 0 && worst * kept * kept >= beginning_.worst;
 }
 
+double Best::worst() const { return degrees(standing_); }
+
 void Best::note() {
   const Standing found = standing_now(run_);
   if (!is_better(found, standing_) || !is_admissible(found)) return;

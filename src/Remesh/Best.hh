@@ -42,6 +42,8 @@ class Best {
   Best(const Best&) = delete;
   Best& operator=(const Best&) = delete;
 
+  /// Smallest dihedral of the best mesh in degrees.
+  double worst() const;
   /// The mesh may have become better.
   void note();
   /// At the end of the stage: where the mesh is worse than the best one was, puts that back. Worst angles

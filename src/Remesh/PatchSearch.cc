@@ -59,12 +59,14 @@ struct Try {
     kRow,      // an apex over each needle; number: of PatchTrial::row_shares
     kVertex,   // a new vertex for the first cell; number: of the place, counted by promise
     kRemoval,  // one vertex less; number: of the vertex, which are in the order of discovery from that cell
+    kOther,    // that, and a new vertex for what is the worst cell then; place: its number
   };
   Kind kind;
   std::size_t number;
+  std::size_t place = 0;
 };
 
-std::vector<Try> tries_of(const PatchEffort& effort) {
+std::vector<Try> tries_of(const PatchEffort& effort, std::size_t places_of_many) {
   std::vector<Try> tries = {{Try::kNothing, 0}};
   const auto add = [&](Try::Kind kind, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) tries.push_back({kind, i});
@@ -72,6 +74,8 @@ std::vector<Try> tries_of(const PatchEffort& effort) {
   add(Try::kRow, std::min(effort.rows, kNeedleRows));
   add(Try::kVertex, effort.vertices);
   add(Try::kRemoval, effort.removals);
+  for (std::size_t i = 0; effort.replaces && i < effort.removals; ++i)
+    for (std::size_t k = 0; k < places_of_many; ++k) tries.push_back({Try::kOther, i, k});
   return tries;
 }
 
@@ -104,6 +108,22 @@ bool put_row(const Run& run, const PatchTrial& rules, double share, double goal)
   return changed;
 }
 
+/// A vertex at a place of that number, counted by promise, for a cell.
+bool put_vertex(const Run& run, CellHandle c, std::size_t place) {
+  VertexInsertion<MinSine2> insertion{MinSine2{}, run.work.quality, kAnyLoss};
+  insertion.only_site = static_cast<int>(place);
+  return apply(insertion, run.mesh, VertexInsertion<MinSine2>::Seed(c));
+}
+
+bool remove_vertex(const Run& run, VertexHandle v) {
+  TetMesh& mesh = run.mesh;
+  const auto& frozen = run.work.frozen;
+  if (!has(run.strategy.pass.ops, Ops::kNode) || v.idx() >= mesh.n_vertices() || frozen[v.idx()] != 0)
+    return false;
+  const std::vector<double> nothing_to_lose(mesh.n_cells(), 0);
+  return apply(VertexCollapse<MinSine2>{MinSine2{}, nothing_to_lose, frozen}, mesh, v);
+}
+
 /// False where the try cannot be begun.
 bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double goal) {
   TetMesh& mesh = run.mesh;
@@ -121,18 +141,16 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
       polish({mesh, work, connecting, run.control, run.findings, run.device}, connecting.polish, goal);
       return true;
     }
-    case Try::kVertex: {
-      VertexInsertion<MinSine2> insertion{MinSine2{}, work.quality, kAnyLoss};
-      insertion.only_site = static_cast<int>(attempt.number);
-      return apply(insertion, mesh, VertexInsertion<MinSine2>::Seed(CellHandle(0)));
-    }
-    case Try::kRemoval: {
-      const VertexHandle v(attempt.number);
-      if (!has(run.strategy.pass.ops, Ops::kNode) || v.idx() >= mesh.n_vertices() ||
-          work.frozen[v.idx()] != 0)
-        return false;
-      const std::vector<double> nothing_to_lose(mesh.n_cells(), 0);
-      return apply(VertexCollapse<MinSine2>{MinSine2{}, nothing_to_lose, work.frozen}, mesh, v);
+    case Try::kVertex:
+      return put_vertex(run, CellHandle(0), attempt.number);
+    case Try::kRemoval:
+      return remove_vertex(run, VertexHandle(attempt.number));
+    case Try::kOther: {
+      if (!remove_vertex(run, VertexHandle(attempt.number))) return false;
+      work.attach(mesh, run.policy());
+      work.set_qualities(mesh, MinSine2{}, run.policy());
+      const std::vector<CellHandle> worst = worst_cells_below(mesh, goal, 1, run.policy());
+      return !worst.empty() && put_vertex(run, worst[0], attempt.place);
     }
   }
   return false;
@@ -248,7 +266,7 @@ class PatchTries {
   std::vector<Attempt> attempts_;
   double worst_, least_, enough_, worked_for_;  // decision values but for the last, which is an angle
   // Lowered by tries at the same time:
-  int helps_ = Try::kRemoval + 1;       // the first kind of which one helps
+  int helps_ = Try::kOther + 1;         // the first kind of which one helps
   std::size_t enough_from_ = kNoLimit;  // the first try that leaves enough
 };
 
@@ -256,7 +274,7 @@ class PatchTries {
 /// first try of each patch, then the second of each …, because one that helps saves those after it.
 std::vector<Outcome> search(const Run& run, std::span<const Patch> patches, double goal,
                             const PatchEffort& effort) {
-  const std::vector<Try> tries = tries_of(effort);
+  const std::vector<Try> tries = tries_of(effort, run.strategy.pass.sites_of_many);
   std::deque<PatchTries> all;
   std::vector<std::size_t> open;  // numbers of those that are tried on
   for (const Patch& patch : patches) {

@@ -94,7 +94,8 @@ void add_patches(Lines& lines, const std::string& stage, const PatchEffort& effo
   lines.add(stage, say("patches of ", effort.layers, " layers round at most ", effort.few, " cells, ",
                        effort.patches, " at a time, ", effort.turns, " turns, ", effort.degrees,
                        " degrees beyond the worst; tries: ", effort.rows, " rows of apexes, ",
-                       effort.vertices, " new vertices, ", effort.removals, " removals"));
+                       effort.vertices, " new vertices, ", effort.removals, " removals",
+                       effort.replaces ? ", each with and without a new vertex" : ""));
 }
 
 void add_all_cells(Lines& lines, const Strategy& strategy) {

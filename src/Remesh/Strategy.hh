@@ -260,6 +260,7 @@ struct PatchEffort {
   std::size_t rows = kNeedleRows;  ///< of apexes over needles that are tried
   std::size_t vertices = 8;        ///< new ones for one patch, each in a try of its own
   std::size_t removals = 12;       ///< vertices next to the worst cell that are taken out instead
+  bool replaces = false;           ///< puts a new one in for each that is taken out, at several places
   double degrees = 0.6;            ///< beyond the worst angle, that are worked for in a turn
 };
 /// Where the surface is frozen, and nobody asked for more.
@@ -272,9 +273,21 @@ inline constexpr std::array<PatchEffort, 2> kLastEfforts = {
      {.few = 6, .layers = 4, .turns = 2, .vertices = 12, .removals = 30}}};
 /// One after the other, where the worst angle is to be raised at any cost: what one cannot mend, another may.
 inline constexpr std::array<PatchEffort, 3> kAllEfforts = {
-    {{.patches = 8, .turns = 40, .vertices = 20, .removals = 20, .degrees = 2},
-     {.layers = 4, .patches = 8, .turns = 40, .vertices = 20, .removals = 20, .degrees = 0.5},
-     {.layers = 2, .patches = 8, .turns = 40, .vertices = 20, .removals = 20, .degrees = 3}}};
+    {{.patches = 8, .turns = 40, .vertices = 20, .removals = 20, .replaces = true, .degrees = 2},
+     {.layers = 4,
+      .patches = 8,
+      .turns = 40,
+      .vertices = 20,
+      .removals = 20,
+      .replaces = true,
+      .degrees = 0.5},
+     {.layers = 2,
+      .patches = 8,
+      .turns = 40,
+      .vertices = 20,
+      .removals = 20,
+      .replaces = true,
+      .degrees = 3}}};
 
 /// What holds for each try on a patch.
 struct PatchTrial {

@@ -261,6 +261,36 @@ TEST(SearchPatches, TakesVerticesOutWhereNothingElseHelps) {
   EXPECT_GT(raised, 1);
 }
 
+TEST(SearchPatches, PutsAVertexElsewhereWhereTakingOneOutIsNotEnough) {
+  PatchEffort without = kLittleEffort;
+  without.rows = without.vertices = 0;
+  without.few = 200;
+  PatchEffort with = without;
+  with.replaces = true;
+  int raised = 0;
+  for (std::uint64_t s = 1; s <= 6; ++s) {
+    TetMesh mesh = poor_box(s);
+    const auto boundary = boundary_of(mesh);
+    const ImproveOptions options = serial();
+    StageBench bench(mesh, options);
+    while (search_patches(bench.run, 60, without)) {
+    }
+    const double before = smallest_dihedral(mesh, {});
+    TetMesh parallel = mesh;
+    raised += search_patches(bench.run, 60, with) ? 1 : 0;
+    EXPECT_GE(smallest_dihedral(mesh, {}), before);
+    EXPECT_TRUE(boundary_of(mesh) == boundary);
+    EXPECT_EQ(check(mesh), Ok);
+    if (s > 2) continue;
+    ImproveOptions threads = options;
+    threads.policy = {3, 1};
+    StageBench other(parallel, threads);
+    search_patches(other.run, 60, with);
+    EXPECT_TRUE(identical(mesh, parallel)) << s;
+  }
+  EXPECT_GT(raised, 1);
+}
+
 TEST(SearchPatches, LeavesDearerTriesToTheNextTurnWhereOneHasHelped) {
   PatchEffort all = kLittleEffort;
   all.few = 1000;
