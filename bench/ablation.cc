@@ -130,6 +130,15 @@ Row number(std::string name, T Effort::*member, std::vector<double> factors = kB
           std::move(factors)};
 }
 
+/// One number that several efforts go by.
+Row common(const std::string& name, const std::vector<Row>& members) {
+  return {"common." + name,
+          [=](Strategy& s, double factor) {
+            for (const Row& row : members) row.change(s, factor);
+          },
+          members.front().factors};
+}
+
 /// A stage that is left out.
 Row stage(std::string name, std::function<void(Strategy&)> leave_out) {
   return {std::move(name), [=](Strategy& s, double) { leave_out(s); }, {0}};
@@ -141,6 +150,16 @@ void halve(std::vector<TargetAngle>& targets) {
   for (std::size_t i = 0; i < targets.size(); ++i)
     if ((targets.size() - 1 - i) % 2 == 0) left.push_back(targets[i]);
   targets = left;
+}
+
+/// The share of the bound on cells that is kept back for the last ones, and that of the poor cells which have
+/// to get a vertex for the next round of them: a few.
+void keep_back(Strategy& s, double factor) {
+  s.throughout.of_hundred = scaled(std::size_t{100}, 1 - factor * kFewShare, Kind::kPlain);
+  for_each(s, [&](RefineEffort& refine) {
+    if (refine.of_hundred == kAllButFew) refine.of_hundred = s.throughout.of_hundred;
+    refine.one_in = factor > 0 ? scaled(refine.one_in, 1 / factor, Kind::kPlain) : std::size_t{1} << 30;
+  });
 }
 
 std::vector<Row> make_rows() {
@@ -159,14 +178,36 @@ std::vector<Row> make_rows() {
   constexpr Kind kAbove = Kind::kAboveOne;
   constexpr Kind kBelow = Kind::kBelowOne;
   return {
+      common("poor", {number("", &FirstPolish::target), number("", &H::below)}),
+      common("good", {number("", &R::below, {0.67, 1.33}), number("", &C::up_to)}),
+      common("few", {number("", &H::dig_share, kOffToo),
+                     number("", &R::fewer, {}, kBelow),
+                     {"", [](Strategy& s, double factor) { keep_back(s, factor); }, {}},
+                     number("", &CoarsenEffort::still, {}, kBelow),
+                     number("", &Y::may_fall)}),
+      common("many", {number("", &FirstPolish::largest_share, kOffToo),
+                      number("", &H::share),
+                      {"",
+                       [](Strategy& s, double factor) {
+                         for (auto* list : {&s.targets.targets, &s.targets.beyond})
+                           for (TargetAngle& target : *list) target.largest_share *= factor;
+                       },
+                       {}}}),
+      common("few_cells", {number("", &P::few_seeds, kOffToo), number("", &A::few)}),
+      common("rise", {number("", &L::rise, {0, 10}, kAbove), number("", &C::again, {}, kAbove),
+                      number("", &C::rise, {}, kAbove), number("", &Y::gain, {}, kAbove)}),
+      common("large_rise", {number("", &P::least_gain, kOffToo, kAbove), number("", &Y::again, {}, kAbove)}),
+      common("more_cells", {number("", &G::more_cells, kBothWays, kAbove), number("", &Y::most_of_hundred)}),
+      common("claim", {number("", &G::may_fall, kOffToo), number("", &G::pays)}),
+      common("iterations", {number("", &O::iterations), number("", &R::iterations),
+                            number("", &U::iterations), number("", &CoarsenEffort::iterations)}),
+      common("idle", {number("", &O::idle), number("", &U::idle)}),
       number("pass.rounds", &P::rounds),
       number("pass.little", &P::little),
-      number("pass.least_gain", &P::least_gain, kOffToo, kAbove),
       number("pass.insert_rounds", &P::insert_rounds),
       number("pass.cells_of_vertex", &P::cells_of_vertex),
       number("pass.search_points", &P::search_points, {0.7, 1.3}),
       number("pass.search_nodes", &P::search_nodes),
-      number("pass.few_seeds", &P::few_seeds, kOffToo),
       number("pass.sites_of_many", &P::sites_of_many),
       number("pass.promise_of_many", &P::promise_of_many, kOffToo),
       number("pass.many_moves", &P::many_moves, kOffToo),
@@ -174,13 +215,9 @@ std::vector<Row> make_rows() {
       number("pass.move_gain", &P::move_gain, kOffToo, kAbove),
       number("untangle.patience", &U::patience),
       number("untangle.newton_steps", &U::newton_steps),
-      number("untangle.iterations", &U::iterations),
-      number("untangle.idle", &U::idle),
       number("bulk.iterations", &BulkEffort::iterations, {0, 1.0 / 3, 2}),
       number("bulk.focus", &BulkEffort::focus),
-      number("polish.iterations", &O::iterations),
       number("polish.gain", &O::gain, kOffToo, kAbove),
-      number("polish.idle", &O::idle),
       number("polish.many", &O::many),
       number("polish.least_fewer", &O::least_fewer),
       number("polish.fan_of", &O::fan_of),
@@ -188,39 +225,23 @@ std::vector<Row> make_rows() {
       number("polish.dig_share", &O::dig_share),
       number("polish.seeds_of_vertex", &O::seeds_of_vertex),
       number("polish.dig_again_tenths", &O::dig_again_tenths, {0.8, 1.1}),
-      number("first_polish.target", &FirstPolish::target),
-      number("first_polish.largest_share", &FirstPolish::largest_share, kOffToo),
       {"targets.list",
        [](Strategy& s, double) {
          halve(s.targets.targets);
          halve(s.targets.beyond);
        },
        {0.5}},
-      {"targets.largest_share",
-       [](Strategy& s, double factor) {
-         for (auto* list : {&s.targets.targets, &s.targets.beyond})
-           for (TargetAngle& target : *list) target.largest_share *= factor;
-       },
-       {0.5, 2, 10}},
       number("targets.in_turn_beyond", &T::in_turn_beyond, {0.5, 2}),
       number("targets.enough_left", &T::enough_left),
       stage("refine", [](Strategy& s) { s.refine.reset(); }),
       stage("refine_again", [](Strategy& s) { s.refine_again.reset(); }),
-      number("refine.below", &R::below, {0.67, 1.33}),
       number("refine.least_share", &R::least_share, kOffToo),
       number("refine.largest_share", &R::largest_share, {0.5, 1.6}),
       number("refine.gain", &R::gain, kBothWays, kAbove),
       number("refine.of_hundred", &R::of_hundred, {0.95, 1.02}),
-      number("refine.iterations", &R::iterations),
-      number("refine.fewer", &R::fewer, {0.5, 5}, kBelow),
-      number("refine.one_in", &R::one_in),
       stage("throughout", [](Strategy& s) { s.throughout.share = 2; }),
       stage("throughout.refine", [](Strategy& s) { s.throughout.refine.reset(); }),
-      number("throughout.below", &H::below),
-      number("throughout.share", &H::share),
       number("throughout.movable", &H::movable, kOffToo),
-      number("throughout.dig_share", &H::dig_share, kOffToo),
-      number("throughout.of_hundred", &H::of_hundred, {0.95, 1.02}),
       stage("neighbourhoods", [](Strategy& s) { s.neighbourhoods.reset(); }),
       number("neighbourhoods.few", &N::few),
       number("neighbourhoods.iterations", &N::iterations),
@@ -242,7 +263,6 @@ std::vector<Row> make_rows() {
             [](Strategy& s) {
               if (s.last_cells.patches.size() > 1) s.last_cells.patches.resize(1);
             }),
-      number("patches.few", &A::few),
       number("patches.layers", &A::layers, {0.67, 1.33}),
       number("patches.patches", &A::patches),
       number("patches.turns", &A::turns),
@@ -250,15 +270,11 @@ std::vector<Row> make_rows() {
       number("patches.vertices", &A::vertices, kOffToo),
       number("patches.removals", &A::removals, kOffToo),
       number("patches.degrees", &A::degrees, kOffToo),
-      number("trial.rise", &L::rise, kOffToo, kAbove),
       number("trial.ahead", &L::ahead, kOffToo, kAbove),
       number("trial.iterations", &L::iterations),
       number("trial.row_shares", &L::row_shares, {0.7, 1.3}),
       number("trial.row_height", &L::row_height, {0.7, 1.25}),
       number("trial.slender", &L::slender, kOffToo),
-      number("last_cells.up_to", &C::up_to, {0.5, 1.5}),
-      number("last_cells.again", &C::again, {0, 10}, kAbove),
-      number("last_cells.rise", &C::rise, {0, 10}, kAbove),
       stage("claimed",
             [](Strategy& s) {
               s.claimed.reset();
@@ -270,16 +286,9 @@ std::vector<Row> make_rows() {
             [](Strategy& s) {
               if (s.goal) s.goal->goes_on = false;
             }),
-      number("goal.may_fall", &G::may_fall, kOffToo),
-      number("goal.more_cells", &G::more_cells, kBothWays, kAbove),
       number("goal.turns", &G::turns, {0.33, 2}),
-      number("goal.pays", &G::pays, kOffToo),
-      number("any_cost.most_of_hundred", &Y::most_of_hundred, {0.75, 2}),
       number("any_cost.missed", &Y::missed),
-      number("any_cost.gain", &Y::gain, {0, 10}, kAbove),
       number("any_cost.fewer", &Y::fewer, {0.5, 2}, kBelow),
-      number("any_cost.again", &Y::again, {0.1, 10}, kAbove),
-      number("any_cost.may_fall", &Y::may_fall, kOffToo),
   };
 }
 

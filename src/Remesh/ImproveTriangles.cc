@@ -94,7 +94,7 @@ class TriangleRun {
   void restore_volume() {
     if (surface_.options().mode != SurfaceMode::kFree) return;
     sweep_.focus(effort_.volume_focus * sweep_.worst());
-    for (int i = 1; i <= effort_.volume_passes && std::abs(surface_.volume_gain()) > effort_.volume_enough;
+    for (int i = 1; i <= effort_.volume.passes && std::abs(surface_.volume_gain()) > effort_.volume.enough;
          ++i)
       if (pass("volume", "surface volume", i, &TriangleSweep::offset) == 0) break;
   }

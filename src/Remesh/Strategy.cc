@@ -139,8 +139,8 @@ BulkEffort bulk_effort(const Asked& asked) {
 /// With a surface that may change its shape, what many cells suffer from can be mended, too. Beyond the angle
 /// that such runs are for, that is dear: noisy surfaces would cost twice what they cost frozen.
 double largest_share(const Asked& asked, double degrees) {
-  constexpr double kElsewhere = 0.1, kFreeUpTo = 20, kUpToThere = 0.35, kBeyond = 0.2;
-  if (!asked.is_free()) return kElsewhere;
+  constexpr double kFreeUpTo = 20, kUpToThere = 0.35, kBeyond = 0.2;
+  if (!asked.is_free()) return kManyShare;
   return degrees > kFreeUpTo ? kBeyond : kUpToThere;
 }
 
@@ -175,7 +175,7 @@ LastCellsEffort last_cells_effort(const Asked& asked) {
   LastCellsEffort last;
   if (asked.coarsens() || asked.has_goal()) last.up_to = std::numeric_limits<double>::infinity();
   // Where the surface may change its shape there is always something that gives way by little.
-  if (asked.is_free()) last.again = 1.02;
+  if (asked.is_free()) last.again = kLargeRise;
   const PatchEffort& effort = asked.is_frozen() ? kLittleEffort : kSurfaceEffort;
   if (asked.has_goal() && asked.is_flat()) last.patches_first = {effort};
   last.patches = {effort};
@@ -239,7 +239,7 @@ Strategy alone(const ImproveOptions& options, const Survey& found, std::size_t n
   strategy.targets = target_effort(asked);
   if (asked.is_frozen()) {
     strategy.refine = refine_effort(asked, 92, false);
-    if (!asked.limits_iterations()) strategy.refine_again = refine_effort(asked, 98, false);
+    if (!asked.limits_iterations()) strategy.refine_again = refine_effort(asked, kAllButFew, false);
     strategy.throughout.refine = strategy.refine_again;
     if (strategy.throughout.refine)
       strategy.throughout.refine->seeds_of_vertex = strategy.throughout.polish.seeds_of_vertex;

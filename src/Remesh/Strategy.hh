@@ -33,6 +33,29 @@ inline constexpr double kPlainGoal = 0.001;
 inline constexpr double kClaimedGoal = 15;
 inline constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
+// What several stages go by; docs/ablation.md has a row of each for all of them together.
+/// Degrees below which cells are poor: what a run without a goal claims, and works for first.
+inline constexpr double kPoorAngle = kClaimedGoal;
+/// Degrees up to which vertices are put in where they are missing, and the last cells are searched for.
+inline constexpr double kGoodAngle = 30;
+/// Shares of the cells: a few, whatever they are like, and so many that the mesh is.
+inline constexpr double kFewShare = 0.02, kManyShare = 0.1;
+/// One in so many is a few; and of 100, all but a few.
+inline constexpr auto kOneInFew = static_cast<std::size_t>(1 / kFewShare);
+inline constexpr auto kAllButFew = static_cast<std::size_t>(100 - 100 * kFewShare);
+/// Cells so few that whatever may help is tried on each of them.
+inline constexpr std::size_t kFewCells = 64;
+/// Factor by which a worst decision value or angle has to rise to count as a gain, and where that has to
+/// make up for new cells or another search.
+inline constexpr double kRise = 1.002, kLargeRise = 1.02;
+/// Times the cells that there are which a worst angle below what is claimed, or at any cost, may take.
+inline constexpr double kMoreCells = 1.5;
+/// Share of a percentile that may be lost for what is claimed, and of the claim that more cells have to
+/// bring.
+inline constexpr double kClaimShare = 0.03;
+/// Iterations of a loop that ends when it brings nothing, at most; and in a row that bring nothing.
+inline constexpr int kIterations = 60, kIdle = 2;
+
 /// Numbers of cells that a mesh may come to have. Vertex collapse keeps to `min`, insertion to `max`; swaps
 /// may add or take a few. 0: no bound. Shown by docs/worst-angles.md, "How many cells come out".
 struct CellBounds {
@@ -89,7 +112,7 @@ struct PassEffort {
   int rounds = 12;           ///< of one operator in one pass, at most
   std::size_t little = 200;  ///< a pass ends with a round that commits less than 1/little of its first one
   /// Factor by which a new vertex or a searched cluster has to raise the worst decision value.
-  double least_gain = 1.02;
+  double least_gain = kLargeRise;
   int insert_rounds = 200;          ///< of insertion, which takes seeds that lie apart
   std::size_t cells_of_vertex = 4;  ///< that a new one takes, about
   std::size_t search_points = 14;   ///< points of a cavity whose fillings are searched (ClusterSearch)
@@ -97,7 +120,7 @@ struct PassEffort {
   /// Where more cells than this wait for a vertex, only the most promising sites are followed up for each:
   /// `sites_of_many` find the same as all on the test meshes, in half the time; for the last ones each
   /// counts.
-  std::size_t few_seeds = 64;
+  std::size_t few_seeds = kFewCells;
   std::size_t sites_of_many = 3;
   /// Least promise of such a site; see VertexInsertion::least_promise. With a frozen surface nearly half of
   /// the cells have no site of more, and one in twelve of these a plan.
@@ -123,8 +146,8 @@ struct UntangleEffort {
   /// Decision values of volume-length, from what is all but flat to what is merely poor: cells below one are
   /// worked on, below the next only when that has stopped helping.
   std::array<double, 4> focus = {1e-4, 1e-2, 0.1, 0.3};
-  int iterations = 40;  ///< at all of them together
-  int idle = 2;         ///< iterations without fewer invalid cells or a better worst one
+  int iterations = kIterations;  ///< at all of them together
+  int idle = kIdle;              ///< iterations without fewer invalid cells or a better worst one
 };
 
 /// All cells in one metric. Shown by --runs default, percentiles and seconds, the cavities first;
@@ -141,19 +164,19 @@ struct BulkEffort {
 
 /// Removal of vertices wherever it helps. Shown by docs/surface.md, "--coarsen".
 struct CoarsenEffort {
-  double below = 50;    ///< degrees; cells that are worked on
-  int iterations = 20;  ///< at most
-  double still = 0.98;  ///< share of an iteration's cells that may be left for another one
+  double below = 50;             ///< degrees; cells that are worked on
+  int iterations = kIterations;  ///< at most
+  double still = 1 - kFewShare;  ///< share of an iteration's cells that may be left for another one
 };
 
 /// Work on cells with an angle below a target. Shown by --runs default,max with --surface frozen,flat,free;
 /// the search by docs/worst-angles.md, "Cluster search".
 struct PolishEffort {
-  int iterations = 60;  ///< at most
+  int iterations = kIterations;  ///< at most
   /// An iteration that neither lowers the number of poor cells nor raises the worst decision value by `gain`
   /// is idle; after `idle` of them in a row dearer operators are asked.
   double gain = 1.01;
-  int idle = 2;
+  int idle = kIdle;
   /// With more poor cells than may get vertices, or than `many`, an iteration is idle unless it mends one in
   /// `least_fewer` of those beyond: there is always something that gets better by little, and what is dearer
   /// does more. Shown by the steps of bench/moving_body.py, seconds.
@@ -178,8 +201,8 @@ struct PolishEffort {
 /// --runs default, worst angle.
 struct FirstPolish {
   PolishEffort polish;
-  double target = 15;          ///< degrees
-  double largest_share = 0.1;  ///< of cells below it; where there are more, the bulk stage comes first
+  double target = kPoorAngle;         ///< degrees
+  double largest_share = kManyShare;  ///< of cells below it; where there are more, the bulk stage comes first
 };
 
 /// An angle that the worst cells are raised to.
@@ -206,15 +229,16 @@ struct TargetEffort {
 /// New vertices where the mesh lacks them. Shown by --runs default, percentiles and cells; `gain` by
 /// docs/operators.md, "Insertion" and its row of ipc_dolphin5k.
 struct RefineEffort {
-  double below = 30;         ///< degrees; cells that vertices are put in for
-  double least_share = 0;    ///< of cells below that show that vertices are missing
-  double largest_share = 1;  ///< beyond which the mesh is poor throughout, and vertices would not mend it
-  double gain = 1.6;         ///< factor by which a vertex raises sin² of the worst of its cells
+  double below = kGoodAngle;  ///< degrees; cells that vertices are put in for
+  double least_share = 0;     ///< of cells below that show that vertices are missing
+  double largest_share = 1;   ///< beyond which the mesh is poor throughout, and vertices would not mend it
+  double gain = 1.6;          ///< factor by which a vertex raises sin² of the worst of its cells
   /// Of 100 cells that the run may make, those there may be afterwards; the rest is for the worst cells.
   std::size_t of_hundred = 100;
-  int iterations = 60;  ///< at most
-  double fewer = 0.98;  ///< vertices go in when an iteration leaves more than this share of the poor cells
-  std::size_t one_in = 50;                 ///< and no more once fewer than one in so many of these got one
+  int iterations = kIterations;  ///< at most
+  /// Vertices go in when an iteration leaves more than this share of the poor cells,
+  double fewer = 1 - kFewShare;
+  std::size_t one_in = kOneInFew;          ///< and no more once fewer than one in so many of these got one
   std::size_t seeds_of_vertex = kNoLimit;  ///< as in PolishEffort
 };
 
@@ -223,12 +247,12 @@ struct RefineEffort {
 /// the worst cells first, and to as many as get one.
 struct ThroughoutEffort {
   PolishEffort polish;
-  double below = 15;        ///< degrees; a mesh is poor throughout where a larger share of its cells
-  double share = 0.1;       ///< is below, or where no larger share
-  double movable = 0.05;    ///< of its vertices may move
-  double dig_share = 0.02;  ///< of the cells that miss a target, from which it is worked for in this way
-  std::optional<RefineEffort> refine;  ///< in the place of refine_again, without a first one
-  std::size_t of_hundred = 98;         ///< cells that there may be; the rest is for the last ones
+  double below = kPoorAngle;     ///< degrees; a mesh is poor throughout where a larger share of its cells
+  double share = kManyShare;     ///< is below, or where no larger share
+  double movable = 0.05;         ///< of its vertices may move
+  double dig_share = kFewShare;  ///< of the cells that miss a target, from which it is worked for in this way
+  std::optional<RefineEffort> refine;   ///< in the place of refine_again, without a first one
+  std::size_t of_hundred = kAllButFew;  ///< cells that there may be; the rest is for the last ones
 };
 
 /// Work on the surroundings of a few cells that miss an angle by little, as if the angle were larger: that
@@ -253,7 +277,7 @@ inline constexpr std::size_t kNeedleRows = 2;
 /// improvement", kept or rolled back as one step (Klingner & Shewchuk 2007). Shown by --runs default,max,
 /// worst angle and seconds, ipc_dolphin5k for rows over needles; docs/operators.md, "Patches".
 struct PatchEffort {
-  std::size_t few = 64;            ///< cells below the next angle; where there are more, nothing is tried
+  std::size_t few = kFewCells;     ///< cells below the next angle; where there are more, nothing is tried
   int layers = 3;                  ///< of cells round the worst one
   std::size_t patches = 4;         ///< at a time
   int turns = 12;                  ///< at most
@@ -292,7 +316,7 @@ inline constexpr std::array<PatchEffort, 3> kAllEfforts = {
 /// What holds for each try on a patch.
 struct PatchTrial {
   bool enabled = true;  ///< not without insertion, nor where iterations are limited
-  double rise = 1.002;  ///< times sin² of the worst cell of a patch: less is not worth its cells
+  double rise = kRise;  ///< times sin² of the worst cell of a patch: less is not worth its cells
   double ahead = 1.05;  ///< times the target, which is worked for
   int iterations = 8;   ///< of the polish of one try: more found no more
   /// Where over each needle an apex of its own is put, as a share of the way from the short side to the tip,
@@ -307,9 +331,9 @@ struct PatchTrial {
 
 /// The last few cells below a target. Shown by --runs default,20,30, worst angle and seconds.
 struct LastCellsEffort {
-  double up_to = 30;     ///< degrees; targets beyond are left unless a goal was asked for
-  double again = 1.002;  ///< factor by which the worst angle has to rise for neighbourhoods to be tried again
-  double rise = 1.002;   ///< and for the stage to say that it has
+  double up_to = kGoodAngle;  ///< degrees; targets beyond are left unless a goal was asked for
+  double again = kRise;  ///< factor by which the worst angle has to rise for neighbourhoods to be tried again
+  double rise = kRise;   ///< and for the stage to say that it has
   /// Patches that are searched before the neighbourhoods: the surroundings of a flat surface take vertices
   /// wherever they may; towards a goal patches need fewer.
   std::vector<PatchEffort> patches_first;
@@ -330,13 +354,13 @@ struct GoalEffort {
   bool polish_only = false;  ///< nothing but the polish, whatever it leaves
   bool goes_on = true;       ///< with all cells where the goal was missed; not where iterations are limited
   /// Share of its 1st and 5th percentile that a default run may lose for what it claims.
-  double may_fall = 0.03;
+  double may_fall = kClaimShare;
   /// Times the cells of the input that it may make for that; so many times again, `turns` in all, while the
   /// worst angle rises by `pays`, a share of the goal: a share of itself would be nothing where it is all but
   /// 0.
-  double more_cells = 1.5;
+  double more_cells = kMoreCells;
   int turns = 3;
-  double pays = 0.03;
+  double pays = kClaimShare;
 };
 
 /// The worst angle as far as it goes, whatever it costs in time: after a default run. Shown by --runs max.
@@ -345,14 +369,14 @@ struct AnyCostEffort {
   /// Of 100 cells that the default run leaves, those that there may be; 0: as bounds say. With a surface
   /// whose facets stay planar it needs no more than otherwise; with one that may change its shape, a single
   /// cell that nothing mends would draw vertices without end: 20 cells came to 14,842 in 12 s.
-  std::size_t most_of_hundred = 150;
+  std::size_t most_of_hundred = static_cast<std::size_t>(100 * kMoreCells);
   PolishEffort polish;
   std::vector<TargetAngle> targets;
   int missed = 4;               ///< targets in a row that may be missed
-  double gain = 1.002;          ///< factor of the worst angle that makes a target no miss
+  double gain = kRise;          ///< factor of the worst angle that makes a target no miss
   double fewer = 0.8;           ///< share of the cells below it that may be left, for the same
-  double again = 1.02;          ///< factor by which a search of the worst cells starts the climb anew
-  double may_fall = 0.02;       ///< share of the 1st and 5th percentile that may be lost
+  double again = kLargeRise;    ///< factor by which a search of the worst cells starts the climb anew
+  double may_fall = kFewShare;  ///< share of the 1st and 5th percentile that may be lost
   bool neighbourhoods = false;  ///< improved at each target, and not only at the last
   std::vector<PatchEffort> patches;
   std::optional<RefineEffort> refine, refine_again;
@@ -376,12 +400,11 @@ struct TriangleEffort {
   /// Where a larger share of the triangles lies below a target that nobody asked for, the mesh as a whole is
   /// beyond it.
   double largest_share = 0.25;
-  int iterations = 30;  ///< of one target, at most
+  int iterations = kIterations;  ///< of one target, at most
   /// Iterations in a row without fewer poor triangles after which edges are split; after twice as many
   /// nothing more is tried.
-  int idle = 2;
-  int volume_passes = 8;        ///< by which the enclosed volume is given back
-  double volume_enough = 5e-5;  ///< of the volume, that may be missing in the end
+  int idle = kIdle;
+  VolumeEffort volume;  ///< by which the enclosed volume is given back
   /// Times the worst decision value: a vertex that moves leaves no triangle below it poorer than it was.
   double volume_focus = 1.1;
 };
