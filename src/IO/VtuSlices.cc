@@ -112,10 +112,9 @@ class VtuSlices::Header {
     for (const std::string_view name : names)
       for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
            e = e->NextSiblingElement()) {
-        const std::string_view components = attribute(*e, "NumberOfComponents");
+        const auto components = number_attribute(*e, "NumberOfComponents").value_or(1);  // 0 means 1, too
         const auto type = vtu_number_type(attribute(*e, "type"));
-        if (lower(std::string(attribute(*e, "Name"))) == name && (components.empty() || components == "1") &&
-            type && is_integer(*type))
+        if (lower(std::string(attribute(*e, "Name"))) == name && components <= 1 && type && is_integer(*type))
           return std::string(attribute(*e, "Name"));
       }
     return {};
