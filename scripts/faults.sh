@@ -97,8 +97,8 @@ by_signal() {
   local signal=$1 codes=$2 code pid wait_ns
   put_old
   wait_ns=$(($(random_below $((nanoseconds / 1000 * 12 / 10))) * 1000))
-  # A shell without job control has SIGINT ignored by what it starts in the background.
-  env --default-signal=INT "$tool" "${subcommand[@]}" > /dev/null 2> said.txt &
+  # A shell without job control has SIGINT ignored by what it starts in the background, and nohup SIGHUP.
+  env --default-signal=INT,HUP "$tool" "${subcommand[@]}" > /dev/null 2> said.txt &
   pid=$!
   sleep "$((wait_ns / 1000000000)).$(printf '%09d' $((wait_ns % 1000000000)))"
   kill -s "$signal" "$pid" 2> /dev/null || true

@@ -302,12 +302,12 @@ void GmshShare::read_points() {
     text_.for_lines(block.points + (from - block.first), block.points + (to - block.first),
                     [&](std::uint64_t, TextLine& in) { points_.points.push_back(point(in)); });
   }
-  // Of each process that has nodes: the tag that the first of all would have by its first one.
+  // Of each process that has nodes: the tag that the first of all would have by its first one, or -kMost.
   std::vector<std::int64_t> first;
-  bool ascends = true;
-  for (std::size_t i = 0; i < tags.size(); ++i)
-    ascends = ascends && tags[i] == tags[0] + static_cast<std::int64_t>(i);
-  if (!tags.empty()) first.push_back(ascends ? tags[0] - static_cast<std::int64_t>(points_.first) : -kMost);
+  const auto before = static_cast<std::int64_t>(points_.first);
+  const auto breaks = [](std::int64_t tag, std::int64_t next) { return tag == kMost || next != tag + 1; };
+  const bool ascends = std::adjacent_find(tags.begin(), tags.end(), breaks) == tags.end();
+  if (!tags.empty()) first.push_back(ascends && tags[0] > before - kMost ? tags[0] - before : -kMost);
   first = processes_.gather(std::span<const std::int64_t>(first));
   if (first.empty()) return;
   if (std::count(first.begin(), first.end(), first[0]) != static_cast<std::ptrdiff_t>(first.size()) ||

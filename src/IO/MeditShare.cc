@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "HalfFace/Errors.hh"
+#include "IO/ByteRanges.hh"
 #include "IO/MeditSource.hh"
 #include "IO/MeshShare.hh"
 #include "IO/TextChunks.hh"
@@ -130,18 +131,14 @@ class BinaryEntry {
 
 class BinarySections {
  public:
-  BinarySections(const std::filesystem::path& path, const Processes&) : name_(path.string()) {
-    std::error_code error;
-    size_ = std::filesystem::file_size(path, error);
-    if (!error) in_.open(path, std::ios::binary);
-    if (error || !in_) throw IoError(name_ + ": cannot be opened" + (error ? ": " + error.message() : ""));
+  BinarySections(const std::filesystem::path& path, const Processes&) : in_(path) {
     const std::string head = bytes(0, 8);
     swap_ = head[0] == 0;
     BinaryEntry in(head, 1, swap_);
     in.take<std::int32_t>();
     version_ = in.take<std::int32_t>();
     if (version_ < 1 || version_ > 4) fail("this version is not known (1 to 4 are)");
-    for (std::uint64_t at = 8; at != 0 && at < size_ && !has_end_;) at = add(at);
+    for (std::uint64_t at = 8; at != 0 && at < in_.size() && !has_end_;) at = add(at);
   }
 
   const std::vector<Section>& sections() const { return sections_; }
@@ -151,9 +148,9 @@ class BinarySections {
             std::size_t integers, Use&& use) {
     const std::uint64_t size = entry_size(reals, integers);
     constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 16;
-    if (end > 0 && (size_ - section.begin) / size < end)
+    if (end > 0 && (in_.size() - section.begin) / size < end)
       fail(medit::too_few_entries(section.name, static_cast<std::int64_t>(section.n),
-                                  (size_ - section.begin) / size));
+                                  (in_.size() - section.begin) / size));
     for (std::uint64_t i = begin; i < end; i += kAtOnce) {
       const std::uint64_t n = std::min(kAtOnce, end - i);
       const std::string text = bytes(section.begin + i * size, n * size);
@@ -167,20 +164,15 @@ class BinarySections {
       }
     }
   }
-  [[noreturn]] void fail(const std::string& message) const { throw InvalidInput(name_ + ": " + message); }
+  [[noreturn]] void fail(const std::string& message) const { in_.fail(message); }
 
  private:
   std::uint64_t entry_size(std::size_t reals, std::size_t integers) const {
     return reals * (version_ == 1 ? 4 : 8) + integers * (version_ < 4 ? 4 : 8);
   }
   std::string bytes(std::uint64_t begin, std::uint64_t n) {
-    if (begin > size_ || n > size_ - begin) fail("the file ends too early");
-    std::string bytes(n, '\0');
-    in_.clear();
-    in_.seekg(static_cast<std::streamoff>(begin));
-    if (!in_.read(bytes.data(), static_cast<std::streamsize>(n)))
-      throw IoError(name_ + ": at byte " + std::to_string(begin) + ": cannot be read");
-    return bytes;
+    if (begin > in_.size() || n > in_.size() - begin) fail("the file ends too early");
+    return in_.bytes(begin, n);
   }
   /// The section that begins here. Returns where the next one does; 0: there is none.
   std::uint64_t add(std::uint64_t at) {
@@ -193,7 +185,7 @@ class BinarySections {
       has_end_ = true;
       return 0;
     }
-    if (next != 0 && (next < at + n_head || next > size_))
+    if (next != 0 && (next < at + n_head || next > in_.size()))
       fail("the position of the next section, " + std::to_string(next) + ", is outside the file");
     if (heading.keyword == Keyword::kDimension) {
       const std::string text = bytes(at + n_head, 4);
@@ -209,16 +201,14 @@ class BinarySections {
       section.n =
           static_cast<std::uint64_t>(std::max<std::int64_t>(BinaryEntry(text, version_, swap_).integer(), 0));
       section.begin = at + n_head + n_count;
-      if (section.n > size_)
+      if (section.n > in_.size())
         fail(medit::too_few_entries(section.name, static_cast<std::int64_t>(section.n), 0));
     }
     sections_.push_back(std::move(section));
     return next;
   }
 
-  std::string name_;
-  std::ifstream in_;
-  std::uint64_t size_ = 0;
+  ByteRanges in_;
   int version_ = 0;
   bool swap_ = false, has_end_ = false;
   std::vector<Section> sections_;

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <system_error>
 
-#include "HalfFace/Errors.hh"
 #include "IO/Words.hh"
 
 namespace hfr::io {
@@ -54,40 +52,25 @@ void TextLine::finish() {
 }
 
 TextChunks::TextChunks(const std::filesystem::path& path, Format format, const Processes& processes)
-    : name_(path.string()), format_(std::move(format)) {
-  std::error_code error;
-  size_ = std::filesystem::file_size(path, error);
-  if (!error) in_.open(path, std::ios::binary);
-  if (error || !in_) throw IoError(name_ + ": cannot be opened" + (error ? ": " + error.message() : ""));
-  if (size_ == 0) fail("the file is empty");
-  chunk_size_ = std::clamp(size_ / (kChunksEach * processes.n), kSmallestChunk, kLargestChunk);
+    : file_(path), format_(std::move(format)) {
+  if (file_.size() == 0) fail("the file is empty");
+  chunk_size_ = std::clamp(file_.size() / (kChunksEach * processes.n), kSmallestChunk, kLargestChunk);
   scan(processes);
-}
-
-void TextChunks::fail(const std::string& message) const { throw InvalidInput(name_ + ": " + message); }
-
-std::string TextChunks::bytes(std::uint64_t begin, std::uint64_t n) {
-  std::string bytes(n, '\0');
-  in_.clear();
-  in_.seekg(static_cast<std::streamoff>(begin));
-  if (!in_.read(bytes.data(), static_cast<std::streamsize>(n)))
-    throw IoError(name_ + ": at byte " + std::to_string(begin) + ": cannot be read");
-  return bytes;
 }
 
 /// Its lines: those that begin in it.
 void TextChunks::load(std::size_t chunk) {
   if (loaded_ == chunk) return;
   loaded_ = ~std::size_t{0};
-  const std::uint64_t begin = chunk * chunk_size_, end = std::min(begin + chunk_size_, size_);
+  const std::uint64_t begin = chunk * chunk_size_, end = std::min(begin + chunk_size_, file_.size());
   text_begin_ = begin == 0 ? 0 : begin - 1;  // a line begins behind the end of another
-  text_ = bytes(text_begin_, std::min(end + kLongestLine, size_) - text_begin_);
+  text_ = file_.bytes(text_begin_, std::min(end + kLongestLine, file_.size()) - text_begin_);
   lines_.clear();
   std::size_t at = 0;
   const auto past_line = [&](std::size_t from) {
     const void* const found = std::memchr(text_.data() + from, '\n', text_.size() - from);
     if (found) return static_cast<std::size_t>(static_cast<const char*>(found) - text_.data()) + 1;
-    if (text_begin_ + text_.size() < size_)
+    if (text_begin_ + text_.size() < file_.size())
       fail("at byte " + std::to_string(text_begin_ + from) + ": a line of more than " +
            std::to_string(kLongestLine) + " bytes; in ranges, text is read line by line");
     return text_.size();
@@ -109,7 +92,7 @@ void TextChunks::scan(const Processes& processes) {
     std::uint64_t chunk = 0, line = 0, byte = 0;
     std::array<char, 40> word{};
   };
-  const std::uint64_t n_chunks = (size_ + chunk_size_ - 1) / chunk_size_;
+  const std::uint64_t n_chunks = (file_.size() + chunk_size_ - 1) / chunk_size_;
   std::vector<std::uint64_t> counts;
   std::vector<Found> marks;
   for (std::uint64_t k = processes.rank * n_chunks / processes.n;
@@ -144,7 +127,7 @@ std::string TextChunks::between(const Mark& first, const Mark& last) {
   if (n > kLongestSection)
     fail("section " + shown(first.word) + " has " + std::to_string(n) +
          " bytes, which is more than each of several processes is made to read");
-  const std::string text = bytes(first.byte, n);
+  const std::string text = file_.bytes(first.byte, n);
   return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
 }
 

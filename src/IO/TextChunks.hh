@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <span>
 #include <string>
@@ -13,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "IO/ByteRanges.hh"
 #include "IO/MeshShare.hh"
 #include "IO/TextScanner.hh"
 
@@ -67,7 +67,7 @@ class TextChunks {
   /// All processes make one at the same time.
   TextChunks(const std::filesystem::path& path, Format format, const Processes& processes);
 
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return file_.name(); }
   std::uint64_t n_lines() const { return first_line_.back(); }
   const std::vector<Mark>& marks() const { return marks_; }
   /// body(number, TextLine&) for the lines begin … end-1. O(their chunks).
@@ -76,7 +76,7 @@ class TextChunks {
     for (std::uint64_t number = begin; number < end;) {
       const std::size_t chunk = chunk_of(number);
       load(chunk);
-      TextScanner in(text_, name_ + ": lines after byte " + std::to_string(text_begin_), format_.comment);
+      TextScanner in(text_, name() + ": lines after byte " + std::to_string(text_begin_), format_.comment);
       for (const Range& line : lines_of(number - first_line_[chunk], end - first_line_[chunk])) {
         in.seek(line.begin);
         TextLine one(in, line.end, format_.comment);
@@ -95,7 +95,7 @@ class TextChunks {
   /// What stands between two lines, the first one left out. Throws InvalidInput where that is too long to be
   /// read by every process.
   std::string between(const Mark& first, const Mark& last);
-  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void fail(const std::string& message) const { file_.fail(message); }
 
  private:
   struct Range {
@@ -108,13 +108,11 @@ class TextChunks {
     const auto n = static_cast<std::uint64_t>(lines_.size());
     return std::span(lines_).subspan(begin, std::min(end, n) - begin);
   }
-  std::string bytes(std::uint64_t begin, std::uint64_t n);
   void scan(const Processes& processes);
 
-  std::string name_;
+  ByteRanges file_;
   Format format_;
-  std::ifstream in_;
-  std::uint64_t size_ = 0, chunk_size_ = 0;
+  std::uint64_t chunk_size_ = 0;
   std::vector<std::uint64_t>
       first_line_;  // of each chunk: number of the first line that begins in it; one more
   std::vector<Mark> marks_;

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <system_error>
 
-#include "HalfFace/Errors.hh"
 #include "IO/VtkGrid.hh"
 #include "IO/VtuXml.hh"
 #include "IO/Words.hh"
@@ -46,7 +44,7 @@ class VtuSlices::Header {
     file_.n_points_ = number(piece, "NumberOfPoints");
     file_.n_items_ = number(piece, "NumberOfCells");
     // What follows is multiplied by at most 24.
-    if (std::max(file_.n_points_, file_.n_items_) > file_.size_)
+    if (std::max(file_.n_points_, file_.n_items_) > file_.in_.size())
       file_.fail("it announces more points or cells than it has bytes");
     file_.points_ = array(child(child(piece, "Points"), "DataArray"));
     if (file_.points_.components != 3) file_.fail("points must have 3 components");
@@ -92,7 +90,7 @@ class VtuSlices::Header {
                            ? 1
                            : std::max<std::uint64_t>(number(element, "NumberOfComponents"), 1);
     const std::uint64_t offset = number(element, "offset"), word = file_.coding_.wide_header ? 8 : 4;
-    if (offset > file_.size_ - first_byte_ || word > file_.size_ - first_byte_ - offset)
+    if (offset > file_.in_.size() - first_byte_ || word > file_.in_.size() - first_byte_ - offset)
       file_.fail("array '" + shown(array.name) + "': the file ends too early");
     array.begin = first_byte_ + offset + word;
     return array;
@@ -114,10 +112,9 @@ class VtuSlices::Header {
     for (const std::string_view name : names)
       for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
            e = e->NextSiblingElement()) {
-        const std::string_view components = attribute(*e, "NumberOfComponents");
+        const auto components = number_attribute(*e, "NumberOfComponents").value_or(1);  // 0 means 1, too
         const auto type = vtu_number_type(attribute(*e, "type"));
-        if (lower(std::string(attribute(*e, "Name"))) == name && (components.empty() || components == "1") &&
-            type && is_integer(*type))
+        if (lower(std::string(attribute(*e, "Name"))) == name && components <= 1 && type && is_integer(*type))
           return std::string(attribute(*e, "Name"));
       }
     return {};
@@ -151,10 +148,10 @@ class VtuSlices::Header {
       }
       const Array names = array(*e);
       const std::uint64_t n = file_.announced(names);
-      if (names.type != NumberType::kUInt8 || n > kMostNames || n > file_.size_ - names.begin)
+      if (names.type != NumberType::kUInt8 || n > kMostNames || n > file_.in_.size() - names.begin)
         file_.fail("array '" + std::string(kVtkNamesArray) + "': these are no names of labels");
       MeshData read;
-      io::read_names(file_.bytes(names.begin, n), read);
+      io::read_names(file_.in_.bytes(names.begin, n), read);
       file_.names_ = std::move(read.names);
     }
   }
@@ -166,11 +163,7 @@ class VtuSlices::Header {
   tinyxml2::XMLDocument document_;
 };
 
-VtuSlices::VtuSlices(const std::filesystem::path& path) : name_(path.string()) {
-  std::error_code error;
-  size_ = std::filesystem::file_size(path, error);
-  if (!error) in_.open(path, std::ios::binary);
-  if (error || !in_) throw IoError(name_ + ": cannot be opened" + (error ? ": " + error.message() : ""));
+VtuSlices::VtuSlices(const std::filesystem::path& path) : in_(path) {
   Header(*this, head()).read();
   require_length(points_, n_points_);
   require_length(ends_, n_items_);
@@ -181,14 +174,12 @@ VtuSlices::VtuSlices(const std::filesystem::path& path) : name_(path.string()) {
   if (fixed_.components > 0) require_length(fixed_, n_points_);
 }
 
-void VtuSlices::fail(const std::string& message) const { throw InvalidInput(name_ + ": " + message); }
-
 /// Up to the underscore with which appended data begin.
 std::string VtuSlices::head() {
   constexpr std::uint64_t kPiece = std::uint64_t{1} << 16, kMost = std::uint64_t{1} << 24;
   std::string text;
-  while (text.size() < std::min(size_, kMost)) {
-    text += bytes(text.size(), std::min(kPiece, size_ - text.size()));
+  while (text.size() < std::min(in_.size(), kMost)) {
+    text += in_.bytes(text.size(), std::min(kPiece, in_.size() - text.size()));
     const std::size_t tag = text.find("<AppendedData");
     if (tag == std::string::npos) continue;
     const std::size_t end = text.find('>', tag);
@@ -200,19 +191,10 @@ std::string VtuSlices::head() {
   fail(std::string(kWhatIsNeeded));
 }
 
-std::string VtuSlices::bytes(std::uint64_t begin, std::uint64_t n) {
-  std::string bytes(n, '\0');
-  in_.clear();
-  in_.seekg(static_cast<std::streamoff>(begin));
-  if (!in_.read(bytes.data(), static_cast<std::streamsize>(n)))
-    throw IoError(name_ + ": at byte " + std::to_string(begin) + ": cannot be read");
-  return bytes;
-}
-
 /// Bytes that the word before an array tells.
 std::uint64_t VtuSlices::announced(const Array& array) {
   const std::uint64_t word = coding_.wide_header ? 8 : 4;
-  const std::string text = bytes(array.begin - word, word);
+  const std::string text = in_.bytes(array.begin - word, word);
   return word == 8 ? loaded<std::uint64_t>(text.data(), coding_.swap)
                    : loaded<std::uint32_t>(text.data(), coding_.swap);
 }
@@ -222,18 +204,18 @@ void VtuSlices::require_length(const Array& array, std::uint64_t n) {
   const std::string where =
       "at byte " + std::to_string(array.begin - word) + ": array '" + shown(array.name) + "'";
   const std::uint64_t needed = n * array.components * size_of(array.type);
-  if (found != needed || n > size_)  // which no product of it has more than 64 bits for
+  if (found != needed || n > in_.size())  // which no product of it has more than 64 bits for
     fail(where + ": it has " + std::to_string(found) + " bytes, but " + std::to_string(n) +
          " entries are needed for " + std::to_string(n_points_) + " points and " + std::to_string(n_items_) +
          " cells");
-  if (needed > size_ - array.begin) fail(where + ": the file ends too early");
+  if (needed > in_.size() - array.begin) fail(where + ": the file ends too early");
 }
 
 template <class T>
 std::vector<T> VtuSlices::numbers(const Array& array, std::uint64_t begin, std::uint64_t end) {
   const std::uint64_t size = array.components * size_of(array.type);
   std::vector<T> values((end - begin) * array.components);
-  convert_numbers(array.type, coding_.swap, bytes(array.begin + begin * size, (end - begin) * size),
+  convert_numbers(array.type, coding_.swap, in_.bytes(array.begin + begin * size, (end - begin) * size),
                   values.data());
   return values;
 }
@@ -271,7 +253,7 @@ std::vector<std::uint64_t> VtuSlices::ends(std::uint64_t begin, std::uint64_t en
   ends.reserve(end - begin);
   for (std::int64_t one : numbers<std::int64_t>(ends_, begin, end)) {
     const std::uint64_t least = ends.empty() ? 0 : ends.back();
-    if (one < 0 || static_cast<std::uint64_t>(one) > size_ || static_cast<std::uint64_t>(one) < least)
+    if (one < 0 || static_cast<std::uint64_t>(one) > in_.size() || static_cast<std::uint64_t>(one) < least)
       fail("cell " + std::to_string(begin + ends.size()) + ": its offset " + std::to_string(one) +
            " does not ascend, or there are not so many corners");
     ends.push_back(static_cast<std::uint64_t>(one));

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "HalfFace/Vec3.hh"
+#include "IO/ByteRanges.hh"
 #include "IO/MeshShare.hh"
 #include "IO/VtuData.hh"
 
@@ -57,9 +57,8 @@ class VtuSlices {
   };
   class Header;
 
-  [[noreturn]] void fail(const std::string& message) const;
+  [[noreturn]] void fail(const std::string& message) const { in_.fail(message); }
   std::string head();
-  std::string bytes(std::uint64_t begin, std::uint64_t n);
   std::uint64_t announced(const Array& array);
   void require_length(const Array& array, std::uint64_t n);
   template <class T>
@@ -72,9 +71,7 @@ class VtuSlices {
   void take(ShareElements<N>& elements, std::uint64_t number, const std::int64_t* corners,
             std::int32_t label) const;
 
-  std::string name_;
-  std::ifstream in_;
-  std::uint64_t size_ = 0;
+  ByteRanges in_;
   VtuCoding coding_;
   std::uint64_t n_points_ = 0, n_items_ = 0;
   Array points_, corners_, ends_, types_, regions_, vertex_labels_, fixed_;

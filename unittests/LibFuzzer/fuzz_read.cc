@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A reader gets bytes: `fuzz_read --format=vtu …`. It refuses them in one line, or gives a mesh that keeps
 // the rules, that build() takes or refuses by name, and that is the same after it was written and read again.
+// In ranges by one to three processes it is the same mesh, or refused in one line.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -11,6 +12,7 @@
 #include "HalfFace/Errors.hh"
 #include "IO/Assemble.hh"
 #include "IO/MeshFile.hh"
+#include "IO/Shares.hh"
 #include "IO/Validate.hh"
 #include "IO/WritableFormats.hh"
 #include "LibFuzzer/Formats.hh"
@@ -91,6 +93,26 @@ void write_and_read(const io::MeshData& mesh, const io::samples::FormatVariant& 
   }
 }
 
+/// Ranges may be refused where a whole file is not, and leave out what a whole reader refuses.
+void read_in_ranges(const std::filesystem::path& path, const std::optional<io::MeshData>& whole,
+                    std::size_t n_processes) {
+  constexpr std::uint64_t kAtOnce = 8;
+  if (!io::has_shares(path)) return;
+  try {
+    const io::MeshData shares =
+        io::samples::put_together(io::samples::read_shares(path, n_processes, kAtOnce));
+    if (!whole) return;
+    const std::string differs = difference(shares, io::samples::comparable(*whole));
+    if (!differs.empty()) broken("ranges", std::to_string(n_processes) + " processes: " + differs);
+  } catch (const InvalidInput& error) {
+    look_at_refusal(error.what());
+  } catch (const IoError& error) {
+    look_at_refusal(error.what());
+  } catch (const std::exception& error) {
+    broken("error in ranges", error.what());
+  }
+}
+
 }  // namespace
 }  // namespace hfr::fuzz
 
@@ -114,6 +136,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::filesystem::path path = scratch() / ("mesh" + extension);
   write_files(path, parts_of({reinterpret_cast<const char*>(data), size}, extension));
   const std::optional<io::MeshData> mesh = read_or_refused(path);
+  read_in_ranges(path, mesh, 1 + size % 3);
   if (!mesh) return 0;
   build_it(*mesh);
   write_and_read(*mesh, variants()[size % variants().size()]);
