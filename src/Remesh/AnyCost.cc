@@ -42,9 +42,7 @@ class Climb {
   }
   /// Of cells that came to be below that, on the way to what is larger.
   void mend(double degrees) {
-    PolishEffort effort = effort_.polish;
-    effort.gain = 1;  // few cells, and moves alone bring most of them back
-    if (smallest() < degrees) polish(run_, effort, degrees);
+    if (smallest() < degrees) polish(run_, run_.strategy.mending(), degrees);
   }
   double smallest() const { return smallest_dihedral(run_.mesh, run_.policy()); }
 

@@ -59,7 +59,7 @@ struct Try {
     kRow,      // an apex over each needle; number: of PatchTrial::row_shares
     kVertex,   // a new vertex for the first cell; number: of the place, counted by promise
     kRemoval,  // one vertex less; number: of the vertex, which are in the order of discovery from that cell
-    kOther,    // that, and a new vertex for what is the worst cell then; place: its number
+    kOther,    // one vertex less, and a new one for what is the worst cell then, at a place of that number
   };
   Kind kind;
   std::size_t number;
@@ -147,7 +147,6 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
       return remove_vertex(run, VertexHandle(attempt.number));
     case Try::kOther: {
       if (!remove_vertex(run, VertexHandle(attempt.number))) return false;
-      work.attach(mesh, run.policy());
       work.set_qualities(mesh, MinSine2{}, run.policy());
       const std::vector<CellHandle> worst = worst_cells_below(mesh, goal, 1, run.policy());
       return !worst.empty() && put_vertex(run, worst[0], attempt.place);

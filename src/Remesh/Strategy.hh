@@ -451,8 +451,13 @@ struct Strategy {
   /// `claimed`.
   std::shared_ptr<const Strategy> frozen;
 
-  /// For cells that have fallen below the input's worst angle.
-  const PolishEffort& mending() const { return any_cost ? any_cost->polish : polish; }
+  /// For cells that have fallen below a worst angle that there was, the input's or another: any gain counts,
+  /// for they are few, and moves bring most of them back by little at a time.
+  PolishEffort mending() const {
+    PolishEffort effort = any_cost ? any_cost->polish : polish;
+    effort.gain = 1;
+    return effort;
+  }
 };
 
 /// Throws InvalidInput for options out of range.
