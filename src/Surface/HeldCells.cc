@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "Quality/Metrics.hh"
 #include "Surface/Features.hh"
 
 namespace hfr {
@@ -49,13 +50,19 @@ class View {
   /// faces stay as they are count.
   bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees, bool for_good) const {
     const auto& v = mesh.cell(c).v;
-    return std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
-      const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
-      if (!e || !e->manifold || !e->feature) return false;
-      if (for_good && !(stays(e->f[0]) && stays(e->f[1]))) return false;
+    const std::array<double, 6> own =
+        dihedrals(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+    for (std::size_t k = 0; k < kEdgeCorners.size(); ++k) {
+      const surface::Edge* e = edge(v[kEdgeCorners[k][0]], v[kEdgeCorners[k][1]]);
+      if (!e || !e->manifold || !e->feature) continue;
+      if (for_good && !(stays(e->f[0]) && stays(e->f[1]))) continue;
       const double inside = angle_inside(*e);
-      return (is_inside(mesh, c, *e) ? inside : 360 - inside) < degrees;
-    });
+      const double left = is_inside(mesh, c, *e) ? inside : 360 - inside;
+      // Where the faces lie on one another, as at the front of a crack, rounding may take all for nothing.
+      // The wedge has room for the cell.
+      if ((left < own[k] ? 360 - left : left) < degrees) return true;
+    }
+    return false;
   }
   bool stays(std::uint32_t face) const {
     if (arrays_.locked[face] && arrays_.fixed[face]) return true;

@@ -213,5 +213,30 @@ TEST(Interfaces, NarrowEdgeHoldsTheCellsOnItsOwnSideOnly) {
   }
 }
 
+TEST(Interfaces, FrontOfACrackHoldsNoCell) {
+  // Cells all round an edge, but that the last and the first have different vertices at one place.
+  constexpr int kCells = 7;
+  for (int turn = 0; turn < 40; ++turn) {
+    std::vector<Vec3> points = {{-1, 0, 0}, {1, 0, 0}};
+    std::vector<Corners> corners;
+    for (int i = 0; i <= kCells; ++i) {
+      const double at = 2 * std::numbers::pi * (i % kCells) / kCells + 0.1 * turn;
+      points.push_back({0.1 * std::sin(at), std::cos(at), std::sin(at)});
+      if (i < kCells)
+        corners.push_back({0, 1, static_cast<Index>(i + 2), static_cast<Index>(i + 3)});
+    }
+    const TetMesh mesh = build(points, corners);
+    std::vector<CellHandle> cells;
+    for (CellHandle c : mesh.cells()) {
+      const auto& v = mesh.cell(c).v;
+      ASSERT_EQ(orientation(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])), 1);
+      cells.push_back(c);
+    }
+    SurfaceOptions options;
+    options.mode = SurfaceMode::kFlat;
+    EXPECT_EQ(held_by_features(mesh, cells, 15, options, {}), std::vector<std::uint8_t>(kCells, 0)) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace hfr::test
