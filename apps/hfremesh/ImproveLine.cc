@@ -67,7 +67,7 @@ void add_bound_options(Command command, ImproveLine& line) {
       .check(whole_number());
   command
       .option("--max-cells", line.improve.max_cells,
-              "No new vertices beyond N cells; 0: 119 % of the input's, without a bound for 'max'")
+              "No new vertices beyond N cells; 0: 119 % of the input's, 150 % where the surface may change")
       .type_name("N")
       .shows_default()
       .check(whole_number());

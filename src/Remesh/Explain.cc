@@ -53,7 +53,7 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy&
   std::vector<StuckCell>& stuck = result.stuck;
   stuck = stuck_cells(mesh, result.stuck_below, result.unfillable_faces, options.policy);
   const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
-  if (!frozen) blame_features(mesh, stuck, result.stuck_below, options);
+  if (!frozen) blame_features(mesh, stuck, result.stuck_below, options.surface, options.policy);
   const StuckReason ended = ended_by(options, result);
   for (StuckCell& cell : stuck)
     if (cell.reason == StuckReason::kNotFound) cell.reason = ended;

@@ -18,6 +18,7 @@
 #include "Remesh/Polish.hh"
 #include "Remesh/Snapshot.hh"
 #include "Remesh/StuckCells.hh"
+#include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Targets.hh"
 #include "Remesh/Trial.hh"
@@ -41,32 +42,38 @@ void mend_invalid(const Run& run) {
   run.control.set_fraction(kUntangled);
 }
 
-/// Whether the worst angle is below `degrees`, and nothing proves that faces which may not change hold it
-/// where it is.
+/// Whether the worst angle is below `degrees`, and nothing proves that what may not change of the surface
+/// holds it where it is.
 bool may_rise(const Run& run, double degrees) {
   const double now = smallest_dihedral(run.mesh, run.policy());
   if (now >= degrees) return false;
-  const std::vector<StuckCell> worst = stuck_cells(run.mesh, now + kLeastRise, {}, run.policy());
+  std::vector<StuckCell> worst = stuck_cells(run.mesh, now + kLeastRise, {}, run.policy());
+  if (run.surface) blame_features(run.mesh, worst, now + kLeastRise, *run.surface, run.policy());
   return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
 }
 
-/// What a default run claims, or the goal if it is less, where the number of cells was in the way: with more
-/// of them, and with more again while they are in the way and that raises the worst angle; once also where a
-/// percentile has fallen for it.
+/// What a default run claims, or the goal if it is less, where the number of cells was in the way, and with
+/// a surface that may change, over all of which this goes, in any case: again while that raises the worst
+/// angle, with more cells where they were in the way; once also where a percentile has fallen for it.
 void reach_claimed(const Run& run, bool met_cell_bound) {
-  if (!run.strategy.claimed || (!met_cell_bound && run.has_room())) return;
+  if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
   Run part = run.with(claimed);
   const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+  const auto grow = [&] {
+    part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
+  };
+  int n_grown = 0;
+  if (may_grow && part.bounds.max <= run.bounds.max) {
+    grow();
+    ++n_grown;
+  }
   std::optional<Best::Beginning> before;
   bool stayed = true;
-  double more = 1;  // times the bound that was claimed first
-  for (int turn = 0; turn < goal.turns; ++turn, more *= goal.more_cells) {
-    if (!may_rise(run, goal.degrees) || run.control.stopped()) return;
+  while (may_rise(run, goal.degrees) && !run.control.stopped()) {
     if (!before) before.emplace(run);
-    if (may_grow) part.bounds.max = static_cast<std::size_t>(more * static_cast<double>(claimed.bounds.max));
     const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
     run.findings.forget_cell_bound();
     Best best(run, goal.may_fall, Loss::kMadeUpFor, *before);
@@ -74,7 +81,11 @@ void reach_claimed(const Run& run, bool met_cell_bound) {
     const bool rose = smallest() > enough, was_in_the_way = run.findings.met_cell_bound || !part.has_room();
     best.settle();
     const bool stays = smallest() > enough;
-    if (!may_grow || !was_in_the_way || !rose || !(stays || stayed)) return;
+    if (!rose || !(stays || stayed)) return;
+    if (was_in_the_way) {
+      if (!may_grow || ++n_grown >= goal.turns) return;
+      grow();
+    }
     stayed = stays;
   }
 }
@@ -94,9 +105,13 @@ bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   return n_below(run.mesh, goal.degrees, run.policy()) == 0;
 }
 
-void run_default(const Run& run) {
+void mend_and_improve_all(const Run& run) {
   mend_invalid(run);
   improve_all(run, run.strategy.floor, run.strategy.targets.targets);
+}
+
+void run_default(const Run& run) {
+  mend_and_improve_all(run);
   reach_claimed(run, run.findings.met_cell_bound);
 }
 
@@ -112,16 +127,25 @@ struct Beginning {
   }
 };
 
-/// The run with the surface frozen, for what is left below what such a run claims: goes on from there, or
-/// begins at `from`, and keeps the better of what there was and what comes.
+Run with_frozen_surface(const Run& run) {
+  Run part = run.with(*run.strategy.frozen);
+  part.surface = nullptr;
+  return part;
+}
+
+/// Whether a run with the surface frozen may mend what is below what it claims.
+bool frozen_may_help(const Run& run) {
+  return run.strategy.frozen && !run.control.stopped() &&
+         may_rise(with_frozen_surface(run), run.strategy.frozen->claimed->goal->degrees);
+}
+
+/// The run with the surface frozen: goes on from there, or begins at `from`, and keeps the better of what
+/// there was and what comes.
 void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   const Strategy& frozen = *run.strategy.frozen;
-  const GoalEffort& claimed = *frozen.claimed->goal;
-  if (run.control.stopped() || !may_rise(run, claimed.degrees)) return;
-  Best best(run, claimed.may_fall, Loss::kMadeUpFor);
+  Best best(run, frozen.claimed->goal->may_fall, Loss::kMadeUpFor);
   if (from) from->put_back(run);
-  Run part = run.with(frozen);
-  part.surface = nullptr;
+  const Run part = with_frozen_surface(run);
   if (frozen.goal)
     run_towards_goal(part, *frozen.goal);
   else
@@ -140,16 +164,18 @@ std::optional<Beginning> beginning_of_frozen(const Run& run) {
 /// A default run, whatever the surface may do.
 void run_usual(const Run& run) {
   auto beginning = beginning_of_frozen(run);
-  run_default(run);
-  if (run.strategy.frozen) run_frozen(run);
-  if (beginning) run_frozen(run, std::move(beginning));
+  mend_and_improve_all(run);
+  const bool is_poor = frozen_may_help(run);
+  reach_claimed(run, run.findings.met_cell_bound);
+  if (is_poor) run_frozen(run);
+  if (beginning && frozen_may_help(run)) run_frozen(run, std::move(beginning));
 }
 
 /// A run towards a goal, whatever the surface may do.
 bool run_to_goal(const Run& run, const GoalEffort& goal) {
   auto beginning = beginning_of_frozen(run);
   if (run_towards_goal(run, goal)) return true;
-  if (beginning) run_frozen(run, std::move(beginning));
+  if (beginning && frozen_may_help(run)) run_frozen(run, std::move(beginning));
   return n_below(run.mesh, goal.degrees, run.policy()) == 0;
 }
 

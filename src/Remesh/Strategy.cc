@@ -47,14 +47,17 @@ class Asked {
 /// asked for or the worst angle is raised at any cost, small meshes would come to several times their cells,
 /// and others would lose so many that there is no room left to work in. (In free mode neither was seen.)
 bool keeps_size(const Asked& asked) {
-  if (asked.is_compat() || asked.is_free() || (asked.any_cost() && asked.coarsens())) return false;
-  return asked.is_frozen() || asked.any_cost() || asked.has_goal();
+  return !asked.is_free() && (asked.is_frozen() || asked.any_cost() || asked.has_goal());
 }
 
 CellBounds bounds_of(const Asked& asked, std::size_t n_cells) {
   CellBounds bounds = {asked.options().min_cells, asked.options().max_cells};
   if (asked.coarsens() && bounds.max == 0) bounds.max = n_cells;
-  if (!keeps_size(asked)) return bounds;
+  if (asked.is_compat() || (asked.any_cost() && asked.coarsens())) return bounds;
+  if (!keeps_size(asked)) {
+    if (bounds.max == 0) bounds.max = static_cast<std::size_t>(kMoreCells * static_cast<double>(n_cells));
+    return bounds;
+  }
   // Towards a goal a flat surface gives its cells good angles with fewer of them, in a third of the time.
   const bool may_lose = asked.coarsens() || (asked.is_flat() && asked.has_goal());
   if (bounds.min == 0 && !may_lose) bounds.min = n_cells * kLeastOfHundred / 100;

@@ -153,15 +153,15 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
 }
 
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                    const ImproveOptions& options) {
+                    const SurfaceOptions& options, par::Policy policy) {
   std::vector<CellHandle> cells;
   for (const StuckCell& cell : stuck) cells.push_back(cell.cell);
-  const auto held = held_by_features(mesh, cells, degrees, options.surface, options.policy);
+  const auto held = held_by_features(mesh, cells, degrees, options, policy);
   for (std::size_t i = 0; i < stuck.size(); ++i) {
     StuckReason& limit = stuck[i].reason;
     if (limit == StuckReason::kFoldedSurface) continue;
     // Planes and the edges between them stay in flat mode, and with them the order of the faces at an edge.
-    const bool flat = options.surface.mode == SurfaceMode::kFlat;
+    const bool flat = options.mode == SurfaceMode::kFlat;
     if (flat && is_proof(limit) && stuck[i].ceiling < -kPlanar) continue;
     if (!held[i])
       limit = StuckReason::kNotFound;
@@ -169,6 +169,11 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
       limit = StuckReason::kSurfaceFeature;
     if (limit != StuckReason::kInputFeature) stuck[i].ceiling = 180;
   }
+}
+
+void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                    const SurfaceMesh& surface, par::Policy policy) {
+  blame_features(mesh, stuck, degrees, surface.options(), policy);
 }
 
 }  // namespace hfr

@@ -65,7 +65,9 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
 /// With a surface that may change: proofs by faces that do not stay are taken back, and what the features
 /// keep below the angle is said to be.
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                    const ImproveOptions& options);
+                    const SurfaceOptions& options, par::Policy policy);
+void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+                    const SurfaceMesh& surface, par::Policy policy);
 
 }  // namespace hfr
 

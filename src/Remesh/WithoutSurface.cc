@@ -62,6 +62,7 @@ HeldCells held_cells(const TetMesh&, const std::vector<StuckCell>& stuck, double
   held.cells = cells_held_back(stuck).size();
   return held;
 }
-void blame_features(const TetMesh&, std::vector<StuckCell>&, double, const ImproveOptions&) {}
+void blame_features(const TetMesh&, std::vector<StuckCell>&, double, const SurfaceOptions&, par::Policy) {}
+void blame_features(const TetMesh&, std::vector<StuckCell>&, double, const SurfaceMesh&, par::Policy) {}
 
 }  // namespace hfr

@@ -33,12 +33,12 @@ TEST(Strategy, BoundsOnCellsAreThoseThatTheDocumentationNames) {
     const bool frozen = mode == SurfaceMode::kFrozen, flat = mode == SurfaceMode::kFlat;
     SCOPED_TRACE(static_cast<int>(mode));
     ImproveOptions options = options_in(mode);
-    expect_bounds(options, frozen ? 810 : 0, frozen ? 1190 : 0);
+    expect_bounds(options, frozen ? 810 : 0, frozen ? 1190 : 1500);
     options.min_dihedral = 20;
-    expect_bounds(options, frozen ? 810 : 0, frozen || flat ? 1190 : 0);
+    expect_bounds(options, frozen ? 810 : 0, frozen || flat ? 1190 : 1500);
     options.min_dihedral.reset();
     options.raise_min_dihedral = true;
-    expect_bounds(options, frozen || flat ? 810 : 0, frozen || flat ? 1190 : 0);
+    expect_bounds(options, frozen || flat ? 810 : 0, frozen || flat ? 1190 : 1500);
     options = options_in(mode);
     options.coarsen = true;
     expect_bounds(options, 0, kCells);

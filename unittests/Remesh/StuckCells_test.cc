@@ -153,7 +153,7 @@ TEST(StuckCells, InterfaceFoldedOverAnotherIsAlsoOneWherePlanesAreKept) {
     ImproveOptions options = serial();
     options.surface.mode = mode;
     auto stuck = stuck_cells(mesh, 15, {});
-    blame_features(mesh, stuck, 15, options);
+    blame_features(mesh, stuck, 15, options.surface, options.policy);
     return stuck.at(0);
   };
   const StuckCell flat = held_in(SurfaceMode::kFlat);

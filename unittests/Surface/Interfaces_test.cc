@@ -222,8 +222,7 @@ TEST(Interfaces, FrontOfACrackHoldsNoCell) {
     for (int i = 0; i <= kCells; ++i) {
       const double at = 2 * std::numbers::pi * (i % kCells) / kCells + 0.1 * turn;
       points.push_back({0.1 * std::sin(at), std::cos(at), std::sin(at)});
-      if (i < kCells)
-        corners.push_back({0, 1, static_cast<Index>(i + 2), static_cast<Index>(i + 3)});
+      if (i < kCells) corners.push_back({0, 1, static_cast<Index>(i + 2), static_cast<Index>(i + 3)});
     }
     const TetMesh mesh = build(points, corners);
     std::vector<CellHandle> cells;
