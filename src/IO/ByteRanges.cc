@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "HalfFace/Errors.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 
@@ -21,6 +22,13 @@ std::string ByteRanges::bytes(std::uint64_t begin, std::uint64_t n) {
   if (!in_.read(bytes.data(), static_cast<std::streamsize>(n)))
     throw IoError(name_ + ": at byte " + std::to_string(begin) + ": cannot be read");
   return bytes;
+}
+
+void ByteRanges::require_short(const std::string& section, std::uint64_t n) const {
+  constexpr std::uint64_t kLongest = std::uint64_t{1} << 28;
+  if (n > kLongest)
+    fail("section " + shown(section) + " has " + std::to_string(n) +
+         " bytes, which is more than each of several processes is made to read");
 }
 
 void ByteRanges::fail(const std::string& message) const { throw InvalidInput(name_ + ": " + message); }

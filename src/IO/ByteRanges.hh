@@ -20,6 +20,8 @@ class ByteRanges {
   std::uint64_t size() const { return size_; }
   /// The n bytes from `begin` on. Throws IoError where they cannot be read.
   std::string bytes(std::uint64_t begin, std::uint64_t n);
+  /// Throws InvalidInput where n bytes are too many to be read by every one of several processes.
+  void require_short(const std::string& section, std::uint64_t n) const;
   /// Throws InvalidInput, "PATH: MESSAGE".
   [[noreturn]] void fail(const std::string& message) const;
 

@@ -35,7 +35,8 @@ std::uint64_t TextSource::count() {
 }
 
 void BinarySource::fail(std::string_view message) const {
-  throw InvalidInput(name_ + ": at byte " + std::to_string(value_at_) + ": " + std::string(message));
+  throw InvalidInput(name_ + ": at byte " + std::to_string(outside_.before + value_at_) + ": " +
+                     std::string(message));
 }
 
 bool BinarySource::at_end() {

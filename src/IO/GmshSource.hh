@@ -46,6 +46,8 @@ class TextSource {
 
   std::string_view text() const { return scanner_.text(); }
   std::size_t offset() const { return scanner_.offset(); }
+  /// Bytes of the file from here on.
+  std::uint64_t left() const { return text().size() - offset(); }
   void seek(std::size_t offset) { scanner_.seek(offset); }
   [[noreturn]] void fail(std::string_view message) const { scanner_.fail(message); }
 
@@ -53,11 +55,17 @@ class TextSource {
   TextScanner scanner_;
 };
 
-/// `swap`: the numbers of the file have the other byte order than this machine.
+/// `swap`: the numbers of the file have the other byte order than this machine. The text may be a stretch of
+/// the file, with so many bytes before it and behind it.
 class BinarySource {
  public:
-  BinarySource(std::string_view text, std::string name, std::size_t offset, bool swap)
-      : text_(text), name_(std::move(name)), at_(offset), value_at_(offset), swap_(swap) {}
+  struct Outside {
+    std::uint64_t before, behind;
+  };
+
+  BinarySource(std::string_view text, std::string name, std::size_t offset, bool swap,
+               Outside outside = {0, 0})
+      : text_(text), name_(std::move(name)), at_(offset), value_at_(offset), swap_(swap), outside_(outside) {}
 
   static constexpr std::size_t least(std::size_t int32s, std::size_t wides, std::size_t reals) {
     return 4 * int32s + 8 * (wides + reals);
@@ -84,6 +92,7 @@ class BinarySource {
 
   std::string_view text() const { return text_; }
   std::size_t offset() const { return at_; }
+  std::uint64_t left() const { return text_.size() - at_ + outside_.behind; }
   void seek(std::size_t offset) { at_ = value_at_ = offset; }
   [[noreturn]] void fail(std::string_view message) const;
 
@@ -106,13 +115,14 @@ class BinarySource {
   std::size_t at_;
   std::size_t value_at_;  ///< where the last value or word began: what messages name
   bool swap_;
+  Outside outside_;
 };
 
 /// `count` as a size, once it is known that so many items of at least `bytes_each` fit into the rest of the
 /// file.
 template <class Source>
 std::size_t bounded(const Source& in, std::uint64_t count, std::size_t bytes_each, std::string_view what) {
-  const std::size_t left = in.text().size() - in.offset();
+  const std::uint64_t left = in.left();
   // The last number of a text may end with the file, without a separator: one byte of grace.
   if (count > (left + 1) / bytes_each) {
     in.fail(std::to_string(count) + " " + std::string(what) + " are announced, but only " +

@@ -42,7 +42,6 @@ struct SharePoints {
   std::vector<Vec3> points;
   std::vector<std::int32_t> labels;  ///< one each, or empty
   std::vector<std::uint8_t> fixed;   ///< 1: never moved nor removed; one each, or empty
-  std::vector<std::int64_t> tags;    ///< by which elements name them; empty where they do so by number
 };
 
 /// Elements of N corners, with numbers among their kind that follow on one another.

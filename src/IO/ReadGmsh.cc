@@ -12,83 +12,19 @@ namespace hfr::io {
 namespace gmsh {
 namespace {
 
-std::string unquoted(std::string_view line) {
-  if (line.size() >= 2 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
-  return std::string(line);
-}
-
 /// Goes to the line that closes the section.
 template <class Source>
 void skip_section(Source& in, const std::string& name) {
   const std::string closing = "$End" + name;
-  const std::string_view text = in.text();
-  for (std::size_t at = in.offset();; ++at) {
-    at = text.find(closing, at);
-    if (at == std::string_view::npos)
-      in.fail("section $" + shown(name) + " is not closed by " + shown(closing));
-    const std::size_t after = at + closing.size();
-    const bool whole = after == text.size() || std::strchr(" \t\r\n", text[after]) != nullptr;
-    if (whole && text[at - 1] == '\n') {
-      in.seek(at);
-      return;
-    }
-  }
+  const std::size_t at = find_closing(in.text(), closing, in.offset());
+  if (at == std::string_view::npos)
+    in.fail("section $" + shown(name) + " is not closed by " + shown(closing));
+  in.seek(at);
 }
-
-template <class Source>
-void close_section(Source& in, const std::string& name) {
-  const std::string_view found = in.word();
-  if (found != "$End" + name) in.fail("expected $End" + name + " and found '" + shown(found) + "'");
-}
-
-template <class Source>
-void read_names(Source& in, Collector& mesh) {
-  constexpr std::size_t kShortest = 7;  // 3 1 "a" and a line break
-  const std::size_t count = bounded(in, in.ascii_count(), kShortest, "physical names");
-  for (std::size_t k = 0; k < count; ++k) {
-    const int dimension = in.ascii_integer("the dimension of a physical name");
-    if (dimension < 0 || dimension > 3) in.fail("a physical name of dimension " + std::to_string(dimension));
-    const int label = in.ascii_integer("the tag of a physical name");
-    mesh.add_name(dimension, label, unquoted(in.line()));
-  }
-}
-
-struct DataHeader {
-  std::string name;
-  int step = 0;
-  int components = 0;
-  std::uint64_t count = 0;
-};
 
 template <class Source>
 std::size_t data_tags(Source& in, const char* what) {
   return bounded(in, in.ascii_count(), 2, what);
-}
-
-template <class Source>
-DataHeader read_data_header(Source& in) {
-  DataHeader header;
-  const std::size_t strings = data_tags(in, "string tags");
-  in.line();
-  for (std::size_t k = 0; k < strings; ++k) {
-    const std::string_view line = in.line();
-    if (k == 0) header.name = unquoted(line);
-  }
-  const std::size_t reals = data_tags(in, "real tags");
-  for (std::size_t k = 0; k < reals; ++k) in.ascii_real();
-  const std::size_t integers = data_tags(in, "integer tags");
-  if (integers < 3) in.fail("expected at least 3 integer tags: time step, components and how many values");
-  for (std::size_t k = 0; k < integers; ++k) {
-    if (k == 2) {
-      header.count = in.ascii_count();
-      continue;
-    }
-    const int value = in.ascii_integer("an integer tag");
-    if (k == 0) header.step = value;
-    if (k == 1) header.components = value;
-  }
-  in.begin_data();
-  return header;
 }
 
 /// $NodeData and $ElementData. Their tags are 32-bit in all versions.
@@ -96,21 +32,14 @@ template <class Source>
 void read_data(Source& in, bool on_points, Collector& mesh) {
   if (!mesh.has_elements()) in.fail("values stand before $Nodes and $Elements");
   const DataHeader header = read_data_header(in);
-  constexpr int kMostComponents = 9;
-  if (header.components < 1 || header.components > kMostComponents) {
-    in.fail("field '" + shown(header.name) + "' has " + std::to_string(header.components) +
-            " components; 1 to 9 can be read");
-  }
-  const auto components = static_cast<std::size_t>(header.components);
-  const std::size_t count = bounded(in, header.count, Source::least(1, 0, components), "values");
   mesh.begin_field(on_points, header.name, header.components, header.step);
-  for (std::size_t k = 0; k < count; ++k) {
+  for (std::size_t k = 0; k < header.count; ++k) {
     const int tag = in.int32("the tag of a value");
     const Index item = mesh.find_item(tag);
     if (item == TagIndex::kNone) {
       if (on_points) in.fail("there is no node " + std::to_string(tag));
       mesh.skip_value();
-      for (std::size_t c = 0; c < components; ++c) in.any_real();
+      for (int c = 0; c < header.components; ++c) in.any_real();
       continue;
     }
     for (int c = 0; c < header.components; ++c) mesh.set_value(item, c, in.any_real());
@@ -141,7 +70,9 @@ class Reader {
   /// False when the section is one to skip.
   bool read_section(const std::string& name) {
     if (name == "PhysicalNames") {
-      read_names(in_, mesh_);
+      read_names(in_, [&](int dimension, int label, std::string text) {
+        mesh_.add_name(dimension, label, std::move(text));
+      });
     } else if (name == "Nodes" || (name == "ParametricNodes" && version_ == Version::k2)) {
       read_nodes(name);
     } else if (name == "Elements") {
@@ -203,20 +134,84 @@ Version read_version(TextSource& in) {
   }
 }
 
-/// Does the number 1 at `offset`, which opens the data of a binary file, have the other byte order?
-bool is_swapped(const BinarySource& native, std::string_view text, std::size_t offset) {
+}  // namespace
+
+Format read_format(TextSource& in) {
+  Format format;
+  format.version = read_version(in);
+  const int binary = in.ascii_integer("0 (ASCII) or 1 (binary)");
+  if (binary != 0 && binary != 1) in.fail("the type of a file is 0 (ASCII) or 1 (binary)");
+  format.is_binary = binary == 1;
+  const int size = in.ascii_integer("the size of a number");
+  if (!format.is_binary) return format;
+  if (size != 8) in.fail("binary files with numbers of " + std::to_string(size) + " bytes cannot be read");
+  if (!in.line().empty()) in.fail("expected the end of the line before binary data");
+  return format;
+}
+
+bool is_swapped(const BinarySource& in) {
   constexpr std::string_view kLittle("\1\0\0\0", 4);
   constexpr std::string_view kBig("\0\0\0\1", 4);
-  const std::string_view bytes = text.substr(offset, 4);
-  if (bytes != kLittle && bytes != kBig) {
-    native.fail("expected the 32-bit number 1, which tells the byte order of the file");
-  }
+  const std::string_view bytes = in.text().substr(in.offset(), 4);
+  if (bytes != kLittle && bytes != kBig)
+    in.fail("expected the 32-bit number 1, which tells the byte order of the file");
   std::int32_t one = 0;
   std::memcpy(&one, bytes.data(), sizeof one);
   return one != 1;
 }
 
-}  // namespace
+std::size_t find_closing(std::string_view text, std::string_view closing, std::size_t from) {
+  for (std::size_t at = from;; ++at) {
+    at = text.find(closing, at);
+    if (at == std::string_view::npos) return at;
+    const std::size_t after = at + closing.size();
+    const bool whole = after == text.size() || std::strchr(" \t\r\n", text[after]) != nullptr;
+    if (whole && at > 0 && text[at - 1] == '\n') return at;
+  }
+}
+
+std::string unquoted(std::string_view line) {
+  if (line.size() >= 2 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
+  return std::string(line);
+}
+
+template <class Source>
+DataHeader read_data_header(Source& in) {
+  DataHeader header;
+  std::uint64_t count = 0;
+  const std::size_t strings = data_tags(in, "string tags");
+  in.line();
+  for (std::size_t k = 0; k < strings; ++k) {
+    const std::string_view line = in.line();
+    if (k == 0) header.name = unquoted(line);
+  }
+  const std::size_t reals = data_tags(in, "real tags");
+  for (std::size_t k = 0; k < reals; ++k) in.ascii_real();
+  const std::size_t integers = data_tags(in, "integer tags");
+  if (integers < 3) in.fail("expected at least 3 integer tags: time step, components and how many values");
+  for (std::size_t k = 0; k < integers; ++k) {
+    if (k == 2) {
+      count = in.ascii_count();
+      continue;
+    }
+    const int value = in.ascii_integer("an integer tag");
+    if (k == 0) header.step = value;
+    if (k == 1) header.components = value;
+  }
+  in.begin_data();
+  constexpr int kMostComponents = 9;
+  if (header.components < 1 || header.components > kMostComponents) {
+    in.fail("field '" + shown(header.name) + "' has " + std::to_string(header.components) +
+            " components; 1 to 9 can be read");
+  }
+  const auto components = static_cast<std::size_t>(header.components);
+  header.count = bounded(in, count, Source::least(1, 0, components), "values");
+  return header;
+}
+
+template DataHeader read_data_header(TextSource&);
+template DataHeader read_data_header(BinarySource&);
+
 }  // namespace gmsh
 
 MeshData read_gmsh(const InputFile& file) {
@@ -230,23 +225,16 @@ MeshData read_gmsh(const InputFile& file) {
     skip_section(header, std::string(word.substr(1)));
     header.word();
   }
-  const Version version = read_version(header);
-  const int binary = header.ascii_integer("0 (ASCII) or 1 (binary)");
-  if (binary != 0 && binary != 1) header.fail("the type of a file is 0 (ASCII) or 1 (binary)");
-  const int size = header.ascii_integer("the size of a number");
-  if (binary == 0) {
+  const Format format = read_format(header);
+  if (!format.is_binary) {
     close_section(header, "MeshFormat");
-    return Reader(std::move(header), version).read();
+    return Reader(std::move(header), format.version).read();
   }
-  if (size != 8)
-    header.fail("binary files with numbers of " + std::to_string(size) + " bytes cannot be read");
-  if (!header.line().empty()) header.fail("expected the end of the line before binary data");
-  const std::size_t offset = header.offset();
-  const bool swapped = is_swapped({file.bytes(), name, offset, false}, file.bytes(), offset);
-  BinarySource in(file.bytes(), name, offset, swapped);
+  BinarySource in(file.bytes(), name, header.offset(),
+                  is_swapped({file.bytes(), name, header.offset(), false}));
   in.int32("1");
   close_section(in, "MeshFormat");
-  return Reader(std::move(in), version).read();
+  return Reader(std::move(in), format.version).read();
 }
 
 }  // namespace hfr::io

@@ -5,28 +5,15 @@
 
 #include <type_traits>
 
+#include "IO/GmshRecords.hh"
+
 namespace hfr::io::gmsh {
 namespace {
-
-constexpr int kMostTags =
-    1 << 16;  ///< an element has two tags, and one more for each partition that it is in
-
-template <class Source>
-int tag_count(Source& in) {
-  const int count = in.int32("the number of tags of an element");
-  if (count < 0 || count > kMostTags) in.fail("an element with " + std::to_string(count) + " tags");
-  return count;
-}
 
 template <class Source>
 void read_element(Source& in, Collector& mesh, const ElementType& type, std::int64_t tag, int n_tags,
                   std::vector<Index>& nodes) {
-  Membership group;
-  for (int k = 0; k < n_tags; ++k) {
-    const int value = in.int32("a tag of an element");
-    if (k == 0) group.physical = value;
-    if (k == 1) group.elementary = value;
-  }
+  const Membership group = read_group(in, n_tags);
   nodes.resize(static_cast<std::size_t>(type.nodes));
   if (!is_simplex(type)) {
     for (std::size_t k = 0; k < nodes.size(); ++k) in.int32("a node");
@@ -41,14 +28,12 @@ void read_element(Source& in, Collector& mesh, const ElementType& type, std::int
 
 template <class Source>
 void read_nodes2(Source& in, Collector& mesh, bool parametric) {
-  const std::size_t count = bounded(in, in.ascii_count(), Source::least(1, 0, 3), "nodes");
+  const std::size_t count = bounded(in, in.ascii_count(), node_bytes<Source>(Version::k2), "nodes");
   in.begin_data();
   mesh.begin_nodes(count);
   for (std::size_t i = 0; i < count; ++i) {
     const int tag = in.int32("the number of a node");
-    const double x = in.real();
-    const double y = in.real();
-    mesh.add_node(tag, {x, y, in.real()});
+    mesh.add_node(tag, read_point(in, 0));
     if (!parametric) continue;
     const int dimension = in.int32("the dimension of an entity");
     in.int32("the tag of an entity");
@@ -72,15 +57,10 @@ void read_elements2(Source& in, Collector& mesh) {
       read_element(in, mesh, type, tag, tag_count(in), nodes);
       ++done;
     } else {
-      const ElementType type = supported_type(in, in.int32("the type of elements"));
-      const int following = in.int32("how many elements follow");
-      if (following < 1 || static_cast<std::size_t>(following) > count - done) {
-        in.fail(std::to_string(following) + " elements follow where 1 to " + std::to_string(count - done) +
-                " were expected");
-      }
-      const int n_tags = tag_count(in);
-      for (int k = 0; k < following; ++k) read_element(in, mesh, type, in.int32("a number"), n_tags, nodes);
-      done += static_cast<std::size_t>(following);
+      const auto [type, n, n_tags] =
+          read_following(in, count - done, [&](int number) { return supported_type(in, number); });
+      for (int k = 0; k < n; ++k) read_element(in, mesh, type, in.int32("a number"), n_tags, nodes);
+      done += static_cast<std::size_t>(n);
     }
   }
   mesh.end_elements(/*drop_copies_in_groups=*/true);

@@ -5,17 +5,13 @@
 #include "IO/ReadGmsh.hh"
 
 #include <algorithm>
-#include <numeric>
+#include <set>
 #include <utility>
+
+#include "IO/GmshRecords.hh"
 
 namespace hfr::io::gmsh {
 namespace {
-
-/// Tags of nodes and elements: 32-bit in 4.0, 64-bit in 4.1.
-template <class Source>
-std::int64_t mesh_tag(Source& in, Version version) {
-  return version == Version::k40 ? in.int32("a tag") : in.wide();
-}
 
 template <class Source>
 void skip_int32s(Source& in, std::size_t count) {
@@ -65,24 +61,6 @@ bool before(const Entity& a, const Entity& b) {
   return std::pair(a.dimension, a.tag) < std::pair(b.dimension, b.tag);
 }
 
-struct Block {
-  int dimension = 0;
-  int entity = 0;
-  int kind = 0;  ///< of nodes: whether they are parametric; of elements: their type
-  std::uint64_t count = 0;
-};
-
-template <class Source>
-Block read_block(Source& in, Version version) {
-  Block block;
-  block.dimension = in.int32("the dimension or tag of an entity");
-  block.entity = in.int32("the tag or dimension of an entity");
-  if (version == Version::k40) std::swap(block.dimension, block.entity);
-  block.kind = in.int32("what a block holds");
-  block.count = in.count();
-  return block;
-}
-
 /// Refuses a section whose blocks hold less than it announced; more is refused block by block.
 template <class Source>
 void require_all(const Source& in, std::size_t done, std::size_t announced, const char* what) {
@@ -92,27 +70,17 @@ void require_all(const Source& in, std::size_t done, std::size_t announced, cons
   }
 }
 
-template <class Source>
-std::size_t block_count(const Source& in, const Block& block, std::size_t left, std::size_t bytes_each,
-                        const char* what) {
-  if (block.count > left) {
-    in.fail("a block holds " + std::to_string(block.count) + " " + what + ", but only " +
-            std::to_string(left) + " of those announced are left");
-  }
-  return bounded(in, block.count, bytes_each, what);
-}
-
-template <class Source>
-Vec3 read_point(Source& in, int parameters) {
-  Vec3 point;
-  point.x = in.real();
-  point.y = in.real();
-  point.z = in.real();
-  for (int k = 0; k < parameters; ++k) in.any_real();
-  return point;
-}
-
 }  // namespace
+
+Entities::Entities(std::vector<Entity> entities) : entities_(std::move(entities)) {
+  std::stable_sort(entities_.begin(), entities_.end(), before);
+}
+
+const Entity* Entities::find(int dimension, int tag) const {
+  const Entity key{.dimension = dimension, .tag = tag, .group = {}};
+  const auto found = std::lower_bound(entities_.begin(), entities_.end(), key, before);
+  return found != entities_.end() && !before(key, *found) ? &*found : nullptr;
+}
 
 template <class Source>
 void read_entities4(Source& in, Version version, bool partitioned, std::vector<Entity>& entities) {
@@ -132,24 +100,14 @@ void read_entities4(Source& in, Version version, bool partitioned, std::vector<E
 
 template <class Source>
 void read_nodes4(Source& in, Version version, Collector& mesh) {
-  const std::size_t blocks = bounded(in, in.count(), Source::least(3, 1, 0), "blocks");
-  const std::size_t tag_bytes = version == Version::k40 ? Source::least(1, 0, 0) : Source::least(0, 1, 0);
-  const std::size_t node_bytes = tag_bytes + Source::least(0, 0, 3);
-  const std::size_t announced = bounded(in, in.count(), node_bytes, "nodes");
-  if (version == Version::k41) {
-    in.wide();  // smallest and largest tag: known better once the nodes are read
-    in.wide();
-  }
+  const auto [blocks, announced] = read_totals(in, version, node_bytes<Source>(version), "nodes");
   mesh.begin_nodes(announced);
   std::size_t done = 0;
   std::vector<std::int64_t> tags;
   for (std::size_t b = 0; b < blocks; ++b) {
     const Block block = read_block(in, version);
-    const std::size_t count = block_count(in, block, announced - done, node_bytes, "nodes");
-    if (block.dimension < 0 || block.dimension > 3) {
-      in.fail("nodes of an entity of dimension " + std::to_string(block.dimension));
-    }
-    const int parameters = block.kind != 0 ? block.dimension : 0;
+    const std::size_t count = block_count(in, block, announced - done, node_bytes<Source>(version), "nodes");
+    const int parameters = node_parameters(in, block);
     if (version == Version::k40) {
       for (std::size_t k = 0; k < count; ++k) {
         const std::int64_t tag = mesh_tag(in, version);
@@ -167,15 +125,11 @@ void read_nodes4(Source& in, Version version, Collector& mesh) {
 }
 
 template <class Source>
-void read_elements4(Source& in, Version version, std::vector<Entity> entities, Collector& mesh) {
-  std::stable_sort(entities.begin(), entities.end(), before);
-  const std::size_t blocks = bounded(in, in.count(), Source::least(3, 1, 0), "blocks");
-  const std::size_t tag_bytes = version == Version::k40 ? Source::least(1, 0, 0) : Source::least(0, 1, 0);
-  const std::size_t announced = bounded(in, in.count(), 2 * tag_bytes, "elements");
-  if (version == Version::k41) {
-    in.wide();
-    in.wide();
-  }
+void read_elements4(Source& in, Version version, std::vector<Entity> listed, Collector& mesh) {
+  const Entities entities(std::move(listed));
+  std::set<const Entity*> noted;  // that are in several groups
+  const std::size_t tag = tag_bytes<Source>(version);
+  const auto [blocks, announced] = read_totals(in, version, 2 * tag, "elements");
   mesh.begin_elements(announced);
   std::size_t done = 0;
   std::vector<Index> nodes;
@@ -183,19 +137,17 @@ void read_elements4(Source& in, Version version, std::vector<Entity> entities, C
     const Block block = read_block(in, version);
     const ElementType type = supported_type(in, block.kind);
     const auto n_nodes = static_cast<std::size_t>(type.nodes);
-    const std::size_t count = block_count(in, block, announced - done, (1 + n_nodes) * tag_bytes, "elements");
-    const Entity key{.dimension = block.dimension, .tag = block.entity, .group = {}};
-    const auto entity = std::lower_bound(entities.begin(), entities.end(), key, before);
-    const bool known = entity != entities.end() && !before(key, *entity);
-    const Membership group = known ? entity->group : Membership{.physical = 0, .elementary = block.entity};
-    if (known && std::exchange(entity->in_several_groups, false)) mesh.note_several_groups();
+    const std::size_t count = block_count(in, block, announced - done, (1 + n_nodes) * tag, "elements");
+    const Entity* const entity = entities.find(block.dimension, block.entity);
+    const Membership group = entity ? entity->group : Membership{.physical = 0, .elementary = block.entity};
+    if (entity && entity->in_several_groups && noted.insert(entity).second) mesh.note_several_groups();
     mesh.reserve(type, count);
     nodes.resize(n_nodes);
     for (std::size_t k = 0; k < count; ++k) {
-      const std::int64_t tag = mesh_tag(in, version);
+      const std::int64_t number = mesh_tag(in, version);
       if (is_simplex(type)) {
         for (Index& node : nodes) node = node_position(in, mesh, mesh_tag(in, version));
-        mesh.add(type, tag, group, nodes);
+        mesh.add(type, number, group, nodes);
       } else {
         for (std::size_t i = 0; i < n_nodes; ++i) mesh_tag(in, version);
         mesh.skip_quadrangle();

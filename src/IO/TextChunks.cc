@@ -5,15 +5,12 @@
 #include <cstring>
 #include <limits>
 
-#include "IO/Words.hh"
-
 namespace hfr::io {
 namespace {
 
 constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 20, kSmallestChunk = 256;
 constexpr std::uint64_t kChunksEach = 64;  // of a process, in a small file
 constexpr std::uint64_t kLongestLine = std::uint64_t{1} << 16;
-constexpr std::uint64_t kLongestSection = std::uint64_t{1} << 28;  // that every process reads
 
 bool is_space(char c) { return c == ' ' || static_cast<unsigned char>(c - '\t') < 5; }
 
@@ -124,9 +121,7 @@ std::size_t TextChunks::chunk_of(std::uint64_t line) const {
 
 std::string TextChunks::between(const Mark& first, const Mark& last) {
   const std::uint64_t n = last.byte - first.byte;
-  if (n > kLongestSection)
-    fail("section " + shown(first.word) + " has " + std::to_string(n) +
-         " bytes, which is more than each of several processes is made to read");
+  file_.require_short(first.word, n);
   const std::string text = file_.bytes(first.byte, n);
   return text.substr(std::min(text.find('\n'), text.size() - 1) + 1);
 }
