@@ -49,15 +49,18 @@ inline TetMesh mesh_of(const Complex& complex) {
 
 namespace detail {
 
+/// As many cells as a part is asked for at most.
+inline constexpr std::size_t kLargestPart = 300;
+
 /// Puts together one complex, in the order of random_complex().
 class Maker {
  public:
-  explicit Maker(const Random& random) : random_(random) {}
+  Maker(const Random& random, std::size_t most) : random_(random), most_(most) {}
 
   Complex run() {
-    take(part(most_cells()));
+    take(part(std::min(most_cells(), most_)));
     const int n_parts = random_.chance(0.25) ? random_.from_to(1, 3) : 0;
-    for (int i = 0; i < n_parts; ++i) join(part(20));
+    for (int i = 0; i < n_parts; ++i) join(part(std::min<std::size_t>(20, most_)));
     disturb();
     if (random_.chance(0.25)) order_at_random();
     split_into_regions();
@@ -71,7 +74,7 @@ class Maker {
   void say(const std::string& what) { all_.made_of += (all_.made_of.empty() ? "" : ", ") + what; }
 
   std::size_t most_cells() {
-    if (random_.chance(0.08)) return 300;
+    if (random_.chance(0.08)) return kLargestPart;
     return random_.chance(0.3) ? 100 : 40;
   }
 
@@ -336,6 +339,7 @@ class Maker {
   }
 
   Random random_;
+  std::size_t most_;  ///< cells that a part is asked for at most; some shapes have more
   Complex all_;
 };
 
@@ -343,10 +347,13 @@ class Maker {
 
 /// The complex of that number: 1 to 40 cells, some to a few hundred, up to 1,300 with stars of more than 256.
 inline Complex random_complex(std::uint64_t number) {
-  return detail::Maker(Random(number * 0x9e3779b97f4a7c15ULL ^ 0x68667266757a7aULL)).run();
+  return detail::Maker(Random(number * 0x9e3779b97f4a7c15ULL ^ 0x68667266757a7aULL), detail::kLargestPart)
+      .run();
 }
-/// What the numbers that come next make.
-inline Complex random_complex(const Random& random) { return detail::Maker(random).run(); }
+/// What the numbers that come next make, of parts of about `most` cells; some shapes have more.
+inline Complex random_complex(const Random& random, std::size_t most) {
+  return detail::Maker(random, most).run();
+}
 
 }  // namespace hfr::fuzz
 

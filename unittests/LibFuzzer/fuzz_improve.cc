@@ -13,8 +13,15 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kHeader = 3;
-constexpr std::size_t kOptions = 64;     // bytes, two for each number drawn
-constexpr std::size_t kMostCells = 120;  // larger meshes take seconds with sanitizers
+constexpr std::size_t kOptions = 64;    // bytes, two for each number drawn
+constexpr std::size_t kPart = 24;       // cells, about
+constexpr std::size_t kMostCells = 48;  // with sanitizers a larger mesh takes seconds
+/// Cells of a mesh whose worst angle is raised for as long as that goes on.
+constexpr std::size_t kMostToRaise = 12;
+/// How often a run asks whether it is cancelled; then it is. Few ask as often: what is tried for a goal that
+/// a dozen cells cannot reach takes hundreds of times as long as other runs, and inputs that reach it are
+/// kept.
+constexpr int kMostQuestions = 150;
 
 /// Cells of any corners, coordinates of any size: what build() does not refuse has duplicates, pinches, cells
 /// without volume and regions that mix.
@@ -64,8 +71,10 @@ Case case_of(Bytes bytes) {
   made.number = static_cast<std::uint64_t>(bytes[1] | bytes[2] << 8);
   const Bytes options = bytes.subspan(kHeader, std::min(kOptions, bytes.size() - kHeader));
   const Random mesh(bytes.subspan(kHeader + options.size()));
-  made.complex = bytes[0] % 2 == 0 ? random_complex(mesh) : complex_of(mesh);
+  made.complex = bytes[0] % 2 == 0 ? random_complex(mesh, kPart) : complex_of(mesh);
   made.options = random_options(Random(options), made.complex);
+  if (made.complex.cells.size() > kMostToRaise) made.options.improve.raise_min_dihedral = false;
+  if (made.options.cancel_at == 0) made.options.cancel_at = kMostQuestions;
   return made;
 }
 

@@ -4,13 +4,14 @@
 #   conan create packaging/conan/system --name=fmt --version=9.1.0
 from conan import ConanFile
 
-# File and target of CMake, the library, where the headers lie.
+# File and target of CMake, the library, where the headers lie. OpenMesh's library is given as an option of the linker:
+# CMake takes a library that is named like its target for the target itself, and links nothing.
 SYSTEM = {
     "fmt": ("fmt", "fmt::fmt", ["fmt"], []),
     "tinyxml2": ("tinyxml2", "tinyxml2::tinyxml2", ["tinyxml2"], []),
     "zlib": ("ZLIB", "ZLIB::ZLIB", ["z"], []),
     "eigen": ("Eigen3", "Eigen3::Eigen", [], ["/usr/include/eigen3"]),
-    "openmesh": ("OpenMesh", "OpenMeshCore", ["OpenMeshCore"], []),
+    "openmesh": ("OpenMesh", "OpenMeshCore", ["-lOpenMeshCore"], []),
 }
 
 
