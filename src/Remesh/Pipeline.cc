@@ -52,8 +52,8 @@ bool may_rise(const Run& run, double degrees) {
   return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
 }
 
-/// What a default run claims, or the goal if it is less, where the number of cells was in the way, and with
-/// a surface that may change, over all of which this goes, in any case: again while that raises the worst
+/// Works over all cells for what a default run claims, or for the goal if it is less: where the number of
+/// cells was in the way, and with a surface that may change in any case. Goes on while that raises the worst
 /// angle, with more cells where they were in the way; once also where a percentile has fallen for it.
 void reach_claimed(const Run& run, bool met_cell_bound) {
   if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return;
