@@ -103,7 +103,11 @@ void Checkpoint::require_sound(TetMesh& mesh) {
 
 bool Checkpoint::settle(TetMesh& mesh, bool known_no_worse, const std::function<void()>& mend) {
   if (!kept_) return false;
-  Standing now = known_no_worse ? input_ : standing(mesh);
+  if (known_no_worse) {  // than anything that was kept, either
+    require_sound(mesh);
+    return false;
+  }
+  Standing now = standing(mesh);
   if (!is_no_worse(now, input_)) {
     now.worst = input_.worst;
     if (is_no_worse(now, input_)) mend();

@@ -70,6 +70,26 @@ TEST(Checkpoint, StandingsAreComparedInEveryPart) {
   EXPECT_TRUE(is_better(with([](Standing& s) { s.worst = -0.1; }), before));
 }
 
+TEST(Checkpoint, WhatMetItsGoalStaysWhereSomethingBetterThanTheInputWasKept) {
+  TetMesh mesh = small_cavity(4);
+  const std::size_t n_at_first = standing(mesh).n_inverted;
+  Checkpoint checkpoint(mesh, survey(mesh, {}), {});
+  checkpoint.keep(mesh, false, 0);
+  ImproveOptions options = serial();
+  options.min_dihedral = 1e-3;
+  options.iterations = 1;
+  options.ops = Ops::kEdge;
+  improve(mesh, options);
+  ASSERT_LT(standing(mesh).n_inverted, n_at_first);
+  checkpoint.keep(mesh, false, 1000);
+  options = serial();
+  options.min_dihedral = 1e-3;
+  ASSERT_TRUE(improve(mesh, options).goal_reached);
+  const std::uint64_t hash = io::mesh_hash(mesh);
+  EXPECT_FALSE(checkpoint.settle(mesh, /*known_no_worse=*/true, [] {}));
+  EXPECT_EQ(io::mesh_hash(mesh), hash);
+}
+
 TEST(Checkpoint, PutsBackWhatWasKeptWithTheHandlesOfPropertiesStillGood) {
   TetMesh mesh = jittered(2, 0.1, 1);
   auto mark = mesh.request_vertex_property<int>("mark");
