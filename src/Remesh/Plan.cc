@@ -191,10 +191,9 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
   const Strategy& first = strategy.usual ? *strategy.usual : strategy;
   add_bounds(lines, "cells", first.bounds);
   if (strategy.untangle) {
-    const UntangleEffort& effort = *strategy.untangle;
-    lines.add("untangle", say(found.n_invalid, " cells: vertices moved together within ",
-                              effort.widths.front().layers, " to ", effort.widths.back().layers,
-                              " layers, then reconnected, again while fewer are left"));
+    lines.add("untangle", say(found.n_invalid,
+                              " cells: vertices moved together within 1, 3, 7 … layers while that brings "
+                              "anything, then reconnected, again while fewer are left"));
   }
   if (strategy.goal && strategy.goal->polish_only) {
     const PolishEffort& polish = strategy.polish;

@@ -135,19 +135,17 @@ struct PassEffort {
 
 /// Mending inverted and flat cells. Shown by bench/untangle.py and docs/untangling.md, "Measured".
 struct UntangleEffort {
-  /// Layers of cells round the invalid ones whose vertices are moved together, and visits to each vertex.
-  struct Width {
-    int layers;
-    int sweeps;
-  };
-  std::array<Width, 3> widths = {{{1, 6}, {3, 12}, {7, 24}}};
-  int patience = 4;      ///< sweeps without fewer inverted cells
+  /// Visits to each vertex for each layer of cells round the invalid ones whose vertices are moved together:
+  /// what the boundary brings goes through no more than a layer with each.
+  int sweeps_of_layer = 3;
+  int patience = 4;      ///< sweeps that bring nothing
   int newton_steps = 3;  ///< at a vertex
   /// Decision values of volume-length, from what is all but flat to what is merely poor: cells below one are
   /// worked on, below the next only when that has stopped helping.
   std::array<double, 4> focus = {1e-4, 1e-2, 0.1, 0.3};
   int iterations = kIterations;  ///< at all of them together
-  int idle = kIdle;              ///< iterations without fewer invalid cells or a better worst one
+  int idle = kIdle;  ///< iterations without fewer invalid cells or a better worst one, and widths that bring
+                     ///< nothing
 };
 
 /// All cells in one metric. Shown by --runs default, percentiles and seconds, the cavities first;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "HalfFace/Layers.hh"
@@ -34,6 +35,18 @@ double typical_six_volume(const TetMesh& mesh) {
   return volume > 0 ? volume : 1.0;
 }
 
+/// How tangled the cells are that are worked on.
+struct Tangle {
+  std::size_t n_invalid = 0;
+  double overlap = 0;  // six times the volume of the inverted ones
+
+  /// Fewer cells, or so much less of them that it shows. While vertices find their places, cells become more
+  /// at first, and where they are all on their way, fewer only in the end.
+  bool is_less_than(const Tangle& other) const {
+    return n_invalid < other.n_invalid || overlap * kLargeRise < other.overlap;
+  }
+};
+
 /// Unfolds the surroundings of invalid cells by moving their vertices. What is moved falls into patches that
 /// share no cell; each keeps its moves only if it has fewer invalid cells afterwards, or fewer inverted ones,
 /// and none of the two has become more.
@@ -42,34 +55,33 @@ class Unfolding {
   Unfolding(const Run& run, const UntangleEffort& effort)
       : mesh_(run.mesh), work_(run.work), policy_(run.policy()), effort_(effort) {}
 
-  void run(UntangleEffort::Width width, std::span<const CellHandle> invalid, RunControl& control,
-           RoundCounts& counts) {
-    gather(width.layers, invalid);
+  /// Moves what is within so many layers. Returns what was left in the end, before what does not help was put
+  /// back.
+  Tangle run(int layers, std::span<const CellHandle> invalid, RunControl& control, RoundCounts& counts) {
+    gather(layers, invalid);
     counts.seeds = vertices_.size();
-    if (vertices_.empty()) return;
+    if (vertices_.empty()) return {invalid.size(), 0};
     const StarTable stars(mesh_, vertices_, work_.star_size, policy_);
     const auto groups = colour_vertices(mesh_, vertices_, stars, policy_);
     gather_cells(stars);
     std::vector<Vec3> before(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) before[i] = mesh_.point(vertices_[i]);
-    std::size_t least = n_set(invalidity());
-    std::size_t n_invalid = least;
+    const int n_sweeps = effort_.sweeps_of_layer * (layers + 1);
+    Tangle now = tangle(), least;
     int idle = 0;
-    for (int s = 0; s < width.sweeps && n_invalid > 0 && idle < effort_.patience && !control.stopped(); ++s) {
+    for (int s = 0; s < n_sweeps && now.n_invalid > 0 && idle < effort_.patience && !control.stopped(); ++s) {
       sweep(stars, groups);
       ++counts.rounds;
-      n_invalid = n_set(invalidity());
-      idle = n_invalid < least ? 0 : idle + 1;
-      least = std::min(least, n_invalid);
+      now = tangle();
+      if (s == 0) least = now;
+      idle = s == 0 || now.is_less_than(least) ? 0 : idle + 1;
+      least = {std::min(least.n_invalid, now.n_invalid), std::min(least.overlap, now.overlap)};
     }
     counts.winners += keep_what_helps(stars, before);
+    return now;
   }
 
  private:
-  static std::size_t n_set(const std::vector<std::uint8_t>& flags) {
-    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
-  }
-
   /// Vertices of the invalid cells and of so many layers round them, ascending; without those that must stay.
   void gather(int layers, std::span<const CellHandle> invalid) {
     const auto cells_round = [&](std::span<const VertexHandle> rim, auto&& visit) {
@@ -95,15 +107,20 @@ class Unfolding {
       if (in[i]) cells_.push_back(CellHandle(i));
   }
 
-  std::vector<std::uint8_t> invalidity() const {
-    std::vector<std::uint8_t> flags(cells_.size(), 0);
+  Tangle tangle() const {
+    std::vector<double> overlaps(cells_.size(), -1);
     par::for_each(policy_, cells_.size(), [&](std::size_t i) {
       const auto& v = mesh_.cell(cells_[i]).v;
-      flags[i] = orientation(mesh_.point(v[0]), mesh_.point(v[1]), mesh_.point(v[2]), mesh_.point(v[3])) <= 0
-                     ? 1
-                     : 0;
+      const Vec3 a = mesh_.point(v[0]), b = mesh_.point(v[1]), c = mesh_.point(v[2]), d = mesh_.point(v[3]);
+      if (orientation(a, b, c, d) <= 0) overlaps[i] = std::abs(dot(cross(b - a, c - a), d - a));
     });
-    return flags;
+    Tangle found;
+    for (double overlap : overlaps) {  // in a fixed order, since volumes are summed
+      if (overlap < 0) continue;
+      ++found.n_invalid;
+      found.overlap += overlap;
+    }
+    return found;
   }
 
   void sweep(const StarTable& stars, const std::vector<std::vector<std::uint32_t>>& groups) {
@@ -176,16 +193,19 @@ class Unfolding {
   std::vector<CellHandle> cells_;
 };
 
-/// Wider and wider until nothing is invalid. Returns the number of cells that are.
+/// Wider and wider until nothing is invalid, or that brings nothing. Returns the number of invalid cells.
 std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int iteration) {
   RunControl& control = run.control;
   std::vector<CellHandle> invalid = invalid_cells(run.mesh, run.policy());
   run.keep(invalid.empty());
-  for (const UntangleEffort::Width& width : effort.widths) {
-    if (invalid.empty() || control.stopped()) break;
+  Tangle least;
+  int idle = 0;
+  for (int layers = 1; !invalid.empty() && idle < effort.idle && !control.stopped(); layers += layers + 1) {
     const double start = control.seconds();
     RoundCounts counts;
-    Unfolding(run, effort).run(width, invalid, control, counts);
+    const Tangle left = Unfolding(run, effort).run(layers, invalid, control, counts);
+    idle = layers == 1 || left.is_less_than(least) ? 0 : idle + 1;
+    if (idle == 0) least = left;
     if (counts.winners > 0) ++run.work.clock;
     invalid = invalid_cells(run.mesh, run.policy());
     PassReport pass;

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Untangle.hh"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <tuple>
+
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/StageBench.hh"
@@ -58,6 +64,88 @@ TEST(Untangle, RandomlyTangledInsidesAreRepaired) {
   }
   EXPECT_GT(inverted, 1500U);
   EXPECT_EQ(left, 0U);
+}
+
+/// What a motion makes of a box of cubes while only its surface has moved.
+TetMesh interior_at_rest(generate::Counts counts, const std::function<Vec3(Vec3)>& motion) {
+  const Vec3 high = {1.0 * counts[0], 1.0 * counts[1], 1.0 * counts[2]};
+  generate::Arrays arrays = generate::box(counts, {0, 0, 0}, high);
+  for (Vec3& p : arrays.points) {
+    const bool inside = p.x > 0 && p.x < high.x && p.y > 0 && p.y < high.y && p.z > 0 && p.z < high.z;
+    if (!inside) p = motion(p);
+  }
+  return built(arrays);
+}
+
+// Each motion by itself, of all vertices, leaves every cell positive: there is a solution without
+// reconnecting.
+TEST(Untangle, TheInteriorFollowsWhereverTheBoundaryGoes) {
+  const auto turned = [](Vec3 p, double angle, Vec3 about) {
+    const double y = p.y - about.y, z = p.z - about.z, c = std::cos(angle), s = std::sin(angle);
+    return Vec3{p.x, about.y + y * c - z * s, about.z + y * s + z * c};
+  };
+  const std::vector<std::tuple<std::string, generate::Counts, std::function<Vec3(Vec3)>>> motions = {
+      {"shifted by a half",
+       {8, 8, 8},
+       [](Vec3 p) {
+         return p + Vec3{4.5, 0, 0};
+       }},
+      {"shifted out of itself",
+       {5, 5, 5},
+       [](Vec3 p) {
+         return p + Vec3{0, 12, 0};
+       }},
+      {"sheared",
+       {8, 8, 8},
+       [](Vec3 p) {
+         return Vec3{p.x + 1.2 * p.y, p.y, p.z};
+       }},
+      {"pressed",
+       {8, 8, 8},
+       [](Vec3 p) {
+         return Vec3{p.x, p.y, 0.2 * p.z};
+       }},
+      {"shrunk", {8, 8, 8}, [](Vec3 p) { return 0.3 * p; }},
+      {"turned by 90 degrees",
+       {8, 8, 8},
+       [&](Vec3 p) {
+         return turned(p, std::numbers::pi / 2, {4, 4, 4});
+       }},
+      {"turned over",
+       {6, 6, 6},
+       [&](Vec3 p) {
+         return turned(p, std::numbers::pi, {3, 3, 3});
+       }},
+      {"twisted",
+       {20, 4, 4},
+       [&](Vec3 p) {
+         return turned(p, 0.15 * p.x, {0, 2, 2});
+       }},
+      {"bent",
+       {25, 5, 5},
+       [](Vec3 p) {
+         const double angle = 0.08 * p.x, radius = 12 + p.y;
+         return Vec3{radius * std::sin(angle), radius * std::cos(angle), p.z};
+       }},
+      {"bowed, 12 cubes thick", {12, 12, 12}, [](Vec3 p) {
+         return Vec3{p.x + 7 * std::sin(p.y * (std::numbers::pi / 12)), p.y, p.z};
+       }}};
+  for (const auto& [name, counts, motion] : motions) {
+    SCOPED_TRACE(name);
+    TetMesh mesh = interior_at_rest(counts, motion);
+    EXPECT_GT(n_inverted(mesh), 50U);
+    const auto boundary = boundary_of(mesh);
+    const std::size_t n_cells = mesh.n_logical_cells();
+    ImproveOptions only_moves = repair_only();
+    only_moves.min_dihedral = 1e-3;
+    only_moves.ops = Ops::kSmooth;
+    const Result result = improve(mesh, only_moves);
+    EXPECT_TRUE(result.invalid_cells.empty());
+    EXPECT_EQ(n_inverted(mesh), 0U);
+    EXPECT_EQ(mesh.n_logical_cells(), n_cells);
+    EXPECT_EQ(check(mesh), Ok);
+    EXPECT_TRUE(boundary_of(mesh) == boundary);
+  }
 }
 
 TEST(Untangle, FoldedBoundaryLeavesOnlyWhatTouchesIt) {
