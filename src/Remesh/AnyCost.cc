@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "Remesh/MayRise.hh"
 #include "Remesh/Neighbourhoods.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Polish.hh"
@@ -42,9 +43,9 @@ class Climb {
   }
   /// Of cells that came to be below that, on the way to what is larger.
   void mend(double degrees) {
-    if (smallest() < degrees) polish(run_, run_.strategy.mending(), degrees);
+    if (smallest_dihedral(run_.mesh, run_.policy()) < degrees) polish(run_, run_.strategy.mending(), degrees);
   }
-  double smallest() const { return smallest_dihedral(run_.mesh, run_.policy()); }
+  double smallest() const { return smallest_that_may_rise(run_, kLargestGoal); }
 
  private:
   std::size_t n_poor(double degrees) const { return n_below(run_.mesh, degrees, run_.policy()); }

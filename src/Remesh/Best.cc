@@ -8,6 +8,8 @@
 
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/MayRise.hh"
+#include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Trial.hh"
 
@@ -38,6 +40,8 @@ Best::Percentiles percentiles_of(const Run& run) {
   return found;
 }
 
+bool is_alike(double a, double b) { return std::abs(a - b) <= kLeastRise; }
+double risen_now(const Run& run) { return smallest_that_may_rise(run, kLargestGoal); }
 Standing standing_now(const Run& run) {
   return standing_of(run.mesh, survey(run.mesh, run.policy()), run.policy());
 }
@@ -52,6 +56,7 @@ Best::Best(const Run& run, double may_fall, Loss loss, const Beginning& beginnin
       beginning_(beginning),
       least_(beginning.low),
       standing_(standing_now(run)),
+      risen_(risen_now(run)),
       low_(percentiles_of(run)),
       mesh_(run) {
   for (double& value : least_)
@@ -78,19 +83,33 @@ bool Best::makes_up_for(double worst, const Percentiles& low) const {
 
 double Best::worst() const { return degrees(standing_); }
 
+int Best::by_risen(const Standing& found, double risen) const {
+  Standing alike = found;
+  alike.worst = standing_.worst;
+  if (!is_alike(degrees(found), degrees(standing_)) || is_alike(risen, risen_) ||
+      is_better(alike, standing_) || is_better(standing_, alike))
+    return 0;
+  return risen > risen_ ? 1 : -1;
+}
+
 void Best::note() {
   const Standing found = standing_now(run_);
-  if (!is_better(found, standing_) || !is_admissible(found)) return;
+  const double risen = risen_now(run_);
+  const int by = by_risen(found, risen);
+  if (by < 0 || (by == 0 && !is_better(found, standing_)) || !is_admissible(found)) return;
   standing_ = found;
+  risen_ = risen;
   low_ = percentiles_of(run_);
   mesh_.emplace(run_);
 }
 
 void Best::settle() {
   Standing found = standing_now(run_);
-  if (std::abs(degrees(found) - degrees(standing_)) <= kLeastRise) found.worst = standing_.worst;
-  const bool is_alike = !is_better(standing_, found) && !is_better(found, standing_);
-  if (is_better(standing_, found) || !is_admissible(found) || (is_alike && percentiles_of(run_) < low_))
+  const int by = by_risen(found, risen_now(run_));
+  if (is_alike(degrees(found), degrees(standing_))) found.worst = standing_.worst;
+  const bool is_worse = by < 0 || (by == 0 && is_better(standing_, found));
+  const bool decides_low = by == 0 && !is_worse && !is_better(found, standing_);
+  if (is_worse || !is_admissible(found) || (decides_low && percentiles_of(run_) < low_))
     mesh_->put_back(run_);
 }
 

@@ -20,7 +20,7 @@ enum class Loss {
 };
 
 /// The best mesh that a stage has had on its way, by Standing: fewer inverted, fewer flat cells, less
-/// overlap, a larger worst angle. One that has lost more than it may since the beginning, with no fewer
+/// overlap, a larger worst angle; where these are alike, a larger one of the cells that may rise. One that has lost more than it may since the beginning, with no fewer
 /// inverted and flat cells, is none. Makes a Snapshot, and another one in its place with each note() of a
 /// better mesh.
 class Best {
@@ -46,11 +46,14 @@ class Best {
   double worst() const;
   /// The mesh may have become better.
   void note();
-  /// At the end of the stage: where the mesh is worse than the best one was, puts that back. Worst angles
-  /// that look alike in a table count alike; then the 1st percentile decides, and the 5th.
+  /// At the end of the stage: where the mesh is worse than the best one was, puts that back. Angles that look
+  /// alike in a table count alike; in the end the 1st percentile decides, and the 5th.
   void settle();
 
  private:
+  /// -1 where the mesh is worse than the best by the worst angle of the cells that may rise, 1 where it is
+  /// better, 0 where that does not decide.
+  int by_risen(const Standing& found, double risen) const;
   bool is_admissible(const Standing& found) const;
   bool makes_up_for(double worst, const Percentiles& low) const;
 
@@ -58,8 +61,9 @@ class Best {
   Loss loss_;
   Beginning beginning_;
   Percentiles least_;
-  Standing standing_;
-  Percentiles low_;  // of the best mesh
+  Standing standing_;  // of the best mesh, as what follows
+  double risen_;       // smallest_that_may_rise()
+  Percentiles low_;
   std::optional<Snapshot> mesh_;
 };
 

@@ -2,6 +2,7 @@
 #include "Remesh/Goal.hh"
 
 #include "Remesh/LastCells.hh"
+#include "Remesh/MayRise.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Survey.hh"
@@ -11,7 +12,7 @@
 namespace hfr {
 namespace {
 
-double smallest(const Run& run) { return smallest_dihedral(run.mesh, run.policy()); }
+double smallest(const Run& run) { return smallest_that_may_rise(run, kLargestGoal); }
 
 /// The cells that miss the goal; what misses it then as far as it goes, and the goal once more if that
 /// helped.
@@ -42,10 +43,10 @@ void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best) {
     const auto targets = all.first(i + 1);
     const bool many_miss = share_below(run.mesh, degrees, run.policy()) > goal.few_miss;
     if (many_miss) improve_all(run, now, targets);
-    const bool reached = attempt(run, degrees, targets);
+    attempt(run, degrees, targets);
     // What more targets bring may cost more of the other cells than it may.
     best.note();
-    if (!reached) return;
+    if (smallest(run) < degrees) return;
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/LastCells.hh"
 
+#include "Remesh/MayRise.hh"
 #include "Remesh/Neighbourhoods.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Survey.hh"
@@ -8,7 +9,7 @@
 namespace hfr {
 
 bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span<const TargetAngle> targets) {
-  const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
+  const auto smallest = [&] { return smallest_that_may_rise(run, kLargestGoal); };
   const double at_first = smallest();
   double now = at_first;
   for (const TargetAngle& target : targets) {

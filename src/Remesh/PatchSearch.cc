@@ -18,6 +18,7 @@
 #include "Parallel/Atomic.hh"
 #include "Parallel/Interleave.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/MayRise.hh"
 #include "Remesh/Patch.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/SurfaceRun.hh"
@@ -338,9 +339,10 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
   pass.op = "insert";
   const double start = run.control.seconds();
   for (int turn = 0; turn < effort.turns && !run.control.stopped(); ++turn) {
-    const double next = std::min(degrees, smallest_dihedral(run.mesh, run.policy()) + effort.degrees);
+    const double next = std::min(degrees, smallest_that_may_rise(run, degrees) + effort.degrees);
     const std::size_t n_centres = 4 * effort.patches;  // most patches hold several of the worst cells
-    const auto worst = worst_cells_below(run.mesh, next, std::max(effort.few + 1, n_centres), run.policy());
+    const auto worst = worst_cells_below(run.mesh, next, std::max(effort.few + 1, n_centres), run.policy(),
+                                         cells_at_ceiling(run, next));
     if (worst.size() > effort.few) break;
     const std::vector<Patch> patches =
         disjoint_patches(run, std::span(worst).first(std::min(n_centres, worst.size())), effort);

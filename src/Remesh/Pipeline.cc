@@ -15,9 +15,9 @@
 #include "Remesh/Coarsen.hh"
 #include "Remesh/Goal.hh"
 #include "Remesh/Jpdc2013.hh"
+#include "Remesh/MayRise.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Snapshot.hh"
-#include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Targets.hh"
@@ -42,15 +42,8 @@ void mend_invalid(const Run& run) {
   run.control.set_fraction(kUntangled);
 }
 
-/// Whether the worst angle is below `degrees`, and nothing proves that what may not change of the surface
-/// holds it where it is.
-bool may_rise(const Run& run, double degrees) {
-  const double now = smallest_dihedral(run.mesh, run.policy());
-  if (now >= degrees) return false;
-  std::vector<StuckCell> worst = stuck_cells(run.mesh, now + kLeastRise, {}, run.policy());
-  if (run.surface) blame_features(run.mesh, worst, now + kLeastRise, *run.surface, run.policy());
-  return std::none_of(worst.begin(), worst.end(), [](const StuckCell& c) { return is_proof(c.reason); });
-}
+/// Whether a cell is below `degrees` that nothing proves to be held where it is.
+bool may_rise(const Run& run, double degrees) { return smallest_that_may_rise(run, degrees) < degrees; }
 
 /// Works over all cells for what a default run claims, or for the goal if it is less: where the number of
 /// cells was in the way, and with a surface that may change in any case. Goes on while that raises the worst
@@ -59,7 +52,7 @@ void reach_claimed(const Run& run, bool met_cell_bound) {
   if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
-  const auto smallest = [&] { return smallest_dihedral(run.mesh, run.policy()); };
+  const auto smallest = [&] { return smallest_that_may_rise(run, goal.degrees); };
   Run part = run.with(claimed);
   const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
   const auto grow = [&] {
@@ -145,37 +138,61 @@ void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   const Strategy& frozen = *run.strategy.frozen;
   Best best(run, frozen.claimed->goal->may_fall, Loss::kMadeUpFor);
   if (from) from->put_back(run);
-  const Run part = with_frozen_surface(run);
-  if (frozen.goal)
-    run_towards_goal(part, *frozen.goal);
-  else
-    run_default(part);
+  run_default(with_frozen_surface(run));
   best.settle();
 }
 
-/// Where to begin a run with the surface frozen, if not with what is left by one that may change it: where
-/// the mesh lacks inner vertices, that is no good beginning.
-std::optional<Beginning> beginning_of_frozen(const Run& run) {
-  std::optional<Beginning> beginning;
-  if (run.strategy.frozen && lacks_vertices(run)) beginning.emplace(run);
-  return beginning;
+void run_usual(const Run& run, double enough = -180);
+
+/// The run with a flat surface, from the beginning, and the better of what there was and what comes: a free
+/// run may do all that this one may.
+void run_flat(const Run& run, Beginning from) {
+  if (run.control.stopped() || !may_rise(run, run.strategy.claimed->goal->degrees)) return;
+  const Strategy& strategy = *run.strategy.flat;
+  Best best(run, strategy.claimed->goal->may_fall, Loss::kMadeUpFor);
+  from.put_back(run);
+  const FlatSurface surface(run.mesh, *run.surface, run.policy());
+  Run part = run.with(strategy);
+  part.surface = surface.get();
+  run_usual(part, best.worst() / 2);  // work for what is claimed may bring twice as much, hardly more
+  rebuild(run.surface, run.mesh, run.policy());
+  best.settle();
 }
 
-/// A default run, whatever the surface may do.
-void run_usual(const Run& run) {
-  auto beginning = beginning_of_frozen(run);
+/// A default run, whatever the surface may do. `enough`: degrees; where the worst angle is below when all
+/// cells have been improved, nothing more is done.
+void run_usual(const Run& run, double enough) {
+  const bool lacks = run.strategy.frozen && lacks_vertices(run);
+  std::optional<Beginning> beginning;
+  if (lacks || run.strategy.flat) beginning.emplace(run);
   mend_and_improve_all(run);
+  if (smallest_dihedral(run.mesh, run.policy()) < enough) return;
   const bool is_poor = frozen_may_help(run);
   reach_claimed(run, run.findings.met_cell_bound);
   if (is_poor) run_frozen(run);
-  if (beginning && frozen_may_help(run)) run_frozen(run, std::move(beginning));
+  if (run.strategy.flat)  // which may go on with a frozen one
+    run_flat(run, std::move(*beginning));
+  else if (lacks && frozen_may_help(run))
+    run_frozen(run, std::move(beginning));
+}
+
+/// Where a goal was missed, the run without one from the beginning, and the better of both.
+void run_without_goal(const Run& run, const GoalEffort& goal, Beginning from) {
+  if (run.control.stopped() || !may_rise(run, run.strategy.claimed->goal->degrees)) return;
+  Best best(run, goal.may_fall, Loss::kMadeUpFor);
+  from.put_back(run);
+  run_usual(run.with(*run.strategy.without_goal));
+  polish(run, run.strategy.polish, goal.degrees);
+  best.settle();
 }
 
 /// A run towards a goal, whatever the surface may do.
 bool run_to_goal(const Run& run, const GoalEffort& goal) {
-  auto beginning = beginning_of_frozen(run);
+  std::optional<Beginning> beginning;
+  if (run.strategy.without_goal) beginning.emplace(run);
   if (run_towards_goal(run, goal)) return true;
-  if (beginning && frozen_may_help(run)) run_frozen(run, std::move(beginning));
+  // That goes on with a frozen surface, too.
+  if (beginning) run_without_goal(run, goal, std::move(*beginning));
   return n_below(run.mesh, goal.degrees, run.policy()) == 0;
 }
 

@@ -81,7 +81,7 @@ enum class StuckReason {
   kSurfaceCeiling,  ///< two boundary faces leave too narrow a wedge, or one that a single poor cell has to
                     ///< fill
   kInputFeature,    ///< the same where an interface between regions or a labelled face inside takes part
-  kSurfaceFeature,  ///< with a surface that may change: see held_by_features()
+  kSurfaceFeature,  ///< with a surface that may change: see feature_ceilings()
   kMaxCells,        ///< a new vertex would raise the worst of its surroundings, and the bound on cells is met
   kTimeLimit,       ///< the run was ended before it was done: by the time,
   kCancelled,       ///< by the caller,
@@ -101,9 +101,9 @@ struct StuckCell {
   double degrees = 0;  ///< its smallest dihedral; not positive for an inverted or flat cell
   StuckReason reason = StuckReason::kNotFound;
   int n_frozen_vertices = 0;  ///< of its four
-  /// Where the limit is a surface ceiling or an input feature, the proof: while the faces at the edge (a, b)
-  /// that may not change stay as they are, some cell at this edge has a dihedral of at most `ceiling` degrees
-  /// in every mesh; not positive where one is inverted or flat in every mesh.
+  /// Where the limit is a surface ceiling or a feature, the proof: while the faces at the edge (a, b) that may
+  /// not change stay as they are, or in the planes where they are, some cell at this edge has a dihedral of at
+  /// most `ceiling` degrees in every mesh; not positive where one is inverted or flat in every mesh.
   double ceiling = 180;
   VertexHandle a, b;
 };

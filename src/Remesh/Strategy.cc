@@ -305,11 +305,19 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     claimed->pass.first_edge_does = false;  // what is left by then is hard
     strategy.claimed = claimed;
   }
-  if (strategy.claimed && !asked.is_frozen()) {
+  if (!strategy.claimed || asked.is_frozen()) return strategy;
+  const auto with = [&](auto&& change) {
     ImproveOptions other = options;
-    other.surface.mode = SurfaceMode::kFrozen;
-    strategy.frozen = std::make_shared<const Strategy>(resolve(other, found, n_cells));
+    change(other);
+    return std::make_shared<const Strategy>(resolve(other, found, n_cells));
+  };
+  if (asked.has_goal()) {
+    strategy.without_goal = with([](ImproveOptions& other) { other.min_dihedral.reset(); });
+    return strategy;
   }
+  strategy.frozen = with([](ImproveOptions& other) { other.surface.mode = SurfaceMode::kFrozen; });
+  if (asked.is_free())
+    strategy.flat = with([](ImproveOptions& other) { other.surface.mode = SurfaceMode::kFlat; });
   return strategy;
 }
 

@@ -444,10 +444,11 @@ struct Strategy {
   /// At any cost: that of the default run, with which it begins.
   std::shared_ptr<const Strategy> usual;
   /// That of kClaimedGoal, or of the goal where that is smaller, for what is left below it.
-  std::shared_ptr<const Strategy> claimed;  /// Where the surface may change: that of the same run with it
-                                            /// frozen, for what is left below that of
-  /// `claimed`.
-  std::shared_ptr<const Strategy> frozen;
+  std::shared_ptr<const Strategy> claimed;
+  /// Where the surface may change, for what is left below the goal of `claimed`: that of the run without a
+  /// goal, or without one that of the run with a frozen surface, and where it may change its shape, of the
+  /// run with a flat one.
+  std::shared_ptr<const Strategy> without_goal, frozen, flat;
 
   /// For cells that have fallen below a worst angle that there was, the input's or another: any gain counts,
   /// for they are few, and moves bring most of them back by little at a time.

@@ -24,8 +24,12 @@ std::array<Vec3, 4> corners(const TetMesh& mesh, CellHandle c) {
   return {mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3])};
 }
 
-double smallest_angle(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  return report_value(Metric::kMinDihedral, MinDihedral{}(a, b, c, d));
+StuckCell unproven(const TetMesh& mesh, CellHandle c) {
+  const auto p = corners(mesh, c);
+  StuckCell stuck;
+  stuck.cell = c;
+  stuck.degrees = report_value(Metric::kMinDihedral, MinDihedral{}(p[0], p[1], p[2], p[3]));
+  return stuck;
 }
 
 /// True when the wedge has cell c.
@@ -72,6 +76,16 @@ void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
 
 }  // namespace
 
+std::vector<StuckCell> proven_cells(const TetMesh& mesh, std::span<const CellHandle> cells, double degrees,
+                                    par::Policy policy) {
+  std::vector<StuckCell> proven(cells.size());
+  par::for_each(policy, cells.size(), [&](std::size_t i) {
+    proven[i] = unproven(mesh, cells[i]);
+    prove(mesh, degrees, proven[i]);
+  });
+  return proven;
+}
+
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
                                    std::span<const HalfFaceHandle> unfillable, par::Policy policy) {
   const std::vector<std::uint8_t> frozen = constrained_vertices(mesh, policy);
@@ -82,9 +96,8 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
   std::vector<StuckCell> cells(low.size());
   par::for_each(policy, low.size(), [&](std::size_t i) {
     StuckCell& stuck = cells[i];
-    stuck.cell = low[i];
+    stuck = unproven(mesh, low[i]);
     const auto p = corners(mesh, stuck.cell);
-    stuck.degrees = smallest_angle(p[0], p[1], p[2], p[3]);
     bool folds = false;
     for (VertexHandle v : mesh.cell(stuck.cell).v) {
       stuck.n_frozen_vertices += frozen[v.idx()];

@@ -119,6 +119,13 @@ void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy) {
   if (surface) surface->rebuild(mesh, policy);
 }
 
+FlatSurface::FlatSurface(const TetMesh& mesh, const SurfaceMesh& free, par::Policy policy) {
+  SurfaceOptions options = free.options();
+  options.mode = SurfaceMode::kFlat;
+  flat_ = std::make_shared<SurfaceMesh>(mesh, options, policy);
+}
+SurfaceMesh* FlatSurface::get() const { return flat_.get(); }
+
 SurfaceCopy::SurfaceCopy(const SurfaceMesh* surface) {
   if (surface) copy_ = surface->copy();
 }
@@ -156,18 +163,22 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
                     const SurfaceOptions& options, par::Policy policy) {
   std::vector<CellHandle> cells;
   for (const StuckCell& cell : stuck) cells.push_back(cell.cell);
-  const auto held = held_by_features(mesh, cells, degrees, options, policy);
+  const auto ceilings = feature_ceilings(mesh, cells, options, policy);
   for (std::size_t i = 0; i < stuck.size(); ++i) {
     StuckReason& limit = stuck[i].reason;
     if (limit == StuckReason::kFoldedSurface) continue;
     // Planes and the edges between them stay in flat mode, and with them the order of the faces at an edge.
     const bool flat = options.mode == SurfaceMode::kFlat;
     if (flat && is_proof(limit) && stuck[i].ceiling < -kPlanar) continue;
-    if (!held[i])
+    if (ceilings[i].degrees < degrees) {
+      if (limit != StuckReason::kInputFeature) limit = StuckReason::kSurfaceFeature;
+      stuck[i].ceiling = ceilings[i].degrees;
+      stuck[i].a = ceilings[i].a;
+      stuck[i].b = ceilings[i].b;
+    } else {
       limit = StuckReason::kNotFound;
-    else if (limit != StuckReason::kInputFeature)
-      limit = StuckReason::kSurfaceFeature;
-    if (limit != StuckReason::kInputFeature) stuck[i].ceiling = 180;
+      stuck[i].ceiling = 180;
+    }
   }
 }
 

@@ -44,8 +44,22 @@ class PartOfSurface {
  private:
   std::shared_ptr<SurfaceMesh> surface_;  // shared: a build without surfaces cannot delete one
 };
-/// After patches have been put back: the flat surface as it is now. Does nothing without one.
+/// After patches have been put back, or a run with a flat surface: the surface as it is now, which has to have
+/// the shape that it is to keep. Does nothing without one.
 void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
+
+/// The surface of a free run before anything has changed it, as a flat one.
+class FlatSurface {
+ public:
+  FlatSurface(const TetMesh& mesh, const SurfaceMesh& free, par::Policy policy);
+  FlatSurface(const FlatSurface&) = delete;
+  FlatSurface& operator=(const FlatSurface&) = delete;
+
+  SurfaceMesh* get() const;
+
+ private:
+  std::shared_ptr<SurfaceMesh> flat_;
+};
 
 /// The surface of a run as it is now, to be put back together with the mesh. Nothing while it is frozen.
 class SurfaceCopy {

@@ -126,9 +126,10 @@ std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Po
 }
 
 std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,
-                                          par::Policy policy) {
+                                          par::Policy policy, std::span<const CellHandle> but) {
   std::vector<std::pair<double, CellHandle>> ranked;
-  for (CellHandle c : cells_below(mesh, degrees, policy)) ranked.emplace_back(min_dihedral_of(mesh, c), c);
+  for (CellHandle c : cells_below(mesh, degrees, policy))
+    if (!std::binary_search(but.begin(), but.end(), c)) ranked.emplace_back(min_dihedral_of(mesh, c), c);
   const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(std::min(n, ranked.size()));
   std::partial_sort(ranked.begin(), end, ranked.end());
   std::vector<CellHandle> cells;

@@ -39,9 +39,9 @@ std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy);
 double share_below(const TetMesh& mesh, double degrees, par::Policy policy);
 /// These cells, ascending.
 std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy);
-/// At most n of them, the worst first.
+/// At most n of them, the worst first; none of `but`, which ascends.
 std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,
-                                          par::Policy policy);
+                                          par::Policy policy, std::span<const CellHandle> but = {});
 /// At most `degrees`, such that no more than n cells are below.
 double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy);
 /// Cells whose volume is not positive beyond rounding, ascending.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "Remesh/LastCells.hh"
+#include "Remesh/MayRise.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Refine.hh"
 #include "Remesh/Survey.hh"
@@ -55,7 +56,9 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
     const TargetAngle& target = targets[k];
     if (run.control.stopped()) return;
     if (now.smallest >= target.degrees) continue;
-    if (target.degrees > effort.in_turn_beyond && now.smallest < last) break;
+    if (target.degrees > effort.in_turn_beyond && now.smallest < last &&
+        smallest_that_may_rise(run, last) < last)
+      break;
     const double share = now.share(k);
     if (share > target.largest_share && !(has_brought && bounded)) continue;
     last = target.degrees;

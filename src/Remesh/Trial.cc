@@ -8,6 +8,8 @@
 
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/MayRise.hh"
+#include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
@@ -52,7 +54,9 @@ Trial::Trial(const Run& run, double goal) : run_(run), goal_(dihedral_decision(g
   const auto last = values.begin() + static_cast<std::ptrdiff_t>(n_poorest_) - 1;
   std::nth_element(values.begin(), last, values.end());
   low_to_reach_ = risen_from(*last);
-  worst_to_reach_ = risen_from(*std::min_element(values.begin(), last + 1));
+  const double worst = *std::min_element(values.begin(), last + 1);
+  const double may_rise = decision_value(Metric::kMinDihedral, smallest_that_may_rise(run, kLargestGoal));
+  worst_to_reach_ = risen_from(may_rise > risen_from(worst) ? may_rise : worst);
 }
 
 bool Trial::pays() const {
@@ -62,7 +66,9 @@ bool Trial::pays() const {
     return count(values, run_.policy(), [&](double value) { return value < decision; });
   };
   const std::size_t n_low = n_below(low_to_reach_);
-  if (n_below(worst_to_reach_) == 0 || n_low < n_poorest_) return true;
+  const double worst = report_value(Metric::kMinDihedral, worst_to_reach_);
+  const std::size_t n_worse = n_below(worst_to_reach_);
+  if (n_worse == 0 || n_worse == cells_at_ceiling(run_, worst).size() || n_low < n_poorest_) return true;
   if (count(values, run_.policy(), is_invalid) < n_invalid_) return true;
   const std::size_t n_missing = n_below(goal_);
   // With many more cells, a hundredth of them holds more: a percentile that has risen counts where no cell

@@ -53,6 +53,9 @@ PartOfSurface::PartOfSurface(const TetMesh&, const SurfaceMesh*, std::span<const
 SurfaceMesh* PartOfSurface::get() const { return nullptr; }
 void rebuild(SurfaceMesh*, const TetMesh&, par::Policy) {}
 
+FlatSurface::FlatSurface(const TetMesh&, const SurfaceMesh&, par::Policy) {}
+SurfaceMesh* FlatSurface::get() const { return nullptr; }
+
 SurfaceCopy::SurfaceCopy(const SurfaceMesh*) {}
 void SurfaceCopy::put_back(SurfaceMesh*) const {}
 

@@ -27,10 +27,10 @@ class View {
 
   /// True when something of the cell's surface may change, and nothing that stays is too narrow for it.
   bool lets_change(const TetMesh& mesh, CellHandle c, double degrees) const {
-    return !has_narrow_feature(mesh, c, degrees, /*for_good=*/false) && may_change(mesh, c);
+    return !(narrowest_feature(mesh, c, /*for_good=*/false).degrees < degrees) && may_change(mesh, c);
   }
-  bool holds(const TetMesh& mesh, CellHandle c, double degrees) const {
-    return has_narrow_feature(mesh, c, degrees, /*for_good=*/tilts_);
+  FeatureCeiling ceiling(const TetMesh& mesh, CellHandle c) const {
+    return narrowest_feature(mesh, c, /*for_good=*/tilts_);
   }
 
  private:
@@ -46,9 +46,10 @@ class View {
              return e && e->manifold && !e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]];
            });
   }
-  /// Is the cell at a feature edge whose faces leave it less than `degrees`? `for_good`: only features whose
-  /// faces stay as they are count.
-  bool has_narrow_feature(const TetMesh& mesh, CellHandle c, double degrees, bool for_good) const {
+  /// The feature edge of the cell whose faces leave it least. `for_good`: only features whose faces stay as
+  /// they are count.
+  FeatureCeiling narrowest_feature(const TetMesh& mesh, CellHandle c, bool for_good) const {
+    FeatureCeiling narrowest;
     const auto& v = mesh.cell(c).v;
     const std::array<double, 6> own =
         dihedrals(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
@@ -60,9 +61,10 @@ class View {
       const double left = is_inside(mesh, c, *e) ? inside : 360 - inside;
       // Where the faces lie on one another, as at the front of a crack, rounding may take all for nothing.
       // The wedge has room for the cell.
-      if ((left < own[k] ? 360 - left : left) < degrees) return true;
+      const double room = left < own[k] ? 360 - left : left;
+      if (room < narrowest.degrees) narrowest = {room, e->a, e->b};
     }
-    return false;
+    return narrowest;
   }
   bool stays(std::uint32_t face) const {
     if (arrays_.locked[face] && arrays_.fixed[face]) return true;
@@ -121,14 +123,13 @@ std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> c
   return found;
 }
 
-std::vector<std::uint8_t> held_by_features(const TetMesh& mesh, std::span<const CellHandle> cells,
-                                           double degrees, const SurfaceOptions& options,
-                                           par::Policy policy) {
-  std::vector<std::uint8_t> held(cells.size(), 0);
-  if (cells.empty() || options.mode == SurfaceMode::kFrozen) return held;
+std::vector<FeatureCeiling> feature_ceilings(const TetMesh& mesh, std::span<const CellHandle> cells,
+                                             const SurfaceOptions& options, par::Policy policy) {
+  std::vector<FeatureCeiling> ceilings(cells.size());
+  if (cells.empty() || options.mode == SurfaceMode::kFrozen) return ceilings;
   const View view(mesh, options, options.mode, policy);
-  for (std::size_t i = 0; i < cells.size(); ++i) held[i] = view.holds(mesh, cells[i], degrees) ? 1 : 0;
-  return held;
+  for (std::size_t i = 0; i < cells.size(); ++i) ceilings[i] = view.ceiling(mesh, cells[i]);
+  return ceilings;
 }
 
 }  // namespace hfr

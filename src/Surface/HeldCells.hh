@@ -23,14 +23,18 @@ enum class FreedBy : std::uint8_t {
 std::vector<FreedBy> freed_by(const TetMesh& mesh, std::span<const CellHandle> cells, double degrees,
                               const SurfaceOptions& options, par::Policy policy = {});
 
-/// For each cell, 1 when the features that options.mode keeps are proven to hold it below `degrees`: the two
-/// faces at one of its feature edges leave less than that inside, and will in every mesh that keeps the
-/// features. In flat mode this is so at every feature, in free mode, where facets may tilt, only where the
-/// faces themselves stay: both are fixed, or have no vertex that may move and only feature edges. The
-/// features are those of the mesh as it is. All 0 in frozen mode.
-std::vector<std::uint8_t> held_by_features(const TetMesh& mesh, std::span<const CellHandle> cells,
-                                           double degrees, const SurfaceOptions& options,
-                                           par::Policy policy = {});
+/// What the faces at a feature edge (a, b) leave the cells there.
+struct FeatureCeiling {
+  double degrees = 360;  ///< no cell at the edge has more; 360 without an edge
+  VertexHandle a, b;
+};
+/// For each cell, the narrowest of its feature edges that options.mode is proven to keep: the two faces there
+/// leave so much inside, and will in every mesh that keeps the features. In flat mode this is so at every
+/// feature, in free mode, where facets may tilt, only where the faces themselves stay: both are fixed, or
+/// have no vertex that may move and only feature edges. The features are those of the mesh as it is. None in
+/// frozen mode.
+std::vector<FeatureCeiling> feature_ceilings(const TetMesh& mesh, std::span<const CellHandle> cells,
+                                             const SurfaceOptions& options, par::Policy policy = {});
 
 }  // namespace hfr
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/MayRise.hh"
+
+#include <algorithm>
+
+#include "Quality/Metrics.hh"
+#include "Remesh/StuckCells.hh"
+#include "Remesh/SurfaceRun.hh"
+#include "Remesh/Survey.hh"
+#include "Remesh/Trial.hh"
+
+namespace hfr {
+namespace {
+
+/// Cells below `degrees` with the proofs of what holds them.
+std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
+  std::vector<StuckCell> low =
+      proven_cells(run.mesh, cells_below(run.mesh, degrees, run.policy()), degrees, run.policy());
+  if (run.surface) blame_features(run.mesh, low, degrees, *run.surface, run.policy());
+  return low;
+}
+
+bool is_at_ceiling(const StuckCell& cell) {
+  return is_proof(cell.reason) && cell.ceiling <= cell.degrees + kLeastRise;
+}
+
+/// Smallest dihedral of the cells below `degrees` that may rise; `degrees` where there is none.
+double smallest_below(const Run& run, double degrees) {
+  double smallest = degrees;
+  for (const StuckCell& cell : with_proofs(run, degrees))
+    if (!is_at_ceiling(cell)) smallest = std::min(smallest, cell.degrees);
+  return smallest;
+}
+
+}  // namespace
+
+std::vector<CellHandle> cells_at_ceiling(const Run& run, double degrees) {
+  std::vector<CellHandle> held;
+  for (const StuckCell& cell : with_proofs(run, degrees))
+    if (is_at_ceiling(cell)) held.push_back(cell.cell);
+  return held;
+}
+
+double smallest_that_may_rise(const Run& run, double degrees) {
+  const double worst = smallest_dihedral(run.mesh, run.policy());
+  if (worst >= degrees) return degrees;
+  // Nearly always the worst cell has no proof, and no other is looked at.
+  const double near = std::min(worst + kLeastRise, degrees);
+  const double found = smallest_below(run, near);
+  return found < near || near == degrees ? found : smallest_below(run, degrees);
+}
+
+}  // namespace hfr
