@@ -89,6 +89,7 @@ BOXES = [  # cubes along the sides, and the motion
     ("shifted", (16, 16, 16), lambda x, y, z: (x + 0.56, y, z)),
     ("sheared", (16, 16, 16), lambda x, y, z: (x + 1.2 * y, y, z)),
     ("pressed to a fifth", (16, 16, 16), lambda x, y, z: (x, y, 0.2 * z)),
+    ("pressed to two fifths", (40, 40, 40), lambda x, y, z: (x, y, 0.4 * z)),
     ("shrunk to a third", (16, 16, 16), lambda x, y, z: (0.3 * x, 0.3 * y, 0.3 * z)),
     ("turned by 90 degrees", (16, 16, 16), lambda x, y, z: (x, -z, y)),
     ("turned over", (16, 16, 16), lambda x, y, z: (x, -y, -z)),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "HalfFace/Layers.hh"
@@ -18,6 +19,8 @@ namespace hfr {
 namespace {
 
 constexpr double kUnfoldNanoseconds = 5'000;  // a vertex
+/// Share of its first moves to which those of a relaxation have to come down.
+constexpr double kHardly = 1e-3;
 
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const TetMesh& mesh) {
@@ -55,9 +58,10 @@ class Unfolding {
   Unfolding(const Run& run, const UntangleEffort& effort)
       : mesh_(run.mesh), work_(run.work), policy_(run.policy()), effort_(effort) {}
 
-  /// Moves what is within so many layers. Returns what was left in the end, before what does not help was put
-  /// back.
-  Tangle run(int layers, std::span<const CellHandle> invalid, RunControl& control, RoundCounts& counts) {
+  /// Moves what is within so many layers; `relaxed`: from where vertices lie between their neighbours,
+  /// instead of where they are. Returns what was left in the end, before what does not help was put back.
+  Tangle run(int layers, bool relaxed, std::span<const CellHandle> invalid, RunControl& control,
+             RoundCounts& counts) {
     gather(layers, invalid);
     counts.seeds = vertices_.size();
     if (vertices_.empty()) return {invalid.size(), 0};
@@ -67,6 +71,7 @@ class Unfolding {
     std::vector<Vec3> before(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) before[i] = mesh_.point(vertices_[i]);
     const int n_sweeps = effort_.sweeps_of_layer * (layers + 1);
+    if (relaxed) relax(stars, groups, layers, control);
     Tangle now = tangle(), least;
     int idle = 0;
     for (int s = 0; s < n_sweeps && now.n_invalid > 0 && idle < effort_.patience && !control.stopped(); ++s) {
@@ -121,6 +126,34 @@ class Unfolding {
       found.overlap += overlap;
     }
     return found;
+  }
+
+  /// Each vertex to the mean of its neighbours, of each as often as they share a cell, by successive
+  /// over-relaxation: what the boundary brings goes through all layers in about as many visits as there are
+  /// layers, and one takes a tenth of a visit that unfolds. Ends where vertices hardly move any more.
+  void relax(const StarTable& stars, const std::vector<std::vector<std::uint32_t>>& groups, int layers,
+             RunControl& control) {
+    const double over = 2 / (1 + std::numbers::pi / (layers + 1));  // the best for a slab of so many layers
+    std::vector<double> moved(vertices_.size());
+    double first = 0;
+    for (int s = 0; s < effort_.sweeps_of_layer * (layers + 1) && !control.stopped(); ++s) {
+      for (const auto& group : groups)
+        par::for_each(policy_, group.size(), [&](std::size_t k) {
+          const std::uint32_t i = group[k];
+          if (stars.link(i).empty()) return;
+          Vec3 sum;
+          for (HalfFaceHandle h : stars.link(i))
+            for (VertexHandle v : mesh_.halfface_vertices(h)) sum = sum + mesh_.point(v);
+          const Vec3 mean = (1.0 / (3.0 * static_cast<double>(stars.link(i).size()))) * sum;
+          const Vec3 step = over * (mean - mesh_.point(vertices_[i]));
+          mesh_.set_point(vertices_[i], mesh_.point(vertices_[i]) + step);
+          moved[i] = norm(step);
+        });
+      double all = 0;
+      for (double one : moved) all += one;  // in a fixed order
+      if (s == 0) first = all;
+      if (all <= kHardly * first) return;
+    }
   }
 
   void sweep(const StarTable& stars, const std::vector<std::vector<std::uint32_t>>& groups) {
@@ -193,24 +226,22 @@ class Unfolding {
   std::vector<CellHandle> cells_;
 };
 
-/// Wider and wider until nothing is invalid, or that brings nothing. Returns the number of invalid cells.
+/// Wider and wider until nothing is invalid, or that brings nothing. Where one layer does not do, the
+/// vertices may be far from their places, and begin between their neighbours. Returns the number of invalid
+/// cells.
 std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int iteration) {
   RunControl& control = run.control;
   std::vector<CellHandle> invalid = invalid_cells(run.mesh, run.policy());
   run.keep(invalid.empty());
-  Tangle least;
-  int idle = 0;
-  for (int layers = 1; !invalid.empty() && idle < effort.idle && !control.stopped(); layers += layers + 1) {
+  const auto unfold_within = [&](int layers, bool relaxed) {
     const double start = control.seconds();
     RoundCounts counts;
-    const Tangle left = Unfolding(run, effort).run(layers, invalid, control, counts);
-    idle = layers == 1 || left.is_less_than(least) ? 0 : idle + 1;
-    if (idle == 0) least = left;
+    const Tangle left = Unfolding(run, effort).run(layers, relaxed, invalid, control, counts);
     if (counts.winners > 0) ++run.work.clock;
     invalid = invalid_cells(run.mesh, run.policy());
     PassReport pass;
     pass.stage = "untangle";
-    pass.op = "unfold";
+    pass.op = relaxed ? "relax" : "unfold";
     pass.iteration = iteration;
     pass.rounds = pass.sub_rounds = counts.rounds;
     pass.seeds = counts.seeds;
@@ -221,6 +252,20 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
     control.add(std::move(pass));
     control.tell("untangle", iteration, invalid.size(),
                  [&] { return smallest_dihedral(run.mesh, run.policy()); });
+    return left;
+  };
+  Tangle least;
+  int idle = 0;
+  for (int layers = 1; !invalid.empty() && idle < effort.idle && !control.stopped(); layers += layers + 1) {
+    bool has_brought = false;
+    for (const bool relaxed : {true, false}) {
+      if (invalid.empty() || control.stopped() || (relaxed && layers == 1)) continue;
+      const Tangle left = unfold_within(layers, relaxed);
+      if (layers > 1 && !left.is_less_than(least)) continue;
+      least = left;
+      has_brought = true;
+    }
+    idle = has_brought ? 0 : idle + 1;
   }
   return invalid.size();
 }

@@ -290,7 +290,7 @@ std::vector<Vec3> shake(const TetMesh& mesh, double by, int step, bool boundary_
 TEST(Remesher, RepairsThatRememberTheOnesBeforeDoWhatAFirstOneWould) {
   std::size_t n_repairs = 0;
   for (const bool boundary_too : {false, true}) {
-    TetMesh mesh = box(7);
+    TetMesh mesh = box(5);
     RemesherOptions options = options_for(20, 12);
     options.improve.min_cells = mesh.n_cells() / 2;
     options.improve.max_cells = 2 * mesh.n_cells();

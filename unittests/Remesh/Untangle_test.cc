@@ -211,7 +211,7 @@ TEST(Untangle, ThreadsMakeNoDifference) {
 TEST(MaxCells, NoVertexIsInsertedBeyondIt) {
   std::size_t free_cells = 0;
   for (std::uint64_t s = 1; s <= 4; ++s) {
-    const TetMesh start = jittered(5, 0.3, s);
+    const TetMesh start = jittered(4, 0.3, s);
     ImproveOptions options = serial();
     options.raise_min_dihedral = true;
     TetMesh free = start;
