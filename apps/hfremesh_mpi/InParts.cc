@@ -36,6 +36,7 @@ struct PartsLine {
   double jitter = 0.2;
   double amplitude = 0;
   double min_dihedral = 0;
+  std::string ops, rounds;
   bool no_insert = false;
   std::size_t min_cells = 0, max_cells = 0;
   std::uint64_t seed = 2013;
@@ -62,9 +63,17 @@ void add_options(Command command, PartsLine& line) {
       .option(
           "--min-dihedral", line.min_dihedral,
           "Goal for the smallest dihedral angle: the cells that miss it are worked on by edge removal, face "
-          "swaps, vertex collapse, smoothing and new vertices")
+          "swaps, vertex collapse, smoothing and new vertices, and where --ops has it by cluster search")
       .type_name("DEG")
       .check(real_number(0, 70.5, false));
+  command.option("--ops", line.ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
+      .type_name("LIST")
+      .shows_default("all but cluster");
+  command
+      .option("--rounds", line.rounds,
+              "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
+      .type_name("NAME")
+      .shows_default("auto");
   command.flag("--no-insert", line.no_insert, "No new vertices");
   command.option("--min-cells", line.min_cells, "No vertex is removed below N cells; 0: 81 % of the input's")
       .type_name("N")
@@ -99,6 +108,24 @@ void add_options(Command command, PartsLine& line) {
       .one_of({"coordinates", "numbers"});
 }
 
+/// Throws Failure for a name that there is not.
+ImproveOptions improve_options(const PartsLine& line) {
+  ImproveOptions options;
+  options.min_dihedral = line.min_dihedral;
+  options.polish_only = true;
+  try {
+    if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
+    if (!line.rounds.empty()) options.rounds = rounds_from_name(line.rounds);
+  } catch (const InvalidInput& error) {
+    throw Failure(ExitCode::kUsage, std::string("parts: ") + error.what());
+  }
+  if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
+  options.min_cells = line.min_cells;
+  options.max_cells = line.max_cells;
+  options.policy = par::Policy{line.threads_each};
+  return options;
+}
+
 /// Throws Failure for what no run can have.
 void require_sound(const PartsLine& line) {
   const auto extension = [](const std::string& name) {
@@ -116,6 +143,7 @@ void require_sound(const PartsLine& line) {
   const std::string out = extension(line.output);
   if (!line.output.empty() && out != ".pvtu" && out != ".vtu")
     refuse(line.output + ": meshes in parts are written as .pvtu or .vtu");
+  improve_options(line);
 }
 
 class PartsRun {
@@ -189,19 +217,10 @@ class PartsRun {
   }
 
   mpi::PartsResult improve() {
-    ImproveOptions options;
-    options.min_dihedral = line_.min_dihedral;
-    options.polish_only = true;
-    if (line_.no_insert) options.ops = without(options.ops, Ops::kInsert);
-    options.min_cells = line_.min_cells;
-    options.max_cells = line_.max_cells;
-    options.policy = policy();
-    const mpi::PartsResult result = mpi::improve(mesh_, options);
+    const mpi::PartsResult result = mpi::improve(mesh_, improve_options(line_));
     say_found("improved", result.after);
     if (!result.goal_reached)
       say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), line_.min_dihedral);
-    for (const std::string& name : result.left_out)
-      say("  left out, since meshes in parts do not have it yet: {}", name);
     if (result.has_fallen) say("  the smallest angle has fallen; hfremesh would have put the input back");
     return result;
   }

@@ -20,17 +20,13 @@ class Packer {
  public:
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void put(const T& value) {
-    const auto* bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof(T));
-  }
+  void put(const T& value) { append(&value, sizeof(T)); }
   /// How many there are, then the values.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void put_all(std::span<const T> values) {
     put(static_cast<std::uint64_t>(values.size()));
-    const auto* bytes = reinterpret_cast<const std::byte*>(values.data());
-    bytes_.insert(bytes_.end(), bytes, bytes + values.size_bytes());
+    append(values.data(), values.size_bytes());
   }
   template <class T>
   void put_all(const std::vector<T>& values) {
@@ -41,6 +37,12 @@ class Packer {
   std::vector<std::byte>& bytes() { return bytes_; }
 
  private:
+  void append(const void* from, std::size_t n) {
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + n);
+    if (n > 0) std::memcpy(bytes_.data() + end, from, n);
+  }
+
   std::vector<std::byte> bytes_;
 };
 

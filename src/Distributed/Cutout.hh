@@ -30,6 +30,8 @@ class Cutout {
     return v.idx() < vertices_.size() ? vertices_[v.idx()].number : first_new_ + (v.idx() - vertices_.size());
   }
   std::uint64_t number(CellHandle c) const { return cell_number_[c.idx()]; }
+  /// A vertex that has come since.
+  bool is_new(VertexHandle v) const { return v.idx() >= vertices_.size(); }
   CellHandle cell_at(std::uint64_t number) const;
   /// A new deleted slot, with that number.
   CellHandle add_slot(std::uint64_t number);

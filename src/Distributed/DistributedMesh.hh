@@ -122,6 +122,7 @@ class DistributedMesh {
   }
   /// Free slots of the whole, in the order of TetMesh::free_cells(): the same on all ranks.
   std::vector<std::uint64_t>& free_slots() { return free_; }
+  const std::vector<std::uint64_t>& free_slots() const { return free_; }
   std::uint64_t& n_slots() { return n_slots_; }
   /// Vertices have been added to the whole; their numbers are the next ones.
   void add_numbers(std::uint64_t n) { n_vertices_ += n; }

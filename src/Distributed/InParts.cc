@@ -5,7 +5,6 @@
 #include "Distributed/InParts.hh"
 
 #include <algorithm>
-#include <set>
 
 #include "Distributed/PartPasses.hh"
 #include "Quality/FoldedFaces.hh"
@@ -25,7 +24,8 @@ class Residents : public Ranks {
 
   bool keep_mesh() const override { return true; }
   bool can_do(PassKind kind, Metric metric) const override {
-    return PartPasses::can_do(kind == PassKind::kInsert ? PassKind::kEdge : kind, metric);
+    const bool is_on_cutouts = kind == PassKind::kInsert || kind == PassKind::kCluster;
+    return PartPasses::can_do(is_on_cutouts ? PassKind::kEdge : kind, metric);
   }
   bool can_take(const TetMesh&, const Workspace&) const override { return true; }
   std::size_t least_cells(std::size_t) const override { return 0; }
@@ -34,22 +34,15 @@ class Residents : public Ranks {
   RoundCounts dig(const Dig& dig, std::vector<std::uint64_t>& waiting) override {
     return passes_.dig(dig, waiting);
   }
+  RoundCounts search(const Search& search) override { return passes_.search(search); }
   Tally tally(double below) override { return passes_.tally(below); }
   std::size_t n_cells() const override { return static_cast<std::size_t>(mesh_.n_cells()); }
   void bring_back(TetMesh&, Workspace&) override {}
-  void leave_out(PassKind kind) override {
-    if (kind == PassKind::kInsert) left_out_.insert("insertion of vertices");
-    if (kind == PassKind::kCluster) left_out_.insert("cluster search");
-    if (kind == PassKind::kMixed) left_out_.insert("kinds in one selection");
-  }
-
-  std::vector<std::string> left_out() const { return {left_out_.begin(), left_out_.end()}; }
 
  private:
   DistributedMesh& mesh_;
   std::uint64_t n_rounds_ = 0;
   PartPasses passes_;
-  std::set<std::string> left_out_;
 };
 
 /// What of the options is not there in parts; empty where all is.
@@ -62,7 +55,6 @@ std::string reason_against(const ImproveOptions& options) {
     return "fixed patches, faces, edges and vertices";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
-  if (options.rounds == Rounds::kMixed) return "kinds of operators in one selection";
   if (options.coarsen) return "coarsening";
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
   if (options.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
@@ -183,7 +175,6 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   result.changed = control.n_changes() > 0;
   result.goal_reached = result.after.n_below_goal == 0 && result.after.n_invalid == 0;
   result.passes = std::move(control.passes());
-  result.left_out = residents.left_out();
   result.seconds = control.seconds();
   return result;
 }

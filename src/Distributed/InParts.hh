@@ -53,16 +53,16 @@ struct PartsResult {
   /// Seen only where an obtuse angle was the worst.
   bool has_fallen = false;
   std::vector<PassReport> passes;
-  std::vector<std::string> left_out;  ///< names of passes that would have been asked for and are not there
   double seconds = 0;
 };
 /// The polish towards options.min_dihedral: edge removal, removal of faces and of fans, vertex collapse,
-/// smoothing and insertion on the cells that miss it. With options.polish_only, hfr::improve() of the whole
-/// mesh gives the same bits, for each number of ranks and threads. For insertion rank 0 holds what the cells
-/// that are left below the goal then have round them, some hundred cells each.
+/// smoothing, insertion and cluster search on the cells that miss it, as far as options.ops has them. With
+/// options.polish_only, hfr::improve() of the whole mesh gives the same bits, for each number of ranks and
+/// threads. For insertion and cluster search rank 0 holds what the cells that are left below the goal then
+/// have round them, some hundred cells each.
 /// Throws InvalidInput, naming it, for what is not there in parts: runs without polish_only, a surface that
-/// may change, fixed things, devices, time limits, callbacks, maps, other smoothers, mixed rounds; and where
-/// the mesh has cells to untangle or a boundary that lies on itself.
+/// may change, fixed things, devices, time limits, callbacks, maps, other smoothers; and where the mesh has
+/// cells to untangle or a boundary that lies on itself.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

@@ -3,22 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <span>
 #include <unordered_set>
-#include <utility>
 
 #include "Distributed/Buffer.hh"
-#include "Distributed/Cutout.hh"
-#include "Distributed/PartRound.hh"
+#include "Distributed/CutoutRound.hh"
 #include "Operators/VertexInsertion.hh"
-#include "Scheduler/Round.hh"
-#include "Scheduler/RoundPlace.hh"
 
 namespace hfr::mpi {
 namespace {
-
-constexpr std::uint8_t kDeeper = 2;  // more layers round a cell whose cavity has come to the rim
 
 /// A cell below the goal, as rank 0 sees it.
 struct Poor {
@@ -26,111 +19,6 @@ struct Poor {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 4> v{};
 };
-
-/// What a round does to the slots of the whole.
-struct SlotChange {
-  std::uint64_t n_taken = 0;     ///< from the back of the free list
-  std::uint64_t n_fresh = 0;     ///< beyond it, at the end of all slots
-  std::uint64_t n_vertices = 0;  ///< that come
-};
-
-/// What of one winner the other ranks need.
-struct Change {
-  std::vector<std::uint64_t> removed;
-  std::vector<DistributedMesh::VertexRecord> vertices;
-  std::vector<DistributedMesh::CellRecord> cells;
-  std::vector<LabelRecord> labels;
-};
-
-/// The round on a cutout. Slots are those of the whole.
-class CutoutRound : public RoundPlace {
- public:
-  CutoutRound(Cutout& cutout, std::span<const std::uint64_t> free, std::uint64_t n_slots)
-      : cutout_(cutout), free_(free), n_slots_(n_slots) {}
-
-  std::uint64_t number(VertexHandle v) const override { return cutout_.number(v); }
-  std::uint64_t number(CellHandle c) const override { return cutout_.number(c); }
-  CellHandle slot(std::uint64_t number) override { return cutout_.add_slot(number); }
-  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain) override;
-  void finish(std::span<const Commit> commits) override;
-  RoundCounts total(RoundCounts mine) override { return mine; }
-
-  /// Whether an evaluation has come to the rim: then nothing was selected.
-  bool has_met_rim() const { return has_met_rim_; }
-  const SlotChange& slots() const { return slots_; }
-  const std::vector<std::uint64_t>& freed() const { return freed_; }
-  const std::vector<Change>& changes() const { return changes_; }
-
- private:
-  Cutout& cutout_;
-  std::span<const std::uint64_t> free_;  // of the whole, before the round
-  std::uint64_t n_slots_;
-  bool has_met_rim_ = false;
-  SlotChange slots_;
-  std::vector<std::uint64_t> freed_;  // in the order in which they go to the free list
-  std::vector<Change> changes_;
-};
-
-/// In rank order, a candidate wins when no cell of its scope is taken and the bounds have room for it. Slots
-/// as PartRound has them.
-auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain)
-    -> Selected {
-  Selected selected;
-  const auto& met = cutout_.rim().has_met;
-  has_met_rim_ = std::find(met.begin(), met.end(), 1) != met.end();
-  if (has_met_rim_) return selected;
-  static_cast<void>(may_lose);  // no vertex goes
-  std::vector<std::uint8_t> is_taken(cutout_.mesh().n_cells(), 0);
-  std::vector<std::size_t> won;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto scope = candidates[i].scope;
-    if (std::any_of(scope.begin(), scope.end(), [&](CellHandle c) { return is_taken[c.idx()] != 0; }))
-      continue;
-    for (CellHandle c : scope) is_taken[c.idx()] = 1;
-    won.push_back(i);
-  }
-  const auto gain = [&](std::size_t i) {
-    const PlanBase& plan = *candidates[i].plan;
-    return plan.n_created > plan.n_removed ? std::size_t{plan.n_created - plan.n_removed} : 0;
-  };
-  std::vector<std::uint64_t> back;
-  for (std::size_t i : won) {
-    if (gain(i) > may_gain) {
-      ++selected.held_back;
-      continue;
-    }
-    may_gain -= gain(i);
-    const PlanBase& plan = *candidates[i].plan;
-    Winner winner{i, candidates[i].seed, {}};
-    for (std::size_t k = plan.n_removed; k < plan.n_created; ++k)
-      winner.fresh.push_back(slots_.n_taken < free_.size() ? free_[free_.size() - ++slots_.n_taken]
-                                                           : n_slots_ + slots_.n_fresh++);
-    for (std::size_t k = plan.n_created; k < plan.n_removed; ++k)
-      back.push_back(cutout_.number(candidates[i].scope[k]));
-    ++slots_.n_vertices;
-    selected.winners.push_back(std::move(winner));
-  }
-  freed_.assign(back.rbegin(), back.rend());
-  return selected;
-}
-
-void CutoutRound::finish(std::span<const Commit> commits) {
-  for (const Commit& commit : commits) {
-    Change& change = changes_.emplace_back();
-    for (CellHandle c : commit.removed) change.removed.push_back(cutout_.number(c));
-    std::vector<VertexHandle> vertices;
-    for (CellHandle c : commit.created) {
-      change.cells.push_back(cutout_.record(c));
-      const auto& v = cutout_.mesh().cell(c).v;
-      vertices.insert(vertices.end(), v.begin(), v.end());
-    }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (VertexHandle v : vertices) change.vertices.push_back(cutout_.record(v));
-    change.labels = cutout_.labels_of(commit.created, vertices);
-    change.vertices.back().owner = change.vertices.front().owner;  // the new one is the last of all
-  }
-}
 
 /// The listed and the waiting cells that are still poor, on rank 0, in the order of numbers.
 std::vector<Poor> gather_poor(DistributedMesh& parts, double below, const Worklist& list,
@@ -159,13 +47,6 @@ std::vector<Poor> gather_poor(DistributedMesh& parts, double below, const Workli
   return poor;
 }
 
-/// What rank 0 has packed, on all of them.
-std::vector<std::byte> told_by_first(Comm& comm, const Packer& said) {
-  std::vector<Packer> to(comm.n_ranks());
-  if (comm.rank() == 0) std::fill(to.begin(), to.end(), said);
-  return std::move(comm.exchange(to).front().bytes);
-}
-
 /// The worst cells of which no two share a vertex get their turn now; the others wait. Both ascending.
 struct Turns {
   std::vector<std::uint64_t> now, waiting;
@@ -192,99 +73,19 @@ Turns take_turns(Comm& comm, std::vector<Poor> poor) {
   return turns;
 }
 
-/// Rank 0's part of the round. Packs what all ranks have to know: the cells whose cavities came to the rim,
-/// and where there are none of these, what the round has done.
 template <class M>
-void run_on_cutout(DistributedMesh& parts, Cutout& cutout, const Ranks::Dig& dig, const Turns& turns,
-                   const M& metric, Packer& said) {
-  using Op = VertexInsertion<M>;
-  CutoutRound place(cutout, parts.free_slots(), parts.n_slots());
-  RoundOptions options{par::Policy{dig.look.threads}, /*check_links=*/false, dig.look.seed};
-  options.may_lose = static_cast<std::size_t>(dig.look.may_lose);
-  options.may_gain = static_cast<std::size_t>(dig.look.may_gain);
-  options.place = &place;
-  Op op{metric, cutout.work().quality, dig.gain};
-  op.poor_below = dig.look.below;
-  op.rim = &cutout.rim();
-  if (turns.now.size() + turns.waiting.size() > dig.many) {
-    op.max_sites = static_cast<std::size_t>(dig.sites_of_many);
-    op.least_promise = dig.promise_of_many;
-  }
-  std::vector<typename Op::Seed> seeds;
-  for (std::uint64_t number : turns.now) seeds.emplace_back(cutout.cell_at(number));
-  Round<Op> round(cutout.mesh(), cutout.work(), options);
-  const RoundCounts counts = round.run(op, seeds);
-  std::vector<std::uint64_t> met;
-  for (const typename Op::Seed& seed : seeds)
-    if (cutout.rim().has_met[seed.cell.idx()] != 0) met.push_back(cutout.number(seed.cell));
-  said.put_all(met);
-  if (place.has_met_rim()) return;
-  said.put(counts);
-  said.put(place.slots());
-  said.put_all(place.freed());
-  said.put(static_cast<std::uint64_t>(place.changes().size()));
-  for (const Change& change : place.changes()) {
-    said.put_all(change.removed);
-    said.put_all(change.vertices);
-    said.put_all(change.cells);
-    said.put_all(change.labels);
-  }
-}
-
-/// What rank 0 has said of the round, into this part.
-RoundCounts follow(DistributedMesh& parts, Unpacker& in) {
-  const auto counts = in.get<RoundCounts>();
-  const auto slots = in.get<SlotChange>();
-  const auto freed = in.get_all<std::uint64_t>();
-  std::vector<std::uint64_t>& free = parts.free_slots();
-  free.resize(free.size() - slots.n_taken);
-  free.insert(free.end(), freed.begin(), freed.end());
-  parts.n_slots() += slots.n_fresh;
-  parts.add_numbers(slots.n_vertices);
-  ++parts.work().clock;
-  std::vector<DistributedMesh::VertexRecord> vertices;
-  std::vector<DistributedMesh::CellRecord> cells;
-  std::vector<LabelRecord> labels;
-  std::vector<CellHandle> gone;
-  for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
-    const auto removed = in.get_all<std::uint64_t>();
-    const auto v = in.get_all<DistributedMesh::VertexRecord>();
-    const auto c = in.get_all<DistributedMesh::CellRecord>();
-    const auto l = in.get_all<LabelRecord>();
-    // Whoever has to hold one of the new cells holds one of those that they stand for.
-    const std::size_t n_before = gone.size();
-    for (std::uint64_t number : removed)
-      if (const CellHandle held = parts.cell_at(number); held.is_valid() && !parts.part().is_deleted(held))
-        gone.push_back(held);
-    if (gone.size() == n_before) continue;
-    vertices.insert(vertices.end(), v.begin(), v.end());
-    cells.insert(cells.end(), c.begin(), c.end());
-    labels.insert(labels.end(), l.begin(), l.end());
-  }
-  for (CellHandle c : gone) parts.detach(c);
-  if (!gone.empty()) parts.apply(vertices, cells, labels);
-  PartRound(parts).bring_near(!gone.empty());
-  return counts;
-}
-
-template <class M>
-RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& turns,
-                   std::uint8_t first_depth, const M& metric) {
-  std::vector<std::uint8_t> depth(turns.now.size(), first_depth);
-  for (;;) {
-    Packer said;
-    {
-      Cutout cutout(parts, turns.now, depth);
-      if (parts.comm().rank() == 0) run_on_cutout(parts, cutout, dig, turns, metric, said);
+RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& turns, std::uint8_t depth,
+                   const M& metric) {
+  return round_on_cutout(parts, dig.look, turns.now, depth, [&](Cutout& cutout) {
+    VertexInsertion<M> op{metric, cutout.work().quality, dig.gain};
+    op.poor_below = dig.look.below;
+    op.rim = &cutout.rim();
+    if (turns.now.size() + turns.waiting.size() > dig.many) {
+      op.max_sites = static_cast<std::size_t>(dig.sites_of_many);
+      op.least_promise = dig.promise_of_many;
     }
-    const std::vector<std::byte> bytes = told_by_first(parts.comm(), said);
-    Unpacker in(bytes);
-    const auto met = in.get_all<std::uint64_t>();
-    if (met.empty()) return follow(parts, in);
-    for (std::uint64_t number : met)
-      depth[static_cast<std::size_t>(std::ranges::lower_bound(turns.now, number) - turns.now.begin())] +=
-          kDeeper;
-  }
+    return op;
+  });
 }
 
 }  // namespace

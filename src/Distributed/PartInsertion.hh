@@ -11,11 +11,8 @@
 
 namespace hfr::mpi {
 
-/// A round of VertexInsertion over a mesh in parts, with the bits that it has in shared memory. What the
-/// cells that get a vertex now have round them comes together on rank 0 (see Cutout), which evaluates,
-/// selects and commits; where a cavity comes to the rim, again with more layers. What has changed goes to all
-/// ranks, and each takes what lies near its own vertices. A new vertex belongs to the owner of the vertex
-/// with the smallest number among its neighbours.
+/// A round of VertexInsertion over a mesh in parts, with the bits that it has in shared memory: see
+/// round_on_cutout(). Rank 0 chooses the cells that get a vertex now.
 ///
 /// `list`: cells of this part that are to be looked at. `waiting`: numbers of cells that share a vertex with
 /// a worse one, for the round after, ascending; those of the round before count as listed. `depth`: layers

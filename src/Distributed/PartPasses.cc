@@ -5,11 +5,15 @@
 #include <array>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
+#include "Distributed/LookOptions.hh"
 #include "Distributed/PartInsertion.hh"
 #include "Distributed/PartRound.hh"
+#include "Distributed/PartSearch.hh"
 #include "Distributed/PartSeeds.hh"
 #include "Distributed/PartSmoothing.hh"
+#include "Operators/AnyOf.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/FanMerge.hh"
@@ -18,21 +22,11 @@
 #include "Operators/VertexCollapse.hh"
 
 namespace hfr::mpi {
-namespace {
-
-RoundOptions options(const Ranks::Look& look, PartRound& place) {
-  RoundOptions options{par::Policy{look.threads}, /*check_links=*/false, look.seed};
-  options.may_lose = static_cast<std::size_t>(look.may_lose);
-  options.may_gain = static_cast<std::size_t>(look.may_gain);
-  return place.options(options);
-}
-
-}  // namespace
-
 bool PartPasses::can_do(PassKind kind, Metric metric) {
   return (metric == Metric::kMinSine || metric == Metric::kMinDihedral) &&
          (kind == PassKind::kEdge || kind == PassKind::kFace || kind == PassKind::kMultiFace ||
-          kind == PassKind::kNode || kind == PassKind::kSmooth || kind == PassKind::kFan);
+          kind == PassKind::kNode || kind == PassKind::kSmooth || kind == PassKind::kFan ||
+          kind == PassKind::kMixed);
 }
 
 Ranks::Tally PartPasses::tally(double below) {
@@ -62,6 +56,13 @@ RoundCounts PartPasses::run(const Ranks::Look& look) {
 RoundCounts PartPasses::dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting) {
   const Comm::InPhase phase(parts_.comm(), Phase::kEvaluate);
   const RoundCounts counts = insert_in_parts(parts_, dig, listed(dig.look), waiting);
+  n_rounds_ += counts.rounds;
+  return counts;
+}
+
+RoundCounts PartPasses::search(const Ranks::Search& search) {
+  const Comm::InPhase phase(parts_.comm(), Phase::kEvaluate);
+  const RoundCounts counts = search_in_parts(parts_, search, listed(search.look));
   n_rounds_ += counts.rounds;
   return counts;
 }
@@ -98,10 +99,12 @@ RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
       return round<MultiFaceRemoval<M>>(look, {metric, work.quality}, list);
     case PassKind::kFan:
       return round<FanMerge<M>>(look, {metric, work.quality}, list);
+    case PassKind::kMixed:
+      return mixed(look, metric, list);
     case PassKind::kNode: {
       using Op = VertexCollapse<M>;
       PartRound place(parts_);
-      Round<Op> round(parts_.part(), work, options(look, place));
+      Round<Op> round(parts_.part(), work, options_of(look, place));
       return round.run(Op{metric, work.quality, work.frozen}, removable_seeds(parts_, list, policy));
     }
     default: {
@@ -115,10 +118,36 @@ RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
   }
 }
 
+/// As PassRunner has it.
+template <class M>
+RoundCounts PartPasses::mixed(const Ranks::Look& look, const M& metric, const Worklist& list) {
+  using Op = AnyOf<EdgeRemoval<M>, MultiFaceRemoval<M>, VertexCollapse<M>>;
+  using Seed = typename Op::Seed;
+  const Workspace& work = parts_.work();
+  const Op op{{EdgeRemoval<M>{metric, work.quality}, MultiFaceRemoval<M>{metric, work.quality},
+               VertexCollapse<M>{metric, work.quality, work.frozen}}};
+  const std::size_t n_cells = list.cells().size();
+  std::vector<VertexHandle> vertices;
+  if (has(look.ops, Ops::kNode)) vertices = removable_seeds(parts_, list, par::Policy{look.threads});
+  PartRound place(parts_);
+  Round<Op> round(parts_.part(), parts_.work(), options_of(look, place));
+  return round.run(op, n_cells + vertices.size(), [&](std::size_t i, auto&& visit) {
+    if (i >= n_cells) {
+      visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
+      return;
+    }
+    const CellHandle c(list.cells()[i]);
+    if (has(look.ops, Ops::kEdge))
+      visit_edge_seeds(parts_, list, c, [&](EdgeHandle e) { visit(Seed(std::in_place_index<0>, e)); });
+    if (has(look.ops, Ops::kFace))
+      visit_face_seeds(parts_, list, c, [&](HalfFaceHandle h) { visit(Seed(std::in_place_index<1>, h)); });
+  });
+}
+
 template <class Op>
 RoundCounts PartPasses::round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does) {
   PartRound place(parts_);
-  Round<Op> round(parts_.part(), parts_.work(), options(look, place));
+  Round<Op> round(parts_.part(), parts_.work(), options_of(look, place));
   return round.run(op, list.cells().size(), [&](std::size_t i, auto&& visit) {
     const CellHandle c(list.cells()[i]);
     if constexpr (IsCellAndEdge<typename Op::Seed>) {

@@ -23,6 +23,8 @@ class PartPasses {
   RoundCounts run(const Ranks::Look& look);
   /// A round of insertion, on rank 0: see PartInsertion.
   RoundCounts dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting);
+  /// A round of cluster search, likewise: see PartSearch.
+  RoundCounts search(const Ranks::Search& search);
   /// Of all cells of the whole.
   Ranks::Tally tally(double below);
 
@@ -30,6 +32,8 @@ class PartPasses {
   Worklist listed(const Ranks::Look& look);
   template <class M>
   RoundCounts pass(const Ranks::Look& look, const M& metric);
+  template <class M>
+  RoundCounts mixed(const Ranks::Look& look, const M& metric, const Worklist& list);
   template <class Op>
   RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does = false);
   std::uint64_t n_own(std::span<const Index> cells) const;

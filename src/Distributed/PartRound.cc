@@ -28,7 +28,7 @@ struct Announcement {
   std::uint64_t key = 0;
   SeedName name{};
   std::uint64_t seed_cell = kNoNumber, seed_vertex = kNoNumber;
-  std::uint32_t seed_place = 0, number = 0, n_cells = 0;
+  std::uint32_t seed_place = 0, seed_kind = 0, number = 0, n_cells = 0;
 };
 
 struct Decision {
@@ -82,6 +82,7 @@ bool PartRound::announce(std::span<const Candidate> candidates) {
                    kNoNumber,
                    kNoNumber,
                    candidate.seed.place,
+                   candidate.seed.kind,
                    static_cast<std::uint32_t>(i),
                    static_cast<std::uint32_t>(candidate.scope.size())};
     if (candidate.seed.cell.is_valid()) a.seed_cell = mesh_.number(candidate.seed.cell);
@@ -117,6 +118,7 @@ void PartRound::hear(const Comm::Message& message) {
     entry.home = message.from;
     entry.number_at_home = a.number;
     entry.seed.place = a.seed_place;
+    entry.seed.kind = a.seed_kind;
     entry.seed_number = a.seed_cell != kNoNumber ? a.seed_cell : a.seed_vertex;
     if (a.seed_cell != kNoNumber) entry.seed.cell = mesh_.cell_at(a.seed_cell);
     if (a.seed_vertex != kNoNumber) entry.seed.vertex = mesh_.vertex_at(a.seed_vertex);
@@ -334,12 +336,18 @@ void PartRound::finish(std::span<const Commit> commits) {
   bring_near(is_touched, commits);
 }
 
-void PartRound::bring_near(bool is_touched, std::span<const Commit> commits) {
-  if (is_touched) mesh_.update_zone();
-  const bool has_come =
-      exchange(is_touched ? new_cells() : std::vector<Push>(comm_.n_ranks()), commits, false).has_come;
-  if (has_come) mesh_.update_zone();
-  if (!is_touched && !has_come) return;
+/// In the first step each rank knows all cells round its own vertices, in the second also those round their
+/// neighbours, hence whom its own are within two edges of.
+void PartRound::bring_near(bool is_touched, std::span<const Commit> commits, bool is_far) {
+  bool is_new = is_touched;
+  for (int step = is_far ? 2 : 1; step > 0; --step) {
+    if (is_new) mesh_.update_zone();
+    is_new = exchange(is_new ? new_cells() : std::vector<Push>(comm_.n_ranks()), commits, false).has_come;
+    is_touched = is_touched || is_new;
+    if (step > 1) mesh_.note_told();
+  }
+  if (is_new) mesh_.update_zone();
+  if (!is_touched) return;
   mesh_.prune();
   mesh_.note_told();
 }

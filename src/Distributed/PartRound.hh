@@ -37,8 +37,10 @@ class PartRound : public RoundPlace {
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;
   /// After cells have come and gone here by DistributedMesh::apply(): brings what is near to others' vertices
-  /// now to whom it is, and drops what no longer is. All ranks take part.
-  void bring_near(bool is_touched, std::span<const Commit> commits = {});
+  /// now to whom it is, and drops what no longer is. Edges that have come join vertices that were within two
+  /// edges of each other; where they may join others, `is_far`: then what is near is found in two steps. All
+  /// ranks take part.
+  void bring_near(bool is_touched, std::span<const Commit> commits = {}, bool is_far = false);
 
  private:
   enum class State : std::uint8_t { kUndecided, kWon, kLost };

@@ -358,8 +358,9 @@ auto ClusterSearch<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) cons
     const Vec3 o = mesh.point(v[0]);
     volume6 += dot(mesh.point(v[1]) - o, cross(mesh.point(v[2]) - o, mesh.point(v[3]) - o));
     old_worst = std::min(old_worst, quality[c.idx()]);
+    return !rim || !rim->look(cells, c);  // what lies behind the rim is not known here
   };
-  take(seed.cell);
+  if (!take(seed.cell)) return std::nullopt;
   for (bool more = true; more;) {
     const std::size_t n_points = points.size();
     // All cells between points that are in, then the next point.
@@ -394,7 +395,7 @@ auto ClusterSearch<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) cons
     if (!more) break;
     cells = wider;
     points = wider_points;
-    take(cells.cells()[cells.cells().size() - 1]);
+    if (!take(cells.cells()[cells.cells().size() - 1])) break;
   }
   return std::nullopt;
 }

@@ -36,6 +36,7 @@ struct ClusterSearch {
   double gain = 1.0 + 1e-9;
   std::size_t max_points = 20;   ///< of the cavity, at most kMaxPoints
   std::size_t max_nodes = 4000;  ///< branches looked into for one cavity
+  const CutRim* rim = nullptr;   ///< where the mesh is cut out of a larger one
 
   /// The cell, or for the seed of a plan all that go.
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;

@@ -158,9 +158,11 @@ struct CutRim {
   /// By cell: 1 where something that grew from there has come to the rim. Written from several threads.
   mutable std::vector<std::uint8_t> has_met;
 
-  void look(const GrownCells& cells, CellHandle taken) const {
-    if (is_rim[taken.idx()] == 0) return;
+  /// Whether the cell that was taken in lies there.
+  bool look(const GrownCells& cells, CellHandle taken) const {
+    if (is_rim[taken.idx()] == 0) return false;
     par::atomic(has_met[cells.growth().first.idx()]).store(1, std::memory_order_relaxed);
+    return true;
   }
 };
 

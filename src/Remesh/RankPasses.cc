@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
+
 namespace hfr {
 
 RankPasses::RankPasses(PassState& state, Metric metric)
@@ -31,10 +33,7 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
 std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, const Turn& turn) {
   Run& run = state_.run_;
   if (!takes(kind, turn)) {
-    if (run.is_part()) {
-      run.ranks->leave_out(kind);
-      return 0;
-    }
+    if (run.is_part()) throw InternalError("a pass of a run that meshes in parts do not have");
     bring_back();
     return std::nullopt;
   }
@@ -45,6 +44,7 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
   const PassEffort& effort = run.strategy.pass;
   Ranks::Look look{kind, metric_, turn.focus.below, 0, effort.seed, 0, 0, run.policy().threads};
   if (effort.first_edge_does) look.first_edge_beyond = effort.few_seeds;
+  look.ops = turn.removes_vertices ? effort.ops : without(effort.ops, Ops::kNode);
   RoundCounts total;
   std::size_t first = 0;
   const int most = kind == PassKind::kSmooth ? 1 : effort.rounds;
@@ -52,7 +52,10 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
     look.since = std::exchange(state_.looked_[static_cast<std::size_t>(kind)], run.work.clock);
     look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
     look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
-    const RoundCounts counts = run.ranks->pass(look);
+    const RoundCounts counts =
+        kind == PassKind::kCluster
+            ? run.ranks->search({look, effort.least_gain, effort.search_points, effort.search_nodes})
+            : run.ranks->pass(look);
     if (counts.rounds == 0) break;
     if (!run.is_part()) ++run.work.clock;  // the round has, of its own workspace
     if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
@@ -69,10 +72,8 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
 
 std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) {
   Run& run = state_.run_;
-  if (!takes(PassKind::kInsert, turn)) {
-    run.ranks->leave_out(PassKind::kInsert);
-    return 0;
-  }
+  if (!takes(PassKind::kInsert, turn))
+    throw InternalError("a pass of a run that meshes in parts do not have");
   if (!run.has_room()) {
     run.findings.note_cell_bound(run.bounds);
     return 0;

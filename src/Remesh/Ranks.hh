@@ -10,6 +10,7 @@
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
 #include "Quality/Metric.hh"
+#include "Remesh/Options.hh"
 #include "Scheduler/Workspace.hh"
 
 namespace hfr {
@@ -33,6 +34,8 @@ class Ranks {
     /// Where more cells are listed over all, the first edge of each does that leaves it at `below`; see
     /// PassEffort::first_edge_does.
     std::uint64_t first_edge_beyond = std::numeric_limits<std::uint64_t>::max();
+    /// Of a mixed pass: the kinds that compete.
+    Ops ops = Ops::kNone;
   };
   /// One round of insertion over such cells and those that wait from the round before.
   struct Dig {
@@ -42,6 +45,12 @@ class Ranks {
     std::uint64_t many = 0, sites_of_many = 0;
     double promise_of_many = 0;
   };
+  /// One round of cluster search over such cells.
+  struct Search {
+    Look look;
+    double gain = 1;  ///< this and the others: of ClusterSearch
+    std::uint64_t max_points = 0, max_nodes = 0;
+  };
   struct Tally {
     std::size_t n_invalid = 0, n_below = 0;
     double worst = 0;
@@ -49,10 +58,9 @@ class Ranks {
 
   virtual ~Ranks() = default;
   /// Whether the mesh is theirs from the beginning of the run to its end, and that of the run the part of one
-  /// of them: then each of them runs the same stages at the same time, and what they cannot do is left out.
+  /// of them: then each of them runs the same stages at the same time, which have only passes that they can
+  /// do.
   virtual bool keep_mesh() const { return false; }
-  /// A pass was left out for that.
-  virtual void leave_out(PassKind) {}
   /// Whether they can do passes of this kind in this metric, over a mesh like this one.
   virtual bool can_do(PassKind kind, Metric metric) const = 0;
   virtual bool can_take(const TetMesh& mesh, const Workspace& work) const = 0;
@@ -67,6 +75,8 @@ class Ranks {
     waiting.clear();
     return {};
   }
+  /// The same for cluster search.
+  virtual RoundCounts search(const Search&) { return {}; }
   /// Of all cells.
   virtual Tally tally(double below) = 0;
   virtual std::size_t n_cells() const = 0;

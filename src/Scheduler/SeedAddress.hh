@@ -5,6 +5,8 @@
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
+#include <variant>
 
 #include "hfremesh/HalfFace/Errors.hh"
 #include "hfremesh/HalfFace/TetMesh.hh"
@@ -18,9 +20,10 @@ struct SeedAddress {
   CellHandle cell;      ///< invalid for a vertex
   VertexHandle vertex;  ///< invalid for the others
   std::uint32_t place = 0;
+  std::uint32_t kind = 0;  ///< of seeds of several kinds
 };
 
-inline SeedAddress address_of(VertexHandle v) { return {{}, v, 0}; }
+inline SeedAddress address_of(VertexHandle v) { return {{}, v}; }
 inline SeedAddress address_of(EdgeHandle e) {
   return {CellHandle(e.idx() / 6), {}, static_cast<std::uint32_t>(e.idx() % 6)};
 }
@@ -51,7 +54,7 @@ concept GrowsFromCell = std::constructible_from<Seed, CellHandle> && requires(co
 };
 template <GrowsFromCell Seed>
 SeedAddress address_of(const Seed& seed) {
-  return {seed.cell, {}, 0};
+  return {seed.cell, {}};
 }
 
 template <class Seed>
@@ -59,10 +62,38 @@ concept HasAddress = requires(const Seed& seed) {
   { address_of(seed) } -> std::same_as<SeedAddress>;
 };
 
+/// Seeds of one of several kinds, as those of AnyOf.
+template <class... Seeds>
+requires(HasAddress<Seeds>&&...) SeedAddress address_of(const std::variant<Seeds...>& seed) {
+  SeedAddress at = std::visit([](const auto& one) { return address_of(one); }, seed);
+  at.kind = static_cast<std::uint32_t>(seed.index());
+  return at;
+}
+template <class Seed>
+concept IsOfAnyKind = requires {
+  std::variant_size<Seed>::value;
+};
+
+template <class Seed>
+Seed seed_at(const SeedAddress& at);
+
+namespace detail {
+
+template <class Seed, std::size_t kKind = 0>
+Seed seed_of_kind(const SeedAddress& at) {
+  if constexpr (kKind + 1 < std::variant_size_v<Seed>)
+    if (at.kind != kKind) return seed_of_kind<Seed, kKind + 1>(at);
+  return Seed(std::in_place_index<kKind>, seed_at<std::variant_alternative_t<kKind, Seed>>(at));
+}
+
+}  // namespace detail
+
 /// The seed at an address.
 template <class Seed>
 Seed seed_at(const SeedAddress& at) {
-  if constexpr (std::is_same_v<Seed, VertexHandle>)
+  if constexpr (IsOfAnyKind<Seed>)
+    return detail::seed_of_kind<Seed>(at);
+  else if constexpr (std::is_same_v<Seed, VertexHandle>)
     return at.vertex;
   else if constexpr (std::is_same_v<Seed, EdgeHandle>)
     return EdgeHandle(6 * at.cell.idx() + static_cast<Index>(at.place));

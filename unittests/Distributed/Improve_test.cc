@@ -104,7 +104,7 @@ TEST(MpiImprove, InsertionIsLeftToOneRank) {
   expect_that_of_shared_memory(valid_box(4, 0.4, 1), options, true);
 }
 
-/// Their polish mixes kinds, which is left to rank 0, and smooths, which is not.
+/// Their polish mixes kinds and smooths.
 TEST(MpiImprove, DefaultRunsAreThoseOfSharedMemory) {
   ImproveOptions options = short_run(8);
   options.min_dihedral.reset();

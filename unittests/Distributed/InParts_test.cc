@@ -92,7 +92,6 @@ TEST(InParts, ThePolishHasTheBitsOfSharedMemory) {
       mpi::generate_in_parts(parts, grid_options, how);
       const mpi::PartsResult result = mpi::improve(parts, polish_towards(goal));
       EXPECT_TRUE(result.changed);
-      EXPECT_TRUE(result.left_out.empty());
       EXPECT_FALSE(result.has_fallen);
       const mpi::PartsCheck checked = mpi::check(parts);
       EXPECT_TRUE(checked.is_good) << checked.message;
@@ -133,9 +132,6 @@ TEST(InParts, WhatIsNotThereIsNamed) {
   EXPECT_THAT(refusal([](auto& o) { o.surface.mode = SurfaceMode::kFlat; }),
               HasSubstr("surfaces that may change"));
   EXPECT_THAT(refusal([](auto& o) { o.time_limit = 1; }), HasSubstr("time limits"));
-  ImproveOptions options = polish_towards(24);
-  options.ops = without(options.ops, Ops::kInsert) | Ops::kCluster;
-  EXPECT_THAT(mpi::improve(parts, options).left_out, testing::ElementsAre("cluster search"));
   mpi::generate_in_parts(parts, grid({6, 6, 6}, 0.5));
   EXPECT_THAT(refusal([](auto&) {}), HasSubstr("untangling"));
 }
@@ -264,7 +260,6 @@ TEST(InParts, InsertedVerticesHaveTheBitsOfSharedMemory) {
       mpi::DistributedMesh parts(comm);
       mpi::generate_in_parts(parts, one.grid, how);
       const mpi::PartsResult result = mpi::improve(parts, one.options);
-      EXPECT_TRUE(result.left_out.empty());
       const mpi::PartsCheck checked = mpi::check(parts);
       EXPECT_TRUE(checked.is_good) << checked.message;
       expect_two_layers(parts);
@@ -283,6 +278,79 @@ TEST(InParts, InsertedVerticesHaveTheBitsOfSharedMemory) {
   if (comm.rank() != 0) return;
   EXPECT_GT(n_inserted, 100U);
   EXPECT_GE(n_cells.size(), 4U) << "no bound on cells was met";
+}
+
+struct Searching {
+  mpi::GridOptions grid;
+  ImproveOptions options;
+};
+
+/// Runs that come to cluster search: where there is no room for new vertices, where few other operators may
+/// do something before, in one selection or in turn, and where none may.
+std::vector<Searching> searching() {
+  std::vector<Searching> all = {{grid({12, 11, 13}, 0.26, 0.03), polish_towards(25)}};
+  all[0].options.ops = Ops::kDefault | Ops::kCluster;
+  all[0].options.max_cells = 1000;
+  const auto add = [&](double goal, Ops ops, Rounds rounds) {
+    all.push_back({grid({8, 7, 9}, 0.28), polish_towards(goal)});
+    all.back().options.ops = ops | Ops::kCluster;
+    all.back().options.rounds = rounds;
+  };
+  add(18, Ops::kEdge, Rounds::kAuto);
+  add(20, Ops::kEdge | Ops::kFace, Rounds::kMixed);
+  add(10, Ops::kCluster, Rounds::kAuto);
+  return all;
+}
+
+TEST(InParts, SearchedClustersHaveTheBitsOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  for (const mpi::Partition how : kCuts)
+    for (const Searching& one : searching()) {
+      mpi::DistributedMesh parts(comm);
+      mpi::generate_in_parts(parts, one.grid, how);
+      const mpi::PartsResult result = mpi::improve(parts, one.options);
+      const mpi::PartsCheck checked = mpi::check(parts);
+      EXPECT_TRUE(checked.is_good) << checked.message;
+      expect_two_layers(parts);
+      mpi::write_vtu(parts, folder.path() / "parts.vtu");
+      if (comm.rank() != 0) continue;
+      TetMesh mesh = whole_of(one.grid);
+      const Result shared = hfr::improve(mesh, one.options);
+      std::size_t n_searched = 0, n_told = 0;
+      for (const PassReport& pass : shared.passes) n_searched += pass.op == "cluster" ? pass.winners : 0;
+      for (const PassReport& pass : result.passes) n_told += pass.op == "cluster" ? pass.winners : 0;
+      EXPECT_GT(n_searched, 0U) << "nothing is left to cluster search";
+      EXPECT_EQ(n_told, n_searched);
+      EXPECT_EQ(result.goal_reached, shared.goal_reached);
+      io::write(folder.path() / "whole.vtu", mesh);
+      EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+    }
+}
+
+TEST(InParts, KindsInOneSelectionHaveTheBitsOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  for (const mpi::Partition how : kCuts)
+    for (const Ops ops : {Ops::kDefault, without(Ops::kDefault, Ops::kNode)}) {
+      const mpi::GridOptions grid_options = grid({10, 9, 11}, 0.24);
+      ImproveOptions options = polish_towards(24);
+      options.rounds = Rounds::kMixed;
+      options.ops = ops;
+      mpi::DistributedMesh parts(comm);
+      mpi::generate_in_parts(parts, grid_options, how);
+      const mpi::PartsResult result = mpi::improve(parts, options);
+      EXPECT_TRUE(mpi::check(parts).is_good);
+      mpi::write_vtu(parts, folder.path() / "parts.vtu");
+      if (comm.rank() != 0) continue;
+      const auto n_mixed = std::ranges::count(result.passes, "mixed", &PassReport::op);
+      EXPECT_GT(n_mixed, 0);
+      TetMesh mesh = whole_of(grid_options);
+      const Result shared = hfr::improve(mesh, options);
+      EXPECT_EQ(std::ranges::count(shared.passes, "mixed", &PassReport::op), n_mixed);
+      io::write(folder.path() / "whole.vtu", mesh);
+      EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+    }
 }
 
 /// Whatever ranks have written the pieces, they are the mesh; and a run goes on from there as from one file.

@@ -30,6 +30,26 @@ TEST(PartLabels, LabelledMeshesHaveTheBytesOfSharedMemory) {
   EXPECT_GT(n_winners, 1000U) << "the polish no longer finds anything to do";
 }
 
+/// Interfaces between regions, labels and what is fixed, where cluster search is at work.
+TEST(PartLabels, LabelledMeshesHaveTheBytesOfSharedMemoryWithClusterSearch) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  std::size_t n_searched = 0;
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const Density density = seed % 2 == 0 ? Density{} : Density{1, 90, 0, 20, 0, 25, true};
+    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(7, 0.33, seed), seed, density));
+    for (const double goal : {7.0, 12.0}) {
+      comm.sum(0);
+      ImproveOptions options = polish_towards(goal);
+      options.ops = Ops::kEdge | Ops::kFace | Ops::kCluster;
+      n_searched += expect_bytes(comm, folder, path, options, 300, "cluster");
+      comm.sum(0);
+    }
+  }
+  EXPECT_GT(n_searched, 0U) << "nothing is left to cluster search";
+}
+
 /// What is labelled keeps passes from what they do without: else the test above would show nothing.
 TEST(PartLabels, LabelsAreConstraints) {
   mpi::Comm comm(MPI_COMM_WORLD);

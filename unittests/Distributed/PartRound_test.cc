@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <span>
+#include <utility>
 
 #include "Distributed/PartSeeds.hh"
 #include "Distributed/PartSmoothing.hh"
 #include "Distributed/Parts.hh"
-#include "HalfFace/Check.hh"
+#include "Operators/AnyOf.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/FanMerge.hh"
@@ -78,6 +80,52 @@ RoundCounts vertex_round(mpi::DistributedMesh& m, std::uint8_t bit, Make&& make,
   return Round<Op>(m.part(), m.work(), place.options(options)).run(make(m.work()), vertices);
 }
 
+using AnyKind = AnyOf<EdgeRemoval<MinSine2>, MultiFaceRemoval<MinSine2>, VertexCollapse<MinSine2>>;
+
+AnyKind any_kind(const Workspace& w) {
+  return {{EdgeRemoval<MinSine2>{{}, w.quality}, MultiFaceRemoval<MinSine2>{{}, w.quality},
+           VertexCollapse<MinSine2>{{}, w.quality, w.frozen}}};
+}
+
+/// Calls visit(seed) with the seeds of all kinds, as visit_edges and visit_faces name them.
+template <class VisitEdges, class VisitFaces>
+auto seeds_of_any_kind(const Worklist& list, std::span<const VertexHandle> vertices, VisitEdges visit_edges,
+                       VisitFaces visit_faces) {
+  using Seed = AnyKind::Seed;
+  return [=, &list](std::size_t i, auto&& visit) {
+    const std::size_t n_cells = list.cells().size();
+    if (i >= n_cells) {
+      visit(Seed(std::in_place_index<2>, vertices[i - n_cells]));
+      return;
+    }
+    visit_edges(C(list.cells()[i]), [&](EdgeHandle e) { visit(Seed(std::in_place_index<0>, e)); });
+    visit_faces(C(list.cells()[i]), [&](HalfFaceHandle h) { visit(Seed(std::in_place_index<1>, h)); });
+  };
+}
+
+RoundCounts mixed_round(Whole& w, std::uint8_t bit, RoundOptions options) {
+  const Worklist list = pending(w.mesh, w.work, bit);
+  const auto vertices = vertex_seeds(w.mesh, list, w.work.frozen, {});
+  Round<AnyKind> round(w.mesh, w.work, options);
+  return round.run(
+      any_kind(w.work), list.cells().size() + vertices.size(),
+      seeds_of_any_kind(
+          list, vertices, [&](CellHandle c, auto&& visit) { visit_edge_seeds(w.mesh, list, c, visit); },
+          [&](CellHandle c, auto&& visit) { visit_face_seeds(w.mesh, list, c, visit); }));
+}
+
+RoundCounts mixed_round(mpi::DistributedMesh& m, std::uint8_t bit, RoundOptions options) {
+  const Worklist list = pending(m.part(), m.work(), bit);
+  const auto vertices = mpi::removable_seeds(m, list, {});
+  mpi::PartRound place(m);
+  Round<AnyKind> round(m.part(), m.work(), place.options(options));
+  return round.run(
+      any_kind(m.work()), list.cells().size() + vertices.size(),
+      seeds_of_any_kind(
+          list, vertices, [&](CellHandle c, auto&& visit) { mpi::visit_edge_seeds(m, list, c, visit); },
+          [&](CellHandle c, auto&& visit) { mpi::visit_face_seeds(m, list, c, visit); }));
+}
+
 template <class Search, class Metric>
 RoundCounts smooth(Whole& w, std::uint8_t bit, const Search& search, const Metric& metric) {
   const Worklist list = pending(w.mesh, w.work, bit);
@@ -95,45 +143,6 @@ RoundOptions options(std::uint64_t seed = 1) {
   o.check_links = false;
   o.seed = seed;
   return o;
-}
-
-/// The same passes on both, cut in every way; compares after each call of `passes`, which gives the counts of
-/// what it did.
-template <class Metric, class Passes>
-void expect_same_for_parts(const TetMesh& input, const Metric& metric, int repetitions, std::size_t at_least,
-                           Passes&& passes) {
-  for (const mpi::Partition how :
-       {mpi::Partition::kGraph, mpi::Partition::kCoordinates, mpi::Partition::kNumbers}) {
-    mpi::Comm comm(MPI_COMM_WORLD);
-    const bool first = comm.rank() == 0;
-    Whole whole(input, metric);
-    Whole cut = whole;
-    const auto owner = mpi::partition(comm, first ? &cut.mesh : nullptr, how);
-    mpi::DistributedMesh parts(comm);
-    parts.scatter(&cut.mesh, &cut.work, owner);
-    std::size_t n_changes = 0;
-    for (int i = 0; i < repetitions; ++i) {
-      const RoundCounts a = passes(whole);
-      const RoundCounts b = passes(parts);
-      n_changes += a.winners;
-      EXPECT_EQ(a.seeds, b.seeds);
-      EXPECT_EQ(a.candidates, b.candidates);
-      EXPECT_EQ(a.winners, b.winners);
-      EXPECT_EQ(a.held_back, b.held_back);
-      EXPECT_EQ(whole.mesh.n_logical_cells(), parts.n_cells());
-      expect_part_of(parts, whole);
-      Whole together = cut;
-      gather_from_nothing(parts, together);
-      if (first) {
-        expect_same(whole, together);
-        EXPECT_EQ(check(together.mesh), Ok);
-      }
-      if (comm.sum(testing::Test::HasFailure() ? 1 : 0) > 0) return;
-    }
-    parts.gather(&cut.mesh, &cut.work, mpi::DistributedMesh::Gather::kChanged);
-    if (first) expect_same(whole, cut, /*also_pending=*/false);
-    EXPECT_GE(n_changes, at_least) << "the passes no longer find anything to do";
-  }
 }
 
 TEST(PartRound, EdgeRemovalIsThatOfSharedMemory) {
@@ -239,6 +248,13 @@ TEST(PartRound, AllKindsInTurnAreThoseOfSharedMemory) {
       counts += smooth(mesh, 16, MaxMinSearch{}, MinSine2{});
       return counts;
     });
+}
+
+/// Another rank that commits a winner has to know of what kind it is.
+TEST(PartRound, KindsInOneSelectionAreThoseOfSharedMemory) {
+  for (const std::uint64_t seed : {1U, 2U})
+    expect_same_for_parts(valid_box(8, 0.48, seed), MinSine2{}, 5, 300,
+                          [&](auto& mesh) { return mixed_round(mesh, 64, options(seed)); });
 }
 
 /// Labels and locks all over the mesh keep the rounds from much, and from the same things.

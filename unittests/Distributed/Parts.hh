@@ -11,6 +11,8 @@
 
 #include "Distributed/DistributedMesh.hh"
 #include "Distributed/Near.hh"
+#include "Distributed/Partition.hh"
+#include "HalfFace/Check.hh"
 #include "HalfFace/Writer.hh"
 #include "Operators/Clusters.hh"
 #include "Scheduler/Workspace.hh"
@@ -159,6 +161,45 @@ inline void expect_part_of(const mpi::DistributedMesh& parts, const Whole& whole
   EXPECT_EQ(n_other_mates, 0U);
   EXPECT_EQ(n_other_values, 0U);
   EXPECT_EQ(n_there, n_held);
+}
+
+/// The same passes on both, cut in every way; compares after each call of `passes`, which gives the counts of
+/// what it did.
+template <class Metric, class Passes>
+void expect_same_for_parts(const TetMesh& input, const Metric& metric, int repetitions, std::size_t at_least,
+                           Passes&& passes) {
+  for (const mpi::Partition how :
+       {mpi::Partition::kGraph, mpi::Partition::kCoordinates, mpi::Partition::kNumbers}) {
+    mpi::Comm comm(MPI_COMM_WORLD);
+    const bool first = comm.rank() == 0;
+    Whole whole(input, metric);
+    Whole cut = whole;
+    const auto owner = mpi::partition(comm, first ? &cut.mesh : nullptr, how);
+    mpi::DistributedMesh parts(comm);
+    parts.scatter(&cut.mesh, &cut.work, owner);
+    std::size_t n_changes = 0;
+    for (int i = 0; i < repetitions; ++i) {
+      const RoundCounts a = passes(whole);
+      const RoundCounts b = passes(parts);
+      n_changes += a.winners;
+      EXPECT_EQ(a.seeds, b.seeds);
+      EXPECT_EQ(a.candidates, b.candidates);
+      EXPECT_EQ(a.winners, b.winners);
+      EXPECT_EQ(a.held_back, b.held_back);
+      EXPECT_EQ(whole.mesh.n_logical_cells(), parts.n_cells());
+      expect_part_of(parts, whole);
+      Whole together = cut;
+      gather_from_nothing(parts, together);
+      if (first) {
+        expect_same(whole, together);
+        EXPECT_EQ(check(together.mesh), Ok);
+      }
+      if (comm.sum(testing::Test::HasFailure() ? 1 : 0) > 0) return;
+    }
+    parts.gather(&cut.mesh, &cut.work, mpi::DistributedMesh::Gather::kChanged);
+    if (first) expect_same(whole, cut, /*also_pending=*/false);
+    EXPECT_GE(n_changes, at_least) << "the passes no longer find anything to do";
+  }
 }
 
 }  // namespace hfr::test
