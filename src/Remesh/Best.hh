@@ -20,9 +20,9 @@ enum class Loss {
 };
 
 /// The best mesh that a stage has had on its way, by Standing: fewer inverted, fewer flat cells, less
-/// overlap, a larger worst angle; where these are alike, a larger one of the cells that may rise. One that has lost more than it may since the beginning, with no fewer
-/// inverted and flat cells, is none. Makes a Snapshot, and another one in its place with each note() of a
-/// better mesh.
+/// overlap, a larger worst angle; where these are alike, a larger one of the cells that may rise. One that
+/// has lost more than it may since the beginning, with no fewer inverted and flat cells, is none. Makes a
+/// Snapshot, and another one in its place with each note() of a better mesh.
 class Best {
  public:
   /// Smallest dihedrals below which 1 and 5 % of the cells lie: decision values.

@@ -61,8 +61,8 @@ class Checkpoint {
 
   /// At the end of a run, before garbage is collected: where the mesh has become worse than the input, puts
   /// back what was kept; true when it did. Where the smallest angle alone is worse, mend() is called before.
-  /// With `known_no_worse`, which is of the mesh that met its goal, only the rules are tested. Throws InternalError, with the mesh as it was kept,
-  /// where one has been broken.
+  /// With `known_no_worse`, which is of the mesh that met its goal, only the rules are tested. Throws
+  /// InternalError, with the mesh as it was kept, where one has been broken.
   bool settle(TetMesh& mesh, bool known_no_worse, const std::function<void()>& mend);
   /// The same after an exception, when the mesh may be in any state.
   void settle_after_failure(TetMesh& mesh) noexcept;

@@ -101,9 +101,9 @@ struct StuckCell {
   double degrees = 0;  ///< its smallest dihedral; not positive for an inverted or flat cell
   StuckReason reason = StuckReason::kNotFound;
   int n_frozen_vertices = 0;  ///< of its four
-  /// Where the limit is a surface ceiling or a feature, the proof: while the faces at the edge (a, b) that may
-  /// not change stay as they are, or in the planes where they are, some cell at this edge has a dihedral of at
-  /// most `ceiling` degrees in every mesh; not positive where one is inverted or flat in every mesh.
+  /// Where the limit is a surface ceiling or a feature, the proof: while the faces at the edge (a, b) that
+  /// may not change stay as they are, or in the planes where they are, some cell at this edge has a dihedral
+  /// of at most `ceiling` degrees in every mesh; not positive where one is inverted or flat in every mesh.
   double ceiling = 180;
   VertexHandle a, b;
 };

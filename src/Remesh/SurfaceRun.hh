@@ -44,8 +44,8 @@ class PartOfSurface {
  private:
   std::shared_ptr<SurfaceMesh> surface_;  // shared: a build without surfaces cannot delete one
 };
-/// After patches have been put back, or a run with a flat surface: the surface as it is now, which has to have
-/// the shape that it is to keep. Does nothing without one.
+/// After patches have been put back, or a run with a flat surface: the surface as it is now, which has to
+/// have the shape that it is to keep. Does nothing without one.
 void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
 
 /// The surface of a free run before anything has changed it, as a flat one.
