@@ -50,14 +50,15 @@ void add_options(Command command, PartsLine& line) {
                   "with the bits of hfremesh --polish-only");
   command.example("mpirun -n 4 hfremesh-mpi parts part.msh -o part.vtu --min-dihedral 15",
                   "a file of which no rank reads all");
+  command.example("mpirun -n 3 hfremesh-mpi parts good.pvtu -o good.msh", "one file, written by all ranks");
   command.option(
       "IN", line.input,
       "What to read: .pvtu, an index of pieces, or .vtu, .mesh, .meshb or .msh, of which each rank "
       "reads a range");
   command
-      .option(
-          "-o,--output", line.output,
-          "What to write: .pvtu, with a piece for each rank, or .vtu, one file with the bytes of hfremesh")
+      .option("-o,--output", line.output,
+              "What to write: .pvtu, with a piece for each rank, or .vtu, .mesh, .meshb or .msh, one file "
+              "with the bytes of hfremesh")
       .type_name("FILE");
   command
       .option(
@@ -134,15 +135,18 @@ void require_sound(const PartsLine& line) {
   const auto refuse = [](const std::string& why) { throw Failure(ExitCode::kUsage, "parts: " + why); };
   if (line.input.empty() == line.counts.empty()) refuse("give either IN or --generate NX NY NZ");
   const std::string in = extension(line.input);
-  constexpr std::array kRead = {".pvtu", ".vtu", ".mesh", ".meshb", ".msh"};
-  if (!line.input.empty() && std::find(kRead.begin(), kRead.end(), in) == kRead.end())
+  const auto is_known = [](const std::string& name) {
+    constexpr std::array kKnown = {".pvtu", ".vtu", ".mesh", ".meshb", ".msh"};
+    return std::find(kKnown.begin(), kKnown.end(), name) != kKnown.end();
+  };
+  if (!line.input.empty() && !is_known(in))
     refuse(
         line.input +
         ": meshes in parts are read from .pvtu, .vtu, .mesh, .meshb and .msh; hfremesh-mpi without 'parts' "
         "reads other formats");
   const std::string out = extension(line.output);
-  if (!line.output.empty() && out != ".pvtu" && out != ".vtu")
-    refuse(line.output + ": meshes in parts are written as .pvtu or .vtu");
+  if (!line.output.empty() && !is_known(out))
+    refuse(line.output + ": meshes in parts are written as .pvtu, .vtu, .mesh, .meshb or .msh");
   improve_options(line);
 }
 
@@ -200,10 +204,7 @@ class PartsRun {
   void begin() {
     if (!line_.input.empty()) {
       reporting(ExitCode::kCannotRead, [&] {
-        const bool is_index = std::filesystem::path(line_.input).extension() == ".pvtu";
-        for (const std::string& note :
-             is_index ? mpi::read_pvtu(mesh_, line_.input) : mpi::read_ranges(mesh_, line_.input))
-          say("{}: {}", line_.input, note);
+        for (const std::string& note : read()) say("{}: {}", line_.input, note);
       });
       return;
     }
@@ -214,6 +215,11 @@ class PartsRun {
     grid.cavity.seed = line_.seed;
     mpi::generate_in_parts(
         mesh_, grid, line_.partition == "numbers" ? mpi::Partition::kNumbers : mpi::Partition::kCoordinates);
+  }
+
+  std::vector<std::string> read() {
+    if (std::filesystem::path(line_.input).extension() == ".pvtu") return mpi::read_pvtu(mesh_, line_.input);
+    return mpi::read_ranges(mesh_, line_.input);
   }
 
   mpi::PartsResult improve() {
@@ -236,9 +242,9 @@ class PartsRun {
   void write() {
     reporting(ExitCode::kUsage, [&] {
       if (std::filesystem::path(line_.output).extension() == ".pvtu")
-        mpi::write_pvtu(mesh_, line_.output);
-      else
-        mpi::write_vtu(mesh_, line_.output);
+        return mpi::write_pvtu(mesh_, line_.output);
+      for (const std::string& note : mpi::write_ranges(mesh_, line_.output))
+        say("{}: {}", line_.output, note);
     });
     say("written {}, {:.2f} s", line_.output, seconds());
   }

@@ -11,6 +11,7 @@
 #include "hfremesh/Distributed/DistributedMesh.hh"
 #include "hfremesh/Distributed/Partition.hh"
 #include "hfremesh/HalfFace/Generate.hh"
+#include "hfremesh/IO/MeshFile.hh"
 #include "hfremesh/Remesh/Improve.hh"
 
 /// Meshes that are in parts from beginning to end: no rank ever holds the whole, or an array of its size
@@ -84,6 +85,15 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// One .vtu with the bytes that io::write() writes of the whole. Each rank writes its own points and cells at
 /// their offsets in one temporary file, which is renamed in the end: all ranks see one file system.
 void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
+/// One .vtu, .mesh, .meshb or .msh with the bytes that io::write() writes of the whole, for each number of
+/// ranks. Each rank writes a range of the numbers of points and elements, which is sent to it before, at its
+/// place in one temporary file, which is renamed in the end: all ranks see one file system. What stands in
+/// text is formatted twice, a megabyte at a time: to know how long it is, and to write it. Returns one line
+/// for each thing that the format cannot hold, the same on all ranks. Throws InvalidInput for other formats
+/// and for variants that there are not (of .vtu, "appended" alone is there), IoError where the file cannot
+/// be written.
+std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
+                                      const io::WriteOptions& options = {});
 
 /// What write_pvtu() has written, by any number of ranks: piece i is read by rank i mod n, and points that
 /// several ranks have come to belong to the first of them. Throws InvalidInput where pieces have no "number",

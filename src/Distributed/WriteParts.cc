@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of a mesh in parts. What is written has numbers without gaps, as after TetMesh::collect_garbage():
-// each rank knows which vertices and slots of the whole are gone, and so how many are below a number.
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
+// VTK's files of a mesh in parts: pieces with an index, and one file.
 #include <algorithm>
 #include <bit>
-#include <cerrno>
-#include <optional>
+#include <limits>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include "Distributed/InParts.hh"
+#include "Distributed/OwnItems.hh"
+#include "Distributed/SharedFile.hh"
 #include "HalfFace/Errors.hh"
 #include "IO/MeshFile.hh"
 #include "IO/OutputFile.hh"
@@ -21,112 +17,6 @@
 
 namespace hfr::mpi {
 namespace {
-
-/// Numbers without gaps.
-class Numbering {
- public:
-  explicit Numbering(DistributedMesh& mesh) : mesh_(mesh), slots_(mesh.free_slots()) {
-    std::vector<std::uint64_t> gone;
-    for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i)
-      if (const VertexHandle v(i); mesh.is_own(v) && mesh.part().is_deleted(v))
-        gone.push_back(mesh.number(v));
-    vertices_ = mesh.comm().all_gather(std::span<const std::uint64_t>(gone));
-    std::sort(vertices_.begin(), vertices_.end());
-    std::sort(slots_.begin(), slots_.end());
-  }
-
-  std::uint64_t n_vertices() const { return mesh_.n_vertices() - vertices_.size(); }
-  std::uint64_t n_cells() const { return mesh_.n_cells(); }
-  std::uint64_t operator()(VertexHandle v) const { return without(vertices_, mesh_.number(v)); }
-  std::uint64_t operator()(CellHandle c) const { return without(slots_, mesh_.number(c)); }
-
- private:
-  static std::uint64_t without(const std::vector<std::uint64_t>& gone, std::uint64_t number) {
-    return number -
-           static_cast<std::uint64_t>(std::lower_bound(gone.begin(), gone.end(), number) - gone.begin());
-  }
-
-  const DistributedMesh& mesh_;
-  std::vector<std::uint64_t> vertices_, slots_;  // that are gone, ascending
-};
-
-std::vector<VertexHandle> own_vertices(const DistributedMesh& mesh) {
-  std::vector<VertexHandle> vertices;
-  for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i)
-    if (const VertexHandle v(i); mesh.is_own(v) && !mesh.part().is_deleted(v)) vertices.push_back(v);
-  return vertices;
-}
-
-/// In the order of numbers.
-std::vector<CellHandle> own_cells(const DistributedMesh& mesh) {
-  std::vector<CellHandle> cells;
-  for (std::size_t i = 0; i < mesh.part().n_cells(); ++i)
-    if (const CellHandle c(i); !mesh.part().is_deleted(c) && mesh.is_own(c)) cells.push_back(c);
-  const auto by_number = [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); };
-  if (!std::is_sorted(cells.begin(), cells.end(), by_number))
-    std::sort(cells.begin(), cells.end(), by_number);
-  return cells;
-}
-
-/// An edge or a face with a label; of those, a rank writes the ones whose smallest vertex it owns.
-template <std::size_t N>
-struct Labelled {
-  std::uint64_t number = 0;
-  std::array<VertexHandle, N> v;
-  std::int32_t label = 0;
-};
-
-/// In the order of numbers. `number_of`: entry → number.
-template <std::size_t N, class NumberOf>
-std::vector<Labelled<N>> own_labelled(const DistributedMesh& mesh, const TupleMap<N, int>& map,
-                                      NumberOf&& number_of) {
-  std::vector<Labelled<N>> own;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    const auto& entry = map.entries()[i];
-    if (mesh.is_own(*std::min_element(entry.vertices.begin(), entry.vertices.end())))
-      own.push_back({number_of(i), entry.vertices, static_cast<std::int32_t>(entry.value)});
-  }
-  std::sort(own.begin(), own.end(), [](const auto& a, const auto& b) { return a.number < b.number; });
-  return own;
-}
-
-/// What hangs on own vertices, edges and faces, and what of it there is in the whole.
-class OwnLabels {
- public:
-  explicit OwnLabels(DistributedMesh& mesh) {
-    const TetMesh& part = mesh.part();
-    const Labels& labels = part.labels();
-    const PartLabels& numbers = mesh.label_numbers();
-    faces = own_labelled(mesh, labels.faces, [&](std::size_t i) { return numbers.face_number(i); });
-    edges = own_labelled(mesh, labels.edges, [&](std::size_t i) { return numbers.edge_number(i); });
-    const auto is_set = [](const auto& one) { return one.label != 0; };
-    bool has_region =
-        std::any_of(faces.begin(), faces.end(), is_set) || std::any_of(edges.begin(), edges.end(), is_set);
-    for (std::size_t c = 0; c < part.n_cells() && part.has_regions() && !has_region; ++c)
-      has_region = !part.is_deleted(CellHandle(c)) && part.region(CellHandle(c)) != 0;
-    std::array<std::uint64_t, 5> sums = {faces.size(), edges.size(), has_region ? 1U : 0U, 0, 0};
-    for (VertexHandle v : own_vertices(mesh)) {
-      sums[3] += labels.vertex(v) != 0 ? 1 : 0;
-      sums[4] += part.is_fixed(v) ? 1 : 0;
-    }
-    mesh.comm().sum(sums);
-    n_faces = sums[0];
-    n_edges = sums[1];
-    with_regions = sums[2] > 0;
-    with_vertex_labels = sums[3] > 0;
-    with_fixed = sums[4] > 0;
-    io::MeshData named;
-    named.names = labels.names;
-    names = io::names_text(named);
-  }
-
-  std::vector<Labelled<3>> faces;
-  std::vector<Labelled<2>> edges;
-  std::uint64_t n_faces = 0, n_edges = 0;               ///< of the whole
-  bool with_regions = false;                            ///< or labels of faces or edges
-  bool with_vertex_labels = false, with_fixed = false;  ///< vertices
-  std::string names;                                    ///< as names_text() has them
-};
 
 /// Into the piece, by the places of its points.
 template <std::size_t N>
@@ -185,7 +75,7 @@ io::MeshData piece_of(const DistributedMesh& mesh, const Numbering& numbering, c
   put_labelled(labels.faces, place, data.triangles, data.triangle_labels, data.triangle_numbers);
   put_labelled(labels.edges, place, data.edges, data.edge_labels, data.edge_numbers);
   data.names = part.labels().names;
-  if (labels.with_fixed) data.point_fields.push_back(std::move(fixed));
+  if (labels.n_fixed > 0) data.point_fields.push_back(std::move(fixed));
   data.point_fields.push_back(std::move(points));
   data.cell_fields.push_back(std::move(numbers));
   return data;
@@ -222,7 +112,7 @@ void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels
   out.text("\" header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n");
   out.text("<PPointData>\n");
   if (labels.with_vertex_labels) declare("Int32", io::kVtkLabelArray);
-  if (labels.with_fixed) declare("Int32", io::kVtkFixedArray);
+  if (labels.n_fixed > 0) declare("Int32", io::kVtkFixedArray);
   declare("Float64", io::kVtkNumberArray);
   out.text("</PPointData>\n<PCellData>\n");
   if (labels.with_regions) declare("Int32", io::kVtkRegionArray);
@@ -236,59 +126,11 @@ void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels
   out.commit();
 }
 
-/// Writes at offsets of a file that others write to, too; what follows on what was put last goes out with it.
-class OffsetFile {
- public:
-  explicit OffsetFile(std::filesystem::path path) : path_(std::move(path)) {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (file_ < 0) fail();
-  }
-  ~OffsetFile() {
-    if (file_ >= 0) ::close(file_);
-  }
-  OffsetFile(const OffsetFile&) = delete;
-  OffsetFile& operator=(const OffsetFile&) = delete;
-
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void put(std::uint64_t offset, const T& value) { put_bytes(offset, &value, sizeof value); }
-  void put_text(std::uint64_t offset, std::string_view text) { put_bytes(offset, text.data(), text.size()); }
-  void finish() {
-    flush();
-    if (::fsync(file_) != 0 && errno != EINVAL) fail();
-    if (::close(std::exchange(file_, -1)) != 0) fail();
-  }
-
- private:
-  static constexpr std::size_t kBuffer = std::size_t{1} << 20;
-
-  void put_bytes(std::uint64_t offset, const void* bytes, std::size_t n) {
-    if (offset != begin_ + buffer_.size() || buffer_.size() >= kBuffer) {
-      flush();
-      begin_ = offset;
-    }
-    buffer_.append(static_cast<const char*>(bytes), n);
-  }
-  void flush() {
-    std::string_view left = buffer_;
-    for (std::uint64_t at = begin_; !left.empty();) {
-      const ssize_t n = ::pwrite(file_, left.data(), left.size(), static_cast<off_t>(at));
-      if (n < 0 && errno == EINTR) continue;
-      if (n <= 0) fail();
-      at += static_cast<std::uint64_t>(n);
-      left.remove_prefix(static_cast<std::size_t>(n));
-    }
-    buffer_.clear();
-  }
-  [[noreturn]] void fail() const {
-    throw IoError(path_.string() + ": cannot be written: " + std::generic_category().message(errno));
-  }
-
-  std::filesystem::path path_;
-  int file_ = -1;
-  std::uint64_t begin_ = 0;
-  std::string buffer_;
-};
+std::string names_of(const DistributedMesh& mesh) {
+  io::MeshData named;
+  named.names = mesh.part().labels().names;
+  return io::names_text(named);
+}
 
 /// Where the arrays of a .vtu of raw appended data stand, as io::write() lays them out.
 class VtuLayout {
@@ -302,18 +144,21 @@ class VtuLayout {
     bool is_there = true;
   };
 
-  VtuLayout(std::uint64_t n_points, std::uint64_t n_tets, const OwnLabels& labels)
-      : n_cells(n_tets), n_faces(labels.n_faces), n_edges(labels.n_edges) {
+  VtuLayout(std::uint64_t n_points, std::uint64_t n_tets, const OwnLabels& labels, std::string names_given)
+      : n_cells(n_tets),
+        n_faces(labels.n_faces),
+        n_edges(labels.n_edges),
+        names_text(std::move(names_given)) {
     constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
     const std::uint64_t n_items = n_cells + n_faces + n_edges;
     const bool narrow = sizeof(Index) == 4 && n_points <= kMost, narrow_ends = n_items <= kMost / 4;
-    names = {"FieldData", io::kVtkNamesArray, "UInt8", 1, labels.names.size(), 1, 0, !labels.names.empty()};
+    names = {"FieldData", io::kVtkNamesArray, "UInt8", 1, names_text.size(), 1, 0, !names_text.empty()};
     points = {"Points", "Points", "Float64", 3, 3 * n_points, 8};
     corners = {"Cells", "connectivity", narrow ? "Int32" : "Int64", 1, end_of(n_items), narrow ? 4U : 8U};
     ends = {"Cells", "offsets", narrow_ends ? "Int32" : "Int64", 1, n_items, narrow_ends ? 4U : 8U};
     types = {"Cells", "types", "UInt8", 1, n_items, 1};
     vertex_labels = {"PointData", io::kVtkLabelArray, "Int32", 1, n_points, 4, 0, labels.with_vertex_labels};
-    fixed = {"PointData", io::kVtkFixedArray, "Int32", 1, n_points, 4, 0, labels.with_fixed};
+    fixed = {"PointData", io::kVtkFixedArray, "Int32", 1, n_points, 4, 0, (labels.n_fixed > 0)};
     regions = {"CellData", io::kVtkRegionArray, "Int32", 1, n_items, 4, 0, labels.with_regions};
     head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"";
     head_ += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
@@ -334,6 +179,7 @@ class VtuLayout {
   }
 
   std::uint64_t n_cells, n_faces, n_edges;
+  std::string names_text;  ///< as io::names_text() has them
   Array names, points, corners, ends, types, vertex_labels, fixed, regions;
   /// Those that are there, in the order of the file.
   std::vector<Array*> arrays() {
@@ -446,7 +292,7 @@ class VtuShare {
     file_.put_text(0, layout_.head());
     for (const VtuLayout::Array* array : layout_.arrays())
       file_.put(array->begin - sizeof(std::uint64_t), std::uint64_t{array->n * array->size});
-    if (layout_.names.is_there) file_.put_text(layout_.names.begin, labels_.names);
+    if (layout_.names.is_there) file_.put_text(layout_.names.begin, layout_.names_text);
     file_.put_text(layout_.end(), VtuLayout::kTail);
   }
 
@@ -475,19 +321,10 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
 void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const Numbering numbering(mesh);
   const OwnLabels labels(mesh);
-  VtuLayout layout(numbering.n_vertices(), numbering.n_cells(), labels);
-  std::optional<io::OutputFile> file;
-  std::string name;
-  if (mesh.comm().rank() == 0) {
-    file.emplace(path);
-    name = file->temporary().string();
-    if (name.empty()) throw IoError(path.string() + ": cannot be written at offsets: it is no regular file");
-  }
-  const std::vector<char> temporary = mesh.comm().all_gather(std::span<const char>(name.data(), name.size()));
-  VtuShare(mesh, numbering, labels, layout, std::string(temporary.begin(), temporary.end())).write();
-  mesh.comm().sum(0);  // all shares are there, or a rank has failed
-  if (file) file->commit();
-  mesh.comm().sum(0);
+  VtuLayout layout(numbering.n_vertices(), numbering.n_cells(), labels, names_of(mesh));
+  SharedFile file(mesh.comm(), path);
+  VtuShare(mesh, numbering, labels, layout, file.temporary()).write();
+  file.commit();
 }
 
 }  // namespace hfr::mpi

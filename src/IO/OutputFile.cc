@@ -9,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
 #include <random>
 #include <system_error>
 
@@ -18,9 +17,6 @@
 
 namespace hfr::io {
 namespace {
-
-constexpr std::size_t kBufferSize = std::size_t{1} << 20;
-constexpr std::size_t kLongestNumber = 32;  // shortest doubles need 24 characters, 64-bit integers 20
 
 /// Names of the temporary files that this process has open. A signal handler can neither wait for a lock nor
 /// be handed anything, so they stand here; files beyond so many are not removed by it.
@@ -76,7 +72,6 @@ void remove_temporary_files() noexcept {
 
 OutputFile::OutputFile(const std::filesystem::path& target)
     : target_(target), replaced_(target), slot_(kMostListed) {
-  buffer_.reserve(kBufferSize + kLongestNumber);  // before there is a file that would stay if this throws
   struct stat info {};
   const bool to_stdout = is_standard_output(target);
   const bool exists = !to_stdout && ::stat(target.c_str(), &info) == 0;
@@ -98,7 +93,7 @@ OutputFile::OutputFile(const std::filesystem::path& target)
     remove_temporary();
     fail(error);
   }
-  std::setvbuf(file_, nullptr, _IONBF, 0);  // buffer_ is the buffer
+  std::setvbuf(file_, nullptr, _IONBF, 0);  // ByteSink has the buffer
 }
 
 OutputFile::~OutputFile() {
@@ -134,35 +129,9 @@ void OutputFile::fail(int error) {
   throw IoError(target_.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
-void OutputFile::flush() {
+void OutputFile::put(std::string_view bytes) {
   errno = 0;
-  if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) fail(errno ? errno : EIO);
-  buffer_.clear();
-}
-
-OutputFile& OutputFile::text(std::string_view text) {
-  if (buffer_.size() + text.size() > kBufferSize) {
-    flush();
-    if (text.size() > kBufferSize) {
-      errno = 0;
-      if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno ? errno : EIO);
-      return *this;
-    }
-  }
-  buffer_.append(text);
-  return *this;
-}
-
-OutputFile& OutputFile::number(double value) {
-  std::array<char, kLongestNumber> digits;
-  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  return text({digits.data(), static_cast<std::size_t>(result.ptr - digits.data())});
-}
-
-OutputFile& OutputFile::number(std::int64_t value) {
-  std::array<char, kLongestNumber> digits;
-  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  return text({digits.data(), static_cast<std::size_t>(result.ptr - digits.data())});
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno ? errno : EIO);
 }
 
 void OutputFile::commit() {

@@ -2,11 +2,13 @@
 #ifndef HFR_IO_OUTPUT_FILE_HH
 #define HFR_IO_OUTPUT_FILE_HH
 
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <string>
 #include <string_view>
+
+#include "hfremesh/IO/ByteSink.hh"
 
 namespace hfr::io {
 
@@ -23,19 +25,18 @@ void remove_temporary_files() noexcept;
 /// file it points at is replaced, or made where it is missing. Other hard links to the target keep the old
 /// file. What is no regular file (kStandardOutput, a pipe, a device) is written to directly. Every failure
 /// throws IoError, "PATH: cannot be written: REASON".
-class OutputFile {
+class OutputFile : public ByteSink {
  public:
   explicit OutputFile(const std::filesystem::path& target);
-  ~OutputFile();
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
+  ~OutputFile() override;
 
-  OutputFile& text(std::string_view text);  ///< as it is; also for raw bytes
-  OutputFile& number(double value);         ///< shortest text that reads back to the same bits
-  OutputFile& number(std::int64_t value);
+  // Those of ByteSink, with the type that commit() can follow on.
+  OutputFile& text(std::string_view text) { return ByteSink::text(text), *this; }
+  OutputFile& number(double value) { return ByteSink::number(value), *this; }
+  OutputFile& number(std::int64_t value) { return ByteSink::number(value), *this; }
   template <class T>
   OutputFile& raw(const T& value) {
-    return text({reinterpret_cast<const char*>(&value), sizeof value});
+    return ByteSink::raw(value), *this;
   }
   void commit();  ///< flush, fsync, rename
   /// The file that is to become the target, for other processes that write to it behind what this one does.
@@ -45,7 +46,7 @@ class OutputFile {
  private:
   int open_beside();
   void remove_temporary();
-  void flush();
+  void put(std::string_view bytes) override;
   [[noreturn]] void fail(int error);
 
   std::filesystem::path target_;     ///< as the caller named it
@@ -53,7 +54,6 @@ class OutputFile {
   std::filesystem::path temporary_;  ///< empty when the target is written to directly
   std::size_t slot_;                 ///< of temporary_ among those that remove_temporary_files() removes
   std::FILE* file_ = nullptr;
-  std::string buffer_;
   bool committed_ = false;
 };
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all versions of the format share: header, names, grouping of elements by label, fields.
+// What all versions of the format share: header, names, fields.
 #include "IO/WriteGmsh.hh"
 
 #include <algorithm>
 #include <limits>
-#include <set>
+#include <memory>
 #include <string>
 
 #include "HalfFace/Errors.hh"
 #include "IO/Formats.hh"
-#include "IO/GmshElements.hh"
+#include "IO/OutputFile.hh"
 
 namespace hfr::io {
 namespace gmsh {
@@ -36,80 +36,37 @@ std::string quoted(const std::string& name, Notes& notes) {
   return '"' + text + '"';
 }
 
-/// One group a label, in the order of labels. Entities take their label as a tag where it is positive, and
-/// the smallest free tag otherwise.
-std::vector<Group> groups_of(const std::vector<int>& labels) {
-  const std::set<int> distinct(labels.begin(), labels.end());
-  std::vector<Group> groups;
-  int free = 1;
-  for (const int label : distinct) {
-    while (label <= 0 && distinct.count(free) > 0) ++free;
-    groups.push_back({label, label > 0 ? label : free++});
-  }
-  return groups;
-}
-
-/// `labels`: one an element.
-Dimension dimension_of(const std::vector<int>& labels, int type, std::size_t first_tag) {
-  Dimension elements{
-      .groups = groups_of(labels), .runs = {}, .count = labels.size(), .first_tag = first_tag, .type = type};
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (i == 0 || labels[i] != labels[i - 1]) {
-      const auto group = std::partition_point(elements.groups.begin(), elements.groups.end(),
-                                              [&](Group g) { return g.label < labels[i]; });
-      elements.runs.push_back({static_cast<std::size_t>(group - elements.groups.begin()), i, i});
-    }
-    elements.runs.back().end = i + 1;
-  }
-  return elements;
-}
-
-Layout layout_of(const MeshData& mesh) {
-  Layout layout;
-  std::array<std::vector<int>, 4> labels = {{{}, mesh.edge_labels, mesh.triangle_labels, mesh.regions}};
-  for (std::size_t i = 0; i < mesh.vertex_labels.size(); ++i) {
-    if (mesh.vertex_labels[i] == 0) continue;
-    labels[0].push_back(mesh.vertex_labels[i]);
-    layout.labelled_points.push_back(static_cast<Index>(i));
-  }
-  labels[1].resize(mesh.edges.size(), 0);
-  labels[2].resize(mesh.triangles.size(), 0);
-  labels[3].resize(mesh.cells.size(), 0);
-  constexpr std::array<int, 4> kTypes = {kPoint, kLine2, kTriangle3, kTetrahedron4};
-  std::size_t tag = 1;
-  for (std::size_t d = 0; d < 4; ++d) {
-    layout.dimensions[d] = dimension_of(labels[d], kTypes[d], tag);
-    tag += labels[d].size();
-    for (const Group group : layout.dimensions[d].groups) layout.has_labels |= group.label != 0;
-  }
-  // Nodes need an entity to belong to.
-  if (layout.n_elements() == 0) layout.dimensions[3].groups.emplace_back();
-  return layout;
-}
-
-void require_32bit(const MeshData& mesh, const Layout& layout, const std::filesystem::path& path) {
-  constexpr auto kMost = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-  if (mesh.points.size() > kMost || layout.n_elements() > kMost) {
+void require_32bit(const MeshStretch& mesh, const Layout& layout, const std::filesystem::path& path) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (mesh.n_points > kMost || layout.n_elements() > kMost) {
     throw ResourceLimit(path.string() +
                         ": Gmsh numbers nodes and elements with 32 bits here; write 4.1 without fields");
   }
 }
 
-void write_names(Sink& sink, const MeshData& mesh, Notes& notes) {
-  if (mesh.names.empty()) return;
-  sink.line("$PhysicalNames");
-  sink.line(mesh.names.size());
+/// The lines of the section.
+std::vector<std::string> names_of(const MeshStretch& mesh, Notes& notes) {
+  std::vector<std::string> lines;
   // Gmsh gives a name of label 0 the next free label: it must not take one whose name follows.
   for (const bool last : {false, true}) {
-    for (const auto& [key, name] : mesh.names) {
+    for (const auto& [key, name] : *mesh.names) {
       if ((key.second == 0) != last) continue;
-      sink.line(std::to_string(key.first) + " " + std::to_string(key.second) + " " + quoted(name, notes));
+      lines.push_back(std::to_string(key.first) + " " + std::to_string(key.second) + " " +
+                      quoted(name, notes));
     }
   }
+  return lines;
+}
+
+void write_names(Sink& sink, const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  sink.line("$PhysicalNames");
+  sink.line(lines.size());
+  for (const std::string& line : lines) sink.line(line);
   sink.line("$EndPhysicalNames");
 }
 
-void write_field(Sink& sink, const Field& field, bool on_points, std::size_t count, std::size_t first_tag,
+void write_field(Sink& sink, const Field& field, bool on_points, std::size_t count, std::uint64_t first_tag,
                  Notes& notes) {
   const auto components = static_cast<std::size_t>(field.components);
   constexpr std::size_t kMostComponents = 9;
@@ -151,36 +108,77 @@ bool has_negative(const Layout& layout) {
   });
 }
 
+/// What is written of the mesh, and how.
+struct Plan {
+  Layout layout;
+  std::string variant;
+  bool binary = false;
+  std::vector<std::string> names;
+  Notes notes;
+
+  Plan(const std::filesystem::path& path, const MeshStretch& mesh, const WriteOptions& options,
+       bool has_fields)
+      : variant(options.variant.empty() ? "4.1" : options.variant), binary(options.binary) {
+    HFR_REQUIRE(
+        variant == "2.2" || variant == "4.0" || variant == "4.1",
+        path.string() + ": Gmsh's format has no variant '" + variant + "'; known are 2.2, 4.0 and 4.1");
+    lay_out(mesh, layout);
+    if (variant != "4.1" || has_fields) require_32bit(mesh, layout, path);
+    names = names_of(mesh, notes);
+  }
+};
+
+void write_mesh(Sink& sink, const MeshStretch& mesh, const Plan& plan) {
+  if (mesh.is_first()) {
+    write_header(sink, plan.variant);
+    write_names(sink, plan.names);
+  }
+  if (plan.variant == "2.2") {
+    write_mesh2(sink, mesh, plan.layout);
+  } else {
+    write_mesh4(sink, mesh, plan.layout, plan.variant == "4.1");
+  }
+}
+
+void note_losses(const MeshStretch& mesh, const Layout& layout, Notes& notes) {
+  if (has_negative(layout)) notes.push_back("Gmsh takes a negative label for its positive one, reversed");
+  if (mesh.fixed.total > 0) notes.push_back("Gmsh holds no fixed vertices: they are left out");
+}
+
 }  // namespace
 }  // namespace gmsh
 
 Notes write_gmsh(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options) {
   using namespace gmsh;
-  const std::string variant = options.variant.empty() ? "4.1" : options.variant;
-  HFR_REQUIRE(variant == "2.2" || variant == "4.0" || variant == "4.1",
-              path.string() + ": Gmsh's format has no variant '" + variant + "'; known are 2.2, 4.0 and 4.1");
-  const Layout layout = layout_of(mesh);
+  MeshStretch stretch = stretch_of(mesh);
+  if (options.variant != "2.2") stretch.boxes = boxes_of(mesh);
   const bool has_fields = !mesh.point_fields.empty() || !mesh.cell_fields.empty();
-  if (variant != "4.1" || has_fields) require_32bit(mesh, layout, path);
-
-  Notes notes;
+  const Plan plan(path, stretch, options, has_fields);
+  Notes notes = plan.notes;
   OutputFile out(path);
   Sink sink(out, options.binary);
-  write_header(sink, variant);
-  write_names(sink, mesh, notes);
-  if (variant == "2.2") {
-    write_mesh2(sink, mesh, layout);
-  } else {
-    write_mesh4(sink, mesh, layout, variant == "4.1");
-  }
+  gmsh::write_mesh(sink, stretch, plan);
   for (const Field& field : mesh.point_fields) write_field(sink, field, true, mesh.points.size(), 1, notes);
   for (const Field& field : mesh.cell_fields) {
-    write_field(sink, field, false, mesh.cells.size(), layout.dimensions[3].first_tag, notes);
+    write_field(sink, field, false, mesh.cells.size(), plan.layout.dimensions[3].first_tag, notes);
   }
   out.commit();
-  if (has_negative(layout)) notes.push_back("Gmsh takes a negative label for its positive one, reversed");
-  if (!mesh.fixed_vertices.empty()) notes.push_back("Gmsh holds no fixed vertices: they are left out");
+  note_losses(stretch, plan.layout, notes);
   return notes;
+}
+
+StretchedFile gmsh_stretches(const std::filesystem::path& path, const MeshStretch& mesh,
+                             const WriteOptions& options) {
+  using namespace gmsh;
+  const auto plan = std::make_shared<const Plan>(path, mesh, options, false);
+  StretchedFile file;
+  file.notes = plan->notes;
+  note_losses(mesh, plan->layout, file.notes);
+  file.write = [&mesh, plan](ByteSink& out) {
+    Sink sink(out, plan->binary);
+    gmsh::write_mesh(sink, mesh, *plan);
+  };
+  return file;
 }
 
 }  // namespace hfr::io

@@ -5,24 +5,27 @@
 namespace hfr::io::gmsh {
 namespace {
 
-void write_nodes(Sink& sink, const MeshData& mesh) {
-  sink.line("$Nodes");
-  sink.line(mesh.points.size());
+void write_nodes(Sink& sink, const MeshStretch& mesh) {
+  if (mesh.is_first()) {
+    sink.line("$Nodes");
+    sink.line(mesh.n_points);
+  }
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    sink.int32(static_cast<std::int64_t>(i) + 1);
+    sink.int32(static_cast<std::int64_t>(mesh.first_point + i) + 1);
     for (int k = 0; k < 3; ++k) sink.real(mesh.points[i][k]);
     sink.end_line();
   }
+  sink.next_stretch();
+  if (!mesh.is_first()) return;
   sink.end_data();
   sink.line("$EndNodes");
 }
 
 /// In a binary file one header serves all elements of a dimension.
-void write_dimension(Sink& sink, const MeshData& mesh, const Layout& layout, int dimension) {
-  const Dimension& elements = layout.dimensions[static_cast<std::size_t>(dimension)];
+void write_dimension(Sink& sink, const MeshStretch& mesh, const Dimension& elements) {
   constexpr int kTags = 2;
   if (elements.count == 0) return;
-  if (sink.binary()) {
+  if (sink.binary() && mesh.is_first()) {
     sink.int32(elements.type);
     sink.int32(static_cast<std::int64_t>(elements.count));
     sink.int32(kTags);
@@ -37,21 +40,25 @@ void write_dimension(Sink& sink, const MeshData& mesh, const Layout& layout, int
       }
       sink.int32(group.label);
       sink.int32(group.entity);
-      for (const Index node : element_nodes(mesh, layout, dimension, i)) {
-        sink.int32(static_cast<std::int64_t>(node) + 1);
+      for (std::size_t k = 0; k < elements.nodes.width(); ++k) {
+        sink.int32(static_cast<std::int64_t>(elements.nodes(i, k)) + 1);
       }
       sink.end_line();
     }
   }
+  sink.next_stretch();
 }
 
 }  // namespace
 
-void write_mesh2(Sink& sink, const MeshData& mesh, const Layout& layout) {
+void write_mesh2(Sink& sink, const MeshStretch& mesh, const Layout& layout) {
   write_nodes(sink, mesh);
-  sink.line("$Elements");
-  sink.line(layout.n_elements());
-  for (int dimension = 0; dimension < 4; ++dimension) write_dimension(sink, mesh, layout, dimension);
+  if (mesh.is_first()) {
+    sink.line("$Elements");
+    sink.line(layout.n_elements());
+  }
+  for (const Dimension& elements : layout.dimensions) write_dimension(sink, mesh, elements);
+  if (!mesh.is_first()) return;
   sink.end_data();
   sink.line("$EndElements");
 }

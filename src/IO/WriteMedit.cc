@@ -5,6 +5,7 @@
 
 #include "IO/Formats.hh"
 #include "IO/MeditSource.hh"
+#include "IO/MeshStretch.hh"
 #include "IO/OutputFile.hh"
 #include "IO/ReadMeditSolution.hh"
 
@@ -14,14 +15,17 @@ namespace {
 using medit::Keyword;
 
 /// What both files are written through. A line ends at last() or end_line(); binary files have no lines.
+/// `is_first`: this process writes headings and what else is there once.
 class AsciiSink {
  public:
-  AsciiSink(const std::filesystem::path& path, const MeshData& /*mesh*/) : file_(path) {
-    file_.text("MeshVersionFormatted 2\nDimension 3\n");
+  AsciiSink(ByteSink& file, bool is_first, int /*version*/) : file_(file), is_first_(is_first) {
+    if (is_first_) file_.text("MeshVersionFormatted 2\nDimension 3\n");
   }
 
-  void begin(Keyword keyword, std::size_t entries, std::size_t /*integers*/, std::size_t /*reals*/,
+  /// A section of so many entries of all processes.
+  void begin(Keyword keyword, std::uint64_t entries, std::size_t /*integers*/, std::size_t /*reals*/,
              const std::vector<int>& types = {}) {
+    if (!is_first_) return;
     file_.text(medit::heading_of(static_cast<int>(keyword)).name).text("\n");
     last(static_cast<std::int64_t>(entries));
     if (types.empty()) return;
@@ -33,30 +37,37 @@ class AsciiSink {
   void integer(std::int64_t value) { file_.number(value).text(" "); }
   void last(std::int64_t value) { file_.number(value).text("\n"); }
   void end_line() { file_.text("\n"); }
-  void finish() { file_.text("End\n"); }
-  void commit() { file_.commit(); }
+  void end_section() { file_.next_stretch(); }
+  void finish() {
+    if (is_first_) file_.text("End\n");
+  }
 
  private:
-  OutputFile file_;
+  ByteSink& file_;
+  bool is_first_;
 };
 
 class BinarySink {
  public:
-  BinarySink(const std::filesystem::path& path, const MeshData& mesh)
-      : file_(path), version_(version_for(mesh)) {
+  BinarySink(ByteSink& file, bool is_first, int version)
+      : file_(file), is_first_(is_first), version_(version) {
+    next_ = 3 * sizeof(std::int32_t) + position_size() + sizeof(std::int32_t);
+    if (!is_first_) return;
     put<std::int32_t>(1);
     put<std::int32_t>(version_);
     put(static_cast<std::int32_t>(Keyword::kDimension));
-    put_position(position_ + position_size() + sizeof(std::int32_t));
+    put_position(next_);
     put<std::int32_t>(3);
   }
 
-  void begin(Keyword keyword, std::size_t entries, std::size_t integers, std::size_t reals,
+  void begin(Keyword keyword, std::uint64_t entries, std::size_t integers, std::size_t reals,
              const std::vector<int>& types = {}) {
-    put(static_cast<std::int32_t>(keyword));
     const std::size_t type_bytes = types.empty() ? 0 : (types.size() + 1) * sizeof(std::int32_t);
-    put_position(position_ + position_size() + integer_size() + type_bytes +
-                 entries * (integers * integer_size() + reals * sizeof(double)));
+    next_ += sizeof(std::int32_t) + position_size() + integer_size() + type_bytes +
+             entries * (integers * integer_size() + reals * sizeof(double));
+    if (!is_first_) return;
+    put(static_cast<std::int32_t>(keyword));
+    put_position(next_);
     integer(static_cast<std::int64_t>(entries));
     if (types.empty()) return;
     put(static_cast<std::int32_t>(types.size()));
@@ -66,53 +77,55 @@ class BinarySink {
   void integer(std::int64_t value) { version_ < 4 ? put(static_cast<std::int32_t>(value)) : put(value); }
   void last(std::int64_t value) { integer(value); }
   void end_line() {}
+  void end_section() { file_.next_stretch(); }
   void finish() {
+    if (!is_first_) return;
     put(static_cast<std::int32_t>(Keyword::kEnd));
     put_position(0);
   }
-  void commit() { file_.commit(); }
 
  private:
-  /// The oldest version that can hold the mesh is the one that most programs read.
-  static int version_for(const MeshData& mesh) {
-    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
-    std::size_t bytes = 1000 + mesh.points.size() * 28 + mesh.cells.size() * 20 + mesh.triangles.size() * 16 +
-                        mesh.edges.size() * 12 + mesh.fixed_vertices.size() * 4;
-    for (const Field& field : mesh.point_fields) bytes += 8 * field.values.size();
-    for (const Field& field : mesh.cell_fields) bytes += 8 * field.values.size();
-    const bool many = std::max({mesh.points.size(), mesh.cells.size(), mesh.triangles.size()}) > kMost;
-    return many ? 4 : bytes > kMost ? 3 : 2;
-  }
-
   template <class T>
   void put(T value) {
     file_.raw(value);
-    position_ += sizeof value;
   }
-  void put_position(std::size_t value) {
+  void put_position(std::uint64_t value) {
     version_ < 3 ? put(static_cast<std::int32_t>(value)) : put(static_cast<std::int64_t>(value));
   }
   std::size_t position_size() const { return version_ < 3 ? 4 : 8; }
   std::size_t integer_size() const { return version_ < 4 ? 4 : 8; }
 
-  OutputFile file_;
+  ByteSink& file_;
+  bool is_first_;
   int version_;
-  std::size_t position_ = 0;
+  std::uint64_t next_ = 0;  ///< where the next section begins
 };
 
-template <class Sink, class Elements>
-void write_elements(Sink& out, Keyword keyword, const Elements& elements, const std::vector<int>& labels) {
-  if (elements.empty()) return;
-  out.begin(keyword, elements.size(), elements[0].size() + 1, 0);
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    for (const Index corner : elements[i]) out.integer(static_cast<std::int64_t>(corner) + 1);
-    out.last(labels.empty() ? 0 : labels[i]);
-  }
+/// The oldest version of binary files that can hold the mesh is the one that most programs read.
+int version_for(const MeshStretch& mesh, std::size_t n_values_of_fields) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+  const std::uint64_t bytes = 1000 + mesh.n_points * 28 + mesh.cells.total * 20 + mesh.triangles.total * 16 +
+                              mesh.edges.total * 12 + mesh.fixed.total * 4 + 8 * n_values_of_fields;
+  const bool many = std::max({mesh.n_points, mesh.cells.total, mesh.triangles.total}) > kMost;
+  return many ? 4 : bytes > kMost ? 3 : 2;
 }
 
 template <class Sink>
-void write_all(Sink& out, const MeshData& mesh) {
-  out.begin(Keyword::kVertices, mesh.points.size(), 1, 3);
+void write_elements(Sink& out, Keyword keyword, const ElementStretch& elements) {
+  if (elements.total == 0) return;
+  const std::size_t width = elements.corners.width();
+  out.begin(keyword, elements.total, width + 1, 0);
+  for (std::size_t i = 0; i < elements.corners.size(); ++i) {
+    for (std::size_t k = 0; k < width; ++k)
+      out.integer(static_cast<std::int64_t>(elements.corners(i, k)) + 1);
+    out.last(elements.label(i));
+  }
+  out.end_section();
+}
+
+template <class Sink>
+void write_all(Sink& out, const MeshStretch& mesh) {
+  out.begin(Keyword::kVertices, mesh.n_points, 1, 3);
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const Vec3& p = mesh.points[i];
     out.real(p.x);
@@ -120,14 +133,16 @@ void write_all(Sink& out, const MeshData& mesh) {
     out.real(p.z);
     out.last(mesh.vertex_labels.empty() ? 0 : mesh.vertex_labels[i]);
   }
-  if (!mesh.fixed_vertices.empty()) {
-    out.begin(Keyword::kRequiredVertices, mesh.fixed_vertices.size(), 1, 0);
-    for (const Index vertex : mesh.fixed_vertices) out.last(static_cast<std::int64_t>(vertex) + 1);
+  out.end_section();
+  if (mesh.fixed.total > 0) {
+    out.begin(Keyword::kRequiredVertices, mesh.fixed.total, 1, 0);
+    for (std::size_t i = 0; i < mesh.fixed.corners.size(); ++i)
+      out.last(static_cast<std::int64_t>(mesh.fixed.corners(i, 0)) + 1);
+    out.end_section();
   }
-  write_elements(out, Keyword::kEdges, mesh.edges, mesh.edge_labels);
-  write_elements(out, Keyword::kTriangles, mesh.triangles, mesh.triangle_labels);
-  write_elements(out, Keyword::kTetrahedra, mesh.cells, mesh.regions);
-  out.finish();
+  write_elements(out, Keyword::kEdges, mesh.edges);
+  write_elements(out, Keyword::kTriangles, mesh.triangles);
+  write_elements(out, Keyword::kTetrahedra, mesh.cells);
 }
 
 /// The fields that Medit has a type for.
@@ -160,12 +175,22 @@ void write_fields(Sink& out, Keyword keyword, const std::vector<const Field*>& f
   }
 }
 
+void note_names(std::size_t n_names, Notes& notes) {
+  if (n_names > 0)
+    notes.push_back("Medit files hold no names: " + std::to_string(n_names) +
+                    " names of regions and patches are left out");
+}
+
+void note_solution_beside(const std::filesystem::path& solution, Notes& notes) {
+  std::error_code ignored;
+  if (std::filesystem::exists(solution, ignored))
+    notes.push_back(solution.filename().string() +
+                    " stands beside the file and is not of this mesh, but will be read with it");
+}
+
 /// `solution_name` is empty where there is no place beside the mesh for its fields.
 void note_losses(const MeshData& mesh, std::string_view solution_name, Notes& notes) {
-  if (!mesh.names.empty()) {
-    notes.push_back("Medit files hold no names: " + std::to_string(mesh.names.size()) +
-                    " names of regions and patches are left out");
-  }
+  note_names(mesh.names.size(), notes);
   std::string kept;
   for (const auto* fields : {&mesh.point_fields, &mesh.cell_fields}) {
     for (const Field& field : *fields) {
@@ -191,31 +216,49 @@ Notes write(const std::filesystem::path& path, const MeshData& mesh, const char*
   const std::filesystem::path solution_path =
       std::filesystem::path(path).replace_extension(solution_extension);
   const bool alone = path == kStandardOutput;
-  const std::string solution_name = alone ? "" : solution_path.filename().string();
   Notes notes;
-  note_losses(mesh, solution_name, notes);
+  note_losses(mesh, alone ? "" : solution_path.filename().string(), notes);
 
-  Sink out(path, mesh);
-  write_all(out, mesh);
-  const std::vector<const Field*> point_fields = storable(mesh.point_fields);
-  const std::vector<const Field*> cell_fields = storable(mesh.cell_fields);
-  std::error_code ignored;
+  const MeshStretch stretch = stretch_of(mesh);
+  std::size_t n_values = 0;
+  for (const auto* fields : {&mesh.point_fields, &mesh.cell_fields})
+    for (const Field& field : *fields) n_values += field.values.size();
+  const int version = version_for(stretch, n_values);
+  OutputFile file(path);
+  Sink out(file, true, version);
+  write_all(out, stretch);
+  out.finish();
   if (alone) {
-    out.commit();
+    file.commit();
     return notes;
   }
+  const std::vector<const Field*> point_fields = storable(mesh.point_fields);
+  const std::vector<const Field*> cell_fields = storable(mesh.cell_fields);
   if (!point_fields.empty() || !cell_fields.empty()) {
-    Sink solution(solution_path, mesh);
+    OutputFile solution_file(solution_path);
+    Sink solution(solution_file, true, version);
     write_fields(solution, Keyword::kSolAtVertices, point_fields, mesh.points.size());
     write_fields(solution, Keyword::kSolAtTetrahedra, cell_fields, mesh.cells.size());
     solution.finish();
-    solution.commit();
-  } else if (std::filesystem::exists(solution_path, ignored)) {
-    notes.push_back(solution_name +
-                    " stands beside the file and is not of this mesh, but will be read with it");
+    solution_file.commit();
+  } else {
+    note_solution_beside(solution_path, notes);
   }
-  out.commit();
+  file.commit();
   return notes;
+}
+
+template <class Sink>
+StretchedFile stretches(const MeshStretch& mesh, const std::filesystem::path& solution) {
+  StretchedFile file;
+  file.write = [&mesh, version = version_for(mesh, 0)](ByteSink& out) {
+    Sink sink(out, mesh.is_first(), version);
+    write_all(sink, mesh);
+    sink.finish();
+  };
+  note_names(mesh.names->size(), file.notes);
+  note_solution_beside(solution, file.notes);
+  return file;
 }
 
 }  // namespace
@@ -226,6 +269,14 @@ Notes write_medit(const std::filesystem::path& path, const MeshData& mesh, const
 
 Notes write_meditb(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& /*options*/) {
   return write<BinarySink>(path, mesh, ".solb");
+}
+
+StretchedFile medit_stretches(const std::filesystem::path& path, const MeshStretch& mesh, bool is_binary) {
+  const auto beside = [&](const char* extension) {
+    return std::filesystem::path(path).replace_extension(extension);
+  };
+  return is_binary ? stretches<BinarySink>(mesh, beside(".solb"))
+                   : stretches<AsciiSink>(mesh, beside(".sol"));
 }
 
 }  // namespace hfr::io

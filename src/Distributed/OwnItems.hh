@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_OWN_ITEMS_HH
+#define HFR_DISTRIBUTED_OWN_ITEMS_HH
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "Distributed/DistributedMesh.hh"
+
+/// What a rank has to write of a mesh in parts. What is written has numbers without gaps, as after
+/// TetMesh::collect_garbage(): each rank knows which vertices and slots of the whole are gone, and so how
+/// many are below a number.
+namespace hfr::mpi {
+
+/// Numbers without gaps. All ranks make one at the same time.
+class Numbering {
+ public:
+  explicit Numbering(DistributedMesh& mesh);
+
+  std::uint64_t n_vertices() const { return mesh_.n_vertices() - vertices_.size(); }
+  std::uint64_t n_cells() const { return mesh_.n_cells(); }
+  std::uint64_t operator()(VertexHandle v) const { return without(vertices_, mesh_.number(v)); }
+  std::uint64_t operator()(CellHandle c) const { return without(slots_, mesh_.number(c)); }
+
+ private:
+  static std::uint64_t without(const std::vector<std::uint64_t>& gone, std::uint64_t number) {
+    return number -
+           static_cast<std::uint64_t>(std::lower_bound(gone.begin(), gone.end(), number) - gone.begin());
+  }
+
+  const DistributedMesh& mesh_;
+  std::vector<std::uint64_t> vertices_, slots_;  // that are gone, ascending
+};
+
+std::vector<VertexHandle> own_vertices(const DistributedMesh& mesh);
+/// In the order of numbers.
+std::vector<CellHandle> own_cells(const DistributedMesh& mesh);
+
+/// An edge or a face with a label; of those, a rank writes the ones whose smallest vertex it owns.
+template <std::size_t N>
+struct Labelled {
+  std::uint64_t number = 0;
+  std::array<VertexHandle, N> v;
+  std::int32_t label = 0;
+};
+
+/// What hangs on own vertices, edges and faces, and what of it there is in the whole. All ranks make one at
+/// the same time.
+class OwnLabels {
+ public:
+  explicit OwnLabels(DistributedMesh& mesh);
+
+  std::vector<Labelled<3>> faces;  ///< in the order of numbers
+  std::vector<Labelled<2>> edges;
+  std::uint64_t n_faces = 0, n_edges = 0, n_fixed = 0;  ///< of the whole
+  bool with_regions = false;                            ///< or labels of faces or edges
+  bool with_vertex_labels = false;
+};
+
+}  // namespace hfr::mpi
+
+#endif
