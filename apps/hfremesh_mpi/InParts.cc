@@ -158,6 +158,10 @@ class PartsRun {
     begin();
     mpi::InParts found = mpi::survey(mesh_, line_.min_dihedral, policy());
     say_found(line_.input.empty() ? "generated" : "read", found);
+    if (!line_.input.empty()) {
+      require_good(ExitCode::kCannotRead, line_.input + ": meshes in parts cannot have");
+      seconds();  // are of no step
+    }
     bool goal_reached = true;
     if (found.n_invalid > 0 && line_.min_dihedral > 0)
       throw Failure(ExitCode::kInvalidCells,
@@ -231,11 +235,14 @@ class PartsRun {
     return result;
   }
 
-  void check() {
+  void require_good(ExitCode otherwise, const std::string& what) {
     const mpi::PartsCheck checked = mpi::check(mesh_);
     if (!checked.is_good)
-      throw Failure(ExitCode::kInternal,
-                    fmt::format("the check of rank {} has found: {}", checked.rank, checked.message));
+      throw Failure(otherwise, fmt::format("{}: {} (rank {})", what, checked.message, checked.rank));
+  }
+
+  void check() {
+    require_good(ExitCode::kInternal, "the check has found");
     say("checked on {} ranks: no fault, {:.2f} s", comm_.size(), seconds());
   }
 
