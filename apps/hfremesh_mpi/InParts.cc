@@ -42,6 +42,7 @@ struct PartsLine {
   std::uint64_t seed = 2013;
   int threads_each = 1;
   std::string partition = "coordinates";
+  bool distributed_output = false;
 };
 
 void add_options(Command command, PartsLine& line) {
@@ -51,15 +52,20 @@ void add_options(Command command, PartsLine& line) {
   command.example("mpirun -n 4 hfremesh-mpi parts part.msh -o part.vtu --min-dihedral 15",
                   "a file of which no rank reads all");
   command.example("mpirun -n 3 hfremesh-mpi parts good.pvtu -o good.msh", "one file, written by all ranks");
+  command.example(
+      "mpirun -n 4 hfremesh-mpi parts part.mesh -o out.mesh --distributed-output --min-dihedral 15",
+      "part.0.mesh and so on, to out.0.mesh and so on, for ParMmg");
   command.option(
       "IN", line.input,
-      "What to read: .pvtu, an index of pieces, or .vtu, .mesh, .meshb or .msh, of which each rank "
-      "reads a range");
+      "What to read: .pvtu, an index of pieces; .vtu, .mesh, .meshb or .msh, of which each rank "
+      "reads a range; or, where there is no file name.mesh, ParMmg's name.0.mesh, name.1.mesh and so on");
   command
       .option("-o,--output", line.output,
               "What to write: .pvtu, with a piece for each rank, or .vtu, .mesh, .meshb or .msh, one file "
               "with the bytes of hfremesh")
       .type_name("FILE");
+  command.flag("--distributed-output", line.distributed_output,
+               "With -o name.mesh: a file for each rank, name.0.mesh and so on, as ParMmg reads them");
   command
       .option(
           "--min-dihedral", line.min_dihedral,
@@ -147,6 +153,7 @@ void require_sound(const PartsLine& line) {
   const std::string out = extension(line.output);
   if (!line.output.empty() && !is_known(out))
     refuse(line.output + ": meshes in parts are written as .pvtu, .vtu, .mesh, .meshb or .msh");
+  if (line.distributed_output && out != ".mesh") refuse("--distributed-output is for -o FILE.mesh");
   improve_options(line);
 }
 
@@ -223,6 +230,7 @@ class PartsRun {
 
   std::vector<std::string> read() {
     if (std::filesystem::path(line_.input).extension() == ".pvtu") return mpi::read_pvtu(mesh_, line_.input);
+    if (mpi::has_medit_parts(comm_, line_.input)) return mpi::read_medit_parts(mesh_, line_.input);
     return mpi::read_ranges(mesh_, line_.input);
   }
 
@@ -250,7 +258,8 @@ class PartsRun {
     reporting(ExitCode::kUsage, [&] {
       if (std::filesystem::path(line_.output).extension() == ".pvtu")
         return mpi::write_pvtu(mesh_, line_.output);
-      for (const std::string& note : mpi::write_ranges(mesh_, line_.output))
+      for (const std::string& note : line_.distributed_output ? mpi::write_medit_parts(mesh_, line_.output)
+                                                              : mpi::write_ranges(mesh_, line_.output))
         say("{}: {}", line_.output, note);
     });
     say("written {}, {:.2f} s", line_.output, seconds());

@@ -112,6 +112,22 @@ std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem:
 std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
                                      std::uint64_t at_once = 1'000'000);
 
+/// The files of ParMmg for a mesh in parts, "name.0.mesh", "name.1.mesh", … for the path "name.mesh": text in
+/// Medit's format that says which triangles or vertices a part shares with others. Any number of them; file i
+/// is read by rank i mod n. Vertices, cells, triangles and edges have the order of the files; of the copies
+/// of a vertex that of the smallest part counts. What has no label and is there since parts meet is left out:
+/// triangles of communicators, or, where those are of vertices, triangles all of whose vertices two parts
+/// share, and edges that are listed as parallel. What is listed as parallel and required is not fixed. Throws
+/// IoError where a file cannot be opened, InvalidInput where one is broken or cut short, and where sides of
+/// an interface do not agree. Returns notes on the files that this rank has read.
+std::vector<std::string> read_medit_parts(DistributedMesh& mesh, const std::filesystem::path& path);
+/// Whether there are such files for the path, and no file of the path itself. All take part.
+bool has_medit_parts(Comm& comm, const std::filesystem::path& path);
+/// Such files, one for each rank, with communicators of triangles. All are renamed when all are written.
+/// Returns one line for each thing that the format cannot hold. Throws InvalidInput where a rank has no
+/// cells, and for more vertices or cells than 32 bits count; IoError where a file cannot be written.
+std::vector<std::string> write_medit_parts(DistributedMesh& mesh, const std::filesystem::path& path);
+
 }  // namespace hfr::mpi
 
 #endif

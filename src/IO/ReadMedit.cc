@@ -5,10 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
 #include "IO/Formats.hh"
 #include "IO/Linearise.hh"
+#include "IO/MeditPart.hh"
 #include "IO/MeditSource.hh"
 #include "IO/ReadMeditSolution.hh"
+#include "IO/Validate.hh"
 
 namespace hfr::io {
 namespace {
@@ -19,11 +22,15 @@ using medit::Keyword;
 template <class Source>
 class MeditReader {
  public:
-  explicit MeditReader(const InputFile& file) : in_(file) {}
+  /// `part`: takes what the file says of a part of a distributed mesh; such sections are passed over where
+  /// there is none.
+  explicit MeditReader(const InputFile& file, MeditPart* part = nullptr) : in_(file), part_(part) {}
 
   MeshData read() {
     while (const auto heading = in_.next()) read_section(*heading);
+    if (!in_.saw_end() && part_) in_.fail("the file has no End: it has been cut short");
     if (!in_.saw_end()) mesh_.notes.emplace_back("the file has no End; it may have been cut short");
+    if (part_) finish_part();
     fix_required();
     // References are not optional in the format; all zero means that there are none.
     const auto is_zero = [](int label) { return label == 0; };
@@ -62,7 +69,7 @@ class MeditReader {
       case Keyword::kRequiredTriangles:
         return read_numbers(required_triangles_, heading);
       default:
-        return skip(heading);
+        if (!part_ || !read_of_part(heading.name)) skip(heading);
     }
   }
 
@@ -129,6 +136,106 @@ class MeditReader {
     }
   }
 
+  /// Whether this is a section of a part.
+  bool read_of_part(std::string_view name) {
+    const Heading heading{Keyword::kUnknown, 0, name};
+    if (name == "NumberOfPartitions") {
+      part_->n_parts = in_.integer_in(1, std::numeric_limits<std::int32_t>::max(), "number of partitions");
+    } else if (name == "ParallelVertices") {
+      read_numbers(parallel_vertices_, heading);
+    } else if (name == "ParallelTriangles") {
+      read_numbers(part_->parallel_triangles, heading);
+    } else if (name == "ParallelEdges") {
+      read_numbers(part_->parallel_edges, heading);
+    } else if (name == "ParallelVertexCommunicators") {
+      read_communicators(of_vertices_, heading);
+    } else if (name == "ParallelTriangleCommunicators") {
+      read_communicators(of_triangles_, heading);
+    } else if (name == "ParallelCommunicatorVertices") {
+      read_items(of_vertices_, heading);
+    } else if (name == "ParallelCommunicatorTriangles") {
+      read_items(of_triangles_, heading);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  /// Interfaces of one kind while they are read.
+  struct Communicators {
+    std::vector<MeditInterface> interfaces;
+    std::vector<std::size_t> n_items;  ///< as announced, of each
+    bool has_items = false;
+  };
+
+  void read_communicators(Communicators& all, const Heading& heading) {
+    if (!all.interfaces.empty()) in_.fail(std::string(heading.name) + " comes twice");
+    const std::size_t n = in_.count(heading.name, 2, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      expect_entry(heading, n, i);
+      constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+      all.interfaces.emplace_back().part = static_cast<int>(in_.integer_in(0, kMost, "part"));
+      all.n_items.push_back(static_cast<std::size_t>(in_.integer_in(1, kMost, "number of items")));
+    }
+  }
+
+  /// As many as all communicators have announced: the section has no count of its own.
+  void read_items(Communicators& all, const Heading& heading) {
+    if (all.has_items) in_.fail(std::string(heading.name) + " comes twice");
+    all.has_items = true;
+    std::size_t n = 0;
+    for (const std::size_t items : all.n_items) n += items;
+    for (std::size_t i = 0; i < n; ++i) {
+      expect_entry(heading, n, i);
+      const auto item = static_cast<Index>(in_.integer_in(1, VertexHandle::kInvalid >> 1, "number") - 1);
+      const std::int64_t number =
+          in_.integer_in(1, std::numeric_limits<std::int64_t>::max(), "global number");
+      const auto at = static_cast<std::size_t>(
+          in_.integer_in(0, static_cast<std::int64_t>(all.interfaces.size()) - 1, "communicator"));
+      all.interfaces[at].items.push_back(item);
+      all.interfaces[at].number.push_back(number);
+    }
+    for (std::size_t k = 0; k < all.interfaces.size(); ++k)
+      if (all.interfaces[k].items.size() != all.n_items[k])
+        in_.fail(std::string(heading.name) + ": communicator " + std::to_string(k) + " announces " +
+                 std::to_string(all.n_items[k]) + " items and has " +
+                 std::to_string(all.interfaces[k].items.size()));
+  }
+
+  void finish_part() {
+    const auto require = [&](const Communicators& all, std::size_t n_there, const std::string& what) {
+      if (!all.interfaces.empty() && !all.has_items)
+        in_.fail("communicators of " + what + " are announced, and their items are not there");
+      for (const MeditInterface& interface : all.interfaces)
+        for (const Index item : interface.items) require_below(item, n_there, what);
+    };
+    require(of_vertices_, mesh_.points.size(), "vertices");
+    require(of_triangles_, mesh_.triangles.size(), "triangles");
+    for (const Index i : part_->parallel_triangles) require_below(i, mesh_.triangles.size(), "triangles");
+    for (const Index i : part_->parallel_edges) require_below(i, mesh_.edges.size(), "edges");
+    part_->by_triangles = !of_triangles_.interfaces.empty();
+    part_->interfaces = std::move((part_->by_triangles ? of_triangles_ : of_vertices_).interfaces);
+    const std::size_t before =
+        mesh_.fixed_vertices.size() + required_triangles_.size() + required_edges_.size();
+    leave_out(mesh_.fixed_vertices, parallel_vertices_);
+    leave_out(required_triangles_, part_->parallel_triangles);
+    leave_out(required_edges_, part_->parallel_edges);
+    const std::size_t after =
+        mesh_.fixed_vertices.size() + required_triangles_.size() + required_edges_.size();
+    if (before > after)
+      mesh_.notes.push_back("vertices, edges and triangles that are required and parallel (" +
+                            std::to_string(before - after) + ") are not fixed");
+  }
+  void require_below(Index item, std::size_t n, const std::string& what) {
+    if (item >= n)
+      in_.fail("item " + std::to_string(item + std::size_t{1}) + " of " + what +
+               " between parts is out of range (the file has " + std::to_string(n) + ")");
+  }
+  static void leave_out(std::vector<Index>& numbers, std::vector<Index> gone) {
+    std::sort(gone.begin(), gone.end());
+    std::erase_if(numbers, [&](Index i) { return std::binary_search(gone.begin(), gone.end(), i); });
+  }
+
   void skip(const Heading& heading) {
     const std::size_t n = in_.announced();
     if (n > 0 && medit::is_unsupported_cell(heading.name)) {
@@ -171,7 +278,10 @@ class MeditReader {
   }
 
   Source in_;
+  MeditPart* part_;
   MeshData mesh_;
+  Communicators of_vertices_, of_triangles_;
+  std::vector<Index> parallel_vertices_;
   std::vector<Index> midside_;
   std::vector<Index> corners_;
   std::vector<Index> required_edges_;
@@ -197,5 +307,26 @@ MeshData read_either(const InputFile& file) {
 MeshData read_medit(const InputFile& file) { return read_either(file); }
 
 MeshData read_meditb(const InputFile& file) { return read_either(file); }
+
+std::filesystem::path medit_part_path(const std::filesystem::path& path, int part) {
+  std::filesystem::path name = path.stem();
+  name += "." + std::to_string(part);
+  name += path.extension();
+  return path.parent_path() / name;
+}
+
+MeditPart read_medit_part(const std::filesystem::path& path) {
+  const InputFile file(path);
+  HFR_REQUIRE(!file.bytes().empty(), path.string() + ": the file is empty");
+  HFR_REQUIRE(!medit::is_binary(file),
+              path.string() + ": parts of a distributed mesh are text, and this is a binary file");
+  MeditPart part;
+  MeditReader<medit::AsciiSource> reader(file, &part);
+  part.mesh = reader.read();
+  HFR_REQUIRE(reader.midside().empty(),
+              path.string() + ": parts of a distributed mesh have elements of first order");
+  validate(part.mesh, path.string());
+  return part;
+}
 
 }  // namespace hfr::io

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "IO/Formats.hh"
+#include "IO/MeditPart.hh"
 #include "IO/MeditSource.hh"
 #include "IO/MeshStretch.hh"
 #include "IO/OutputFile.hh"
@@ -269,6 +270,32 @@ Notes write_medit(const std::filesystem::path& path, const MeshData& mesh, const
 
 Notes write_meditb(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& /*options*/) {
   return write<BinarySink>(path, mesh, ".solb");
+}
+
+/// As ParMmg reads it: it looks for keywords, in this order.
+Notes write_medit_part(ByteSink& file, const MeditPart& part) {
+  const MeshStretch stretch = stretch_of(part.mesh);
+  AsciiSink out(file, true, 2);
+  write_all(out, stretch);
+  const auto integer = [&](std::size_t value) { return static_cast<std::int64_t>(value); };
+  file.text("NumberOfPartitions\n").number(part.n_parts);
+  file.text(part.by_triangles ? "\nParallelTriangleCommunicators\n" : "\nParallelVertexCommunicators\n");
+  file.number(integer(part.interfaces.size())).text("\n");
+  for (const MeditInterface& interface : part.interfaces)
+    file.number(std::int64_t{interface.part}).text(" ").number(integer(interface.items.size())).text("\n");
+  file.text(part.by_triangles ? "ParallelCommunicatorTriangles\n" : "ParallelCommunicatorVertices\n");
+  for (std::size_t k = 0; k < part.interfaces.size(); ++k) {
+    const MeditInterface& interface = part.interfaces[k];
+    for (std::size_t i = 0; i < interface.items.size(); ++i) {
+      out.integer(integer(interface.items[i]) + 1);
+      out.integer(interface.number[i]);
+      out.last(integer(k));
+    }
+  }
+  out.finish();
+  Notes notes;
+  note_names(part.mesh.names.size(), notes);
+  return notes;
 }
 
 StretchedFile medit_stretches(const std::filesystem::path& path, const MeshStretch& mesh, bool is_binary) {
