@@ -259,7 +259,7 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
   for (int layers = 1; !invalid.empty() && idle < effort.idle && !control.stopped(); layers += layers + 1) {
     bool has_brought = false;
     for (const bool relaxed : {true, false}) {
-      if (invalid.empty() || control.stopped() || (relaxed && layers == 1)) continue;
+      if (invalid.empty() || (relaxed && layers == 1)) continue;
       const Tangle left = unfold_within(layers, relaxed);
       if (layers > 1 && !left.is_less_than(least)) continue;
       least = left;
