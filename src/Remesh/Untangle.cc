@@ -256,7 +256,12 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
   };
   Tangle least;
   int idle = 0;
+  const auto n_within = [&](int layers) {
+    const std::vector<std::uint8_t> within = vertices_within(run.mesh, invalid, layers);
+    return std::count(within.begin(), within.end(), 1);
+  };
   for (int layers = 1; !invalid.empty() && idle < effort.idle && !control.stopped(); layers += layers + 1) {
+    if (layers > 1 && n_within(layers) == n_within(layers / 2)) break;  // the mesh ends here
     bool has_brought = false;
     for (const bool relaxed : {true, false}) {
       if (invalid.empty() || (relaxed && layers == 1)) continue;
