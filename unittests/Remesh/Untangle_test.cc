@@ -151,7 +151,7 @@ TEST(Untangle, TheInteriorFollowsWhereverTheBoundaryGoes) {
 
 TEST(Untangle, WidthsEndWhereTheMeshEnds) {
   std::size_t n_left = 0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     TetMesh mesh = jittered(5, 0.6, seed);  // sides are turned over
     const Result result = improve(mesh, repair_only());
     n_left += result.invalid_cells.size();
@@ -163,7 +163,7 @@ TEST(Untangle, WidthsEndWhereTheMeshEnds) {
       EXPECT_LE(++n_widths[pass.iteration], 4 * 5);
     }
   }
-  EXPECT_GT(n_left, 10U);
+  EXPECT_GT(n_left, 4U);
 }
 
 TEST(Untangle, FoldedBoundaryLeavesOnlyWhatTouchesIt) {
