@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "Quality/Metrics.hh"
+#include "Remesh/Strategy.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
@@ -15,8 +15,11 @@ namespace {
 /// Cells below `degrees` with the proofs of what holds them.
 std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
   std::vector<StuckCell> low =
-      proven_cells(run.mesh, cells_below(run.mesh, degrees, run.policy()), degrees, run.policy());
-  if (run.surface) blame_features(run.mesh, low, degrees, *run.surface, run.policy());
+      kept_from_rising(run.mesh, cells_below(run.mesh, degrees, run.policy()), kLeastRise, run.policy());
+  // What a feature holds, the faces at it hold as well while they stay, which is quicker to see.
+  const bool is_kept =
+      std::any_of(low.begin(), low.end(), [](const StuckCell& c) { return is_proof(c.reason); });
+  if (run.surface && is_kept) blame_features(run.mesh, low, kLargestGoal, *run.surface, run.policy());
   return low;
 }
 

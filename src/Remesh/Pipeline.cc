@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -142,7 +143,7 @@ void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   best.settle();
 }
 
-void run_usual(const Run& run, double enough = -180);
+void run_usual(const Run& run, double enough = std::numeric_limits<double>::lowest());
 
 /// The run with a flat surface, from the beginning, and the better of what there was and what comes: a free
 /// run may do all that this one may.
@@ -154,7 +155,7 @@ void run_flat(const Run& run, Beginning from) {
   const FlatSurface surface(run.mesh, *run.surface, run.policy());
   Run part = run.with(strategy);
   part.surface = surface.get();
-  run_usual(part, best.worst() / 2);  // work for what is claimed may bring twice as much, hardly more
+  run_usual(part, strategy.claimed->goal->catches_up * best.worst());
   rebuild(run.surface, run.mesh, run.policy());
   best.settle();
 }

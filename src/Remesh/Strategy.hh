@@ -139,6 +139,7 @@ struct UntangleEffort {
   /// what the boundary brings goes through no more than a layer with each.
   int sweeps_of_layer = 3;
   int patience = 4;      ///< sweeps that bring nothing
+  double still = 1e-3;   ///< share of its first moves to which those of a relaxation have to come down
   int newton_steps = 3;  ///< at a vertex
   /// Decision values of volume-length, from what is all but flat to what is merely poor: cells below one are
   /// worked on, below the next only when that has stopped helping.
@@ -359,6 +360,9 @@ struct GoalEffort {
   double more_cells = kMoreCells;
   int turns = 3;
   double pays = kClaimShare;
+  /// Share of the worst angle of a free run that the one with a flat surface has to have, once all cells have
+  /// been improved, for it to go on: work for what is claimed may bring twice as much, hardly more.
+  double catches_up = 0.5;
 };
 
 /// The worst angle as far as it goes, whatever it costs in time: after a default run. Shown by --runs max.

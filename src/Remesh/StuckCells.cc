@@ -76,14 +76,14 @@ void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
 
 }  // namespace
 
-std::vector<StuckCell> proven_cells(const TetMesh& mesh, std::span<const CellHandle> cells, double degrees,
-                                    par::Policy policy) {
-  std::vector<StuckCell> proven(cells.size());
+std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const CellHandle> cells, double by,
+                                        par::Policy policy) {
+  std::vector<StuckCell> kept(cells.size());
   par::for_each(policy, cells.size(), [&](std::size_t i) {
-    proven[i] = unproven(mesh, cells[i]);
-    prove(mesh, degrees, proven[i]);
+    kept[i] = unproven(mesh, cells[i]);
+    prove(mesh, kept[i].degrees + by, kept[i]);
   });
-  return proven;
+  return kept;
 }
 
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,

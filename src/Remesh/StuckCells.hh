@@ -16,10 +16,10 @@ namespace hfr {
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
                                    std::span<const HalfFaceHandle> unfillable, par::Policy policy = {});
 
-/// The same for the given cells, but for what needs the fold of a boundary, and without numbers of vertices
-/// that may not move.
-std::vector<StuckCell> proven_cells(const TetMesh& mesh, std::span<const CellHandle> cells, double degrees,
-                                    par::Policy policy = {});
+/// For each of these cells, what is proven to keep it from rising by so many degrees; not what needs the fold
+/// of a boundary, and without the number of vertices that may not move.
+std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const CellHandle> cells, double by,
+                                        par::Policy policy = {});
 
 /// Says kMaxCells of the cells without a reason of which VertexInsertion would raise the worst angle, with
 /// more cells than `max_cells`, and how many cells there would have to be for all of them.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -19,8 +20,6 @@ namespace hfr {
 namespace {
 
 constexpr double kUnfoldNanoseconds = 5'000;  // a vertex
-/// Share of its first moves to which those of a relaxation have to come down.
-constexpr double kHardly = 1e-3;
 
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const TetMesh& mesh) {
@@ -64,7 +63,7 @@ class Unfolding {
              RoundCounts& counts) {
     gather(layers, invalid);
     counts.seeds = vertices_.size();
-    if (vertices_.empty()) return {invalid.size(), 0};
+    if (vertices_.empty()) return {invalid.size(), std::numeric_limits<double>::infinity()};
     const StarTable stars(mesh_, vertices_, work_.star_size, policy_);
     const auto groups = colour_vertices(mesh_, vertices_, stars, policy_);
     gather_cells(stars);
@@ -152,7 +151,7 @@ class Unfolding {
       double all = 0;
       for (double one : moved) all += one;  // in a fixed order
       if (s == 0) first = all;
-      if (all <= kHardly * first) return;
+      if (all <= effort_.still * first) return;
     }
   }
 
