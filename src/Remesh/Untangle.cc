@@ -132,10 +132,11 @@ class Unfolding {
   /// layers, and one takes a tenth of a visit that unfolds. Ends where vertices hardly move any more.
   void relax(const StarTable& stars, const std::vector<std::vector<std::uint32_t>>& groups, int layers,
              RunControl& control) {
-    const double over = 2 / (1 + std::numbers::pi / (layers + 1));  // the best for a slab of so many layers
+    // All but the best for a slab with so many layers on either side of its middle.
+    const double over = 2 / (1 + std::numbers::pi / (2 * (layers + 1)));
     std::vector<double> moved(vertices_.size());
     double first = 0;
-    for (int s = 0; s < effort_.sweeps_of_layer * (layers + 1) && !control.stopped(); ++s) {
+    for (int s = 0; s < effort_.iterations * (layers + 1) && !control.stopped(); ++s) {
       for (const auto& group : groups)
         par::for_each(policy_, group.size(), [&](std::size_t k) {
           const std::uint32_t i = group[k];
@@ -257,10 +258,13 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
   int idle = 0;
   const auto n_within = [&](int layers) {
     const std::vector<std::uint8_t> within = vertices_within(run.mesh, invalid, layers);
-    return std::count(within.begin(), within.end(), 1);
+    return static_cast<std::size_t>(std::count(within.begin(), within.end(), 1));
   };
   for (int layers = 1; !invalid.empty() && idle < effort.idle && !control.stopped(); layers += layers + 1) {
-    if (layers > 1 && n_within(layers) == n_within(layers / 2)) break;  // the mesh ends here
+    const std::size_t n_reached = n_within(layers);
+    if (layers > 1 && n_reached == n_within(layers / 2)) break;  // the mesh ends here
+    // Many invalid cells beside one another may hang on what lies as far away as they have come.
+    const bool are_many = n_reached < kOneInFew * invalid.size();
     bool has_brought = false;
     for (const bool relaxed : {true, false}) {
       if (invalid.empty() || (relaxed && layers == 1)) continue;
@@ -269,7 +273,7 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
       least = left;
       has_brought = true;
     }
-    idle = has_brought ? 0 : idle + 1;
+    idle = has_brought || are_many ? 0 : idle + 1;
   }
   return invalid.size();
 }

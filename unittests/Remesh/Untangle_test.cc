@@ -96,6 +96,11 @@ TEST(Untangle, TheInteriorFollowsWhereverTheBoundaryGoes) {
        [](Vec3 p) {
          return p + Vec3{0, 12, 0};
        }},
+      {"shifted far away",
+       {12, 12, 12},
+       [](Vec3 p) {
+         return p + Vec3{100, 0, 0};
+       }},
       {"sheared",
        {8, 8, 8},
        [](Vec3 p) {
