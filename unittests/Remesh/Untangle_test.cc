@@ -81,61 +81,39 @@ TetMesh interior_at_rest(generate::Counts counts, const std::function<Vec3(Vec3)
 // Each motion by itself, of all vertices, leaves every cell positive: there is a solution without
 // reconnecting.
 TEST(Untangle, TheInteriorFollowsWhereverTheBoundaryGoes) {
-  const auto turned = [](Vec3 p, double angle, Vec3 about) {
-    const double y = p.y - about.y, z = p.z - about.z, c = std::cos(angle), s = std::sin(angle);
-    return Vec3{p.x, about.y + y * c - z * s, about.z + y * s + z * c};
+  using Motion = std::function<Vec3(Vec3)>;
+  const auto moved = [](Vec3 by) -> Motion { return [=](Vec3 p) { return p + by; }; };
+  const auto scaled = [](Vec3 by) -> Motion {
+    return [=](Vec3 p) { return Vec3{by.x * p.x, by.y * p.y, by.z * p.z}; };
   };
-  const std::vector<std::tuple<std::string, generate::Counts, std::function<Vec3(Vec3)>>> motions = {
-      {"shifted by a half",
-       {8, 8, 8},
-       [](Vec3 p) {
-         return p + Vec3{4.5, 0, 0};
-       }},
-      {"shifted out of itself",
-       {5, 5, 5},
-       [](Vec3 p) {
-         return p + Vec3{0, 12, 0};
-       }},
-      {"shifted far away",
-       {12, 12, 12},
-       [](Vec3 p) {
-         return p + Vec3{100, 0, 0};
-       }},
-      {"sheared",
-       {8, 8, 8},
-       [](Vec3 p) {
-         return Vec3{p.x + 1.2 * p.y, p.y, p.z};
-       }},
-      {"pressed",
-       {8, 8, 8},
-       [](Vec3 p) {
-         return Vec3{p.x, p.y, 0.2 * p.z};
-       }},
-      {"shrunk", {8, 8, 8}, [](Vec3 p) { return 0.3 * p; }},
-      {"turned by 90 degrees",
-       {8, 8, 8},
-       [&](Vec3 p) {
-         return turned(p, std::numbers::pi / 2, {4, 4, 4});
-       }},
-      {"turned over",
-       {6, 6, 6},
-       [&](Vec3 p) {
-         return turned(p, std::numbers::pi, {3, 3, 3});
-       }},
-      {"twisted",
-       {20, 4, 4},
-       [&](Vec3 p) {
-         return turned(p, 0.15 * p.x, {0, 2, 2});
-       }},
-      {"bent",
-       {25, 5, 5},
-       [](Vec3 p) {
-         const double angle = 0.08 * p.x, radius = 12 + p.y;
-         return Vec3{radius * std::sin(angle), radius * std::cos(angle), p.z};
-       }},
-      {"bowed, 12 cubes thick", {12, 12, 12}, [](Vec3 p) {
-         return Vec3{p.x + 7 * std::sin(p.y * (std::numbers::pi / 12)), p.y, p.z};
-       }}};
+  /// About an axis along x, by `angle` and so much more for each cube along it.
+  const auto turned = [](double angle, double more, double y, double z) -> Motion {
+    return [=](Vec3 p) {
+      const double c = std::cos(angle + more * p.x), s = std::sin(angle + more * p.x);
+      return Vec3{p.x, y + (p.y - y) * c - (p.z - z) * s, z + (p.y - y) * s + (p.z - z) * c};
+    };
+  };
+  const Motion sheared = [](Vec3 p) { return Vec3{p.x + 1.2 * p.y, p.y, p.z}; };
+  const Motion bent = [](Vec3 p) {
+    const double angle = 0.08 * p.x, radius = 12 + p.y;
+    return Vec3{radius * std::sin(angle), radius * std::cos(angle), p.z};
+  };
+  const Motion bowed = [](Vec3 p) {
+    return Vec3{p.x + 7 * std::sin(p.y * (std::numbers::pi / 12)), p.y, p.z};
+  };
+  const std::vector<std::tuple<std::string, generate::Counts, Motion>> motions = {
+      {"shifted by a half", {8, 8, 8}, moved({4.5, 0, 0})},
+      {"shifted out of itself", {5, 5, 5}, moved({0, 12, 0})},
+      {"shifted by three widths, 16 cubes thick", {16, 16, 16}, moved({48, 0, 0})},
+      {"sheared", {8, 8, 8}, sheared},
+      {"pressed", {8, 8, 8}, scaled({1, 1, 0.2})},
+      {"pressed, 24 cubes thick", {24, 24, 24}, scaled({1, 1, 0.05})},
+      {"shrunk", {8, 8, 8}, scaled({0.3, 0.3, 0.3})},
+      {"turned by 90 degrees", {8, 8, 8}, turned(std::numbers::pi / 2, 0, 4, 4)},
+      {"turned over", {6, 6, 6}, turned(std::numbers::pi, 0, 3, 3)},
+      {"twisted", {20, 4, 4}, turned(0, 0.15, 2, 2)},
+      {"bent", {25, 5, 5}, bent},
+      {"bowed, 12 cubes thick", {12, 12, 12}, bowed}};
   for (const auto& [name, counts, motion] : motions) {
     SCOPED_TRACE(name);
     TetMesh mesh = interior_at_rest(counts, motion);
@@ -152,6 +130,26 @@ TEST(Untangle, TheInteriorFollowsWhereverTheBoundaryGoes) {
     EXPECT_EQ(check(mesh), Ok);
     EXPECT_TRUE(boundary_of(mesh) == boundary);
   }
+}
+
+TEST(Untangle, CellsFollowABodyThatHasMovedThroughThem) {
+  // A channel with a hole of a cube's shape, which goes along it by twice its size.
+  const auto in_body = [](Vec3 p) {
+    return p.x > 3.5 && p.x < 6.5 && std::abs(p.y - 4.5) < 2 && std::abs(p.z - 4.5) < 2;
+  };
+  generate::Arrays arrays = generate::box({20, 9, 9}, {0, 0, 0}, {20, 9, 9});
+  std::erase_if(arrays.cells, [&](const Corners& c) {
+    return std::all_of(c.begin(), c.end(), [&](Index v) { return in_body(arrays.points[v]); });
+  });
+  for (Vec3& p : arrays.points)
+    if (in_body(p)) p = p + Vec3{6, 0.5, 0};
+  TetMesh mesh = built(arrays);
+  ASSERT_GT(n_inverted(mesh), 50U);
+  ImproveOptions only_moves = repair_only();
+  only_moves.min_dihedral = 1e-3;
+  only_moves.ops = Ops::kSmooth;
+  EXPECT_TRUE(improve(mesh, only_moves).invalid_cells.empty());
+  EXPECT_EQ(n_inverted(mesh), 0U);
 }
 
 TEST(Untangle, WidthsEndWhereTheMeshEnds) {
