@@ -213,7 +213,7 @@ std::vector<Row> make_rows() {
       number("pass.many_moves", &P::many_moves, kOffToo),
       number("pass.many_moves_share", &P::many_moves_share),
       number("pass.move_gain", &P::move_gain, kOffToo, kAbove),
-      number("untangle.sweeps_of_layer", &U::sweeps_of_layer),
+      number("untangle.first_sweeps", &U::first_sweeps),
       number("untangle.patience", &U::patience),
       number("untangle.newton_steps", &U::newton_steps),
       number("bulk.iterations", &BulkEffort::iterations, {0, 1.0 / 3, 2}),

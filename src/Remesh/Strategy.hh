@@ -135,9 +135,8 @@ struct PassEffort {
 
 /// Mending inverted and flat cells. Shown by bench/untangle.py and docs/untangling.md, "Measured".
 struct UntangleEffort {
-  /// Visits to each vertex for each layer of cells round the invalid ones whose vertices are moved together:
-  /// what the boundary brings goes through no more than a layer with each.
-  int sweeps_of_layer = 3;
+  int first_sweeps =
+      6;  ///< visits to each vertex of one layer round the invalid cells, before more layers are tried
   int patience = 4;      ///< sweeps that bring nothing
   double still = 1e-3;   ///< share of its first moves to which those of a relaxation have to come down
   int newton_steps = 3;  ///< at a vertex

@@ -57,10 +57,10 @@ class Unfolding {
   Unfolding(const Run& run, const UntangleEffort& effort)
       : mesh_(run.mesh), work_(run.work), policy_(run.policy()), effort_(effort) {}
 
-  /// Moves what is within so many layers; `relaxed`: from where vertices lie between their neighbours,
-  /// instead of where they are. Returns what was left in the end, before what does not help was put back.
-  Tangle run(int layers, bool relaxed, std::span<const CellHandle> invalid, RunControl& control,
-             RoundCounts& counts) {
+  /// Moves what is within so many layers; where that is more than one, vertices may be far from their places,
+  /// and begin between their neighbours. Returns what was left in the end, before what does not help was put
+  /// back.
+  Tangle run(int layers, std::span<const CellHandle> invalid, RunControl& control, RoundCounts& counts) {
     gather(layers, invalid);
     counts.seeds = vertices_.size();
     if (vertices_.empty()) return {invalid.size(), std::numeric_limits<double>::infinity()};
@@ -69,8 +69,9 @@ class Unfolding {
     gather_cells(stars);
     std::vector<Vec3> before(vertices_.size());
     for (std::size_t i = 0; i < vertices_.size(); ++i) before[i] = mesh_.point(vertices_[i]);
-    const int n_sweeps = effort_.sweeps_of_layer * (layers + 1);
-    if (relaxed) relax(stars, groups, layers, control);
+    // Wider ones go on while that brings anything: what comes from the boundary passes a layer with each.
+    const int n_sweeps = layers > 1 ? effort_.iterations * (layers + 1) : effort_.first_sweeps;
+    if (layers > 1) relax(stars, groups, layers, control);
     Tangle now = tangle(), least;
     int idle = 0;
     for (int s = 0; s < n_sweeps && now.n_invalid > 0 && idle < effort_.patience && !control.stopped(); ++s) {
@@ -226,34 +227,11 @@ class Unfolding {
   std::vector<CellHandle> cells_;
 };
 
-/// Wider and wider until nothing is invalid, or that brings nothing. Where one layer does not do, the
-/// vertices may be far from their places, and begin between their neighbours. Returns the number of invalid
-/// cells.
+/// Wider and wider until nothing is invalid, or that brings nothing. Returns the number of invalid cells.
 std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int iteration) {
   RunControl& control = run.control;
   std::vector<CellHandle> invalid = invalid_cells(run.mesh, run.policy());
   run.keep(invalid.empty());
-  const auto unfold_within = [&](int layers, bool relaxed) {
-    const double start = control.seconds();
-    RoundCounts counts;
-    const Tangle left = Unfolding(run, effort).run(layers, relaxed, invalid, control, counts);
-    if (counts.winners > 0) ++run.work.clock;
-    invalid = invalid_cells(run.mesh, run.policy());
-    PassReport pass;
-    pass.stage = "untangle";
-    pass.op = relaxed ? "relax" : "unfold";
-    pass.iteration = iteration;
-    pass.rounds = pass.sub_rounds = counts.rounds;
-    pass.seeds = counts.seeds;
-    pass.candidates = pass.winners = counts.winners;
-    pass.n_inverted = invalid.size();
-    pass.worst = survey(run.mesh, run.policy()).worst;
-    pass.seconds = pass.seconds_evaluate = control.seconds() - start;
-    control.add(std::move(pass));
-    control.tell("untangle", iteration, invalid.size(),
-                 [&] { return smallest_dihedral(run.mesh, run.policy()); });
-    return left;
-  };
   Tangle least;
   int idle = 0;
   const auto n_within = [&](int layers) {
@@ -265,14 +243,26 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
     if (layers > 1 && n_reached == n_within(layers / 2)) break;  // the mesh ends here
     // Many invalid cells beside one another may hang on what lies as far away as they have come.
     const bool are_many = n_reached < kOneInFew * invalid.size();
-    bool has_brought = false;
-    for (const bool relaxed : {true, false}) {
-      if (invalid.empty() || (relaxed && layers == 1)) continue;
-      const Tangle left = unfold_within(layers, relaxed);
-      if (layers > 1 && !left.is_less_than(least)) continue;
-      least = left;
-      has_brought = true;
-    }
+    const double start = control.seconds();
+    RoundCounts counts;
+    const Tangle left = Unfolding(run, effort).run(layers, invalid, control, counts);
+    if (counts.winners > 0) ++run.work.clock;
+    invalid = invalid_cells(run.mesh, run.policy());
+    PassReport pass;
+    pass.stage = "untangle";
+    pass.op = "unfold";
+    pass.iteration = iteration;
+    pass.rounds = pass.sub_rounds = counts.rounds;
+    pass.seeds = counts.seeds;
+    pass.candidates = pass.winners = counts.winners;
+    pass.n_inverted = invalid.size();
+    pass.worst = survey(run.mesh, run.policy()).worst;
+    pass.seconds = pass.seconds_evaluate = control.seconds() - start;
+    control.add(std::move(pass));
+    control.tell("untangle", iteration, invalid.size(),
+                 [&] { return smallest_dihedral(run.mesh, run.policy()); });
+    const bool has_brought = layers == 1 || left.is_less_than(least);
+    if (has_brought) least = left;
     idle = has_brought || are_many ? 0 : idle + 1;
   }
   return invalid.size();

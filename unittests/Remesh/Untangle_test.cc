@@ -133,23 +133,37 @@ TEST(Untangle, TheInteriorFollowsWhereverTheBoundaryGoes) {
 }
 
 TEST(Untangle, CellsFollowABodyThatHasMovedThroughThem) {
-  // A channel with a hole of a cube's shape, which goes along it by twice its size.
-  const auto in_body = [](Vec3 p) {
-    return p.x > 3.5 && p.x < 6.5 && std::abs(p.y - 4.5) < 2 && std::abs(p.z - 4.5) < 2;
+  // A channel with a hole of a cube's shape, which goes along it by up to three times its size. On the way
+  // the inverted cells become more before they become fewer.
+  struct Channel {
+    generate::Counts counts;
+    double size;  // of the hole
+    Vec3 by;
   };
-  generate::Arrays arrays = generate::box({20, 9, 9}, {0, 0, 0}, {20, 9, 9});
-  std::erase_if(arrays.cells, [&](const Corners& c) {
-    return std::all_of(c.begin(), c.end(), [&](Index v) { return in_body(arrays.points[v]); });
-  });
-  for (Vec3& p : arrays.points)
-    if (in_body(p)) p = p + Vec3{6, 0.5, 0};
-  TetMesh mesh = built(arrays);
-  ASSERT_GT(n_inverted(mesh), 50U);
-  ImproveOptions only_moves = repair_only();
-  only_moves.min_dihedral = 1e-3;
-  only_moves.ops = Ops::kSmooth;
-  EXPECT_TRUE(improve(mesh, only_moves).invalid_cells.empty());
-  EXPECT_EQ(n_inverted(mesh), 0U);
+  for (const Channel& channel :
+       {Channel{{20, 9, 9}, 3, {6, 0.5, 0}}, Channel{{20, 11, 11}, 3, {9, 0, 0}},
+        Channel{{20, 11, 11}, 3, {9, 1, 0.5}}, Channel{{30, 13, 13}, 5, {9, 0, 0}}}) {
+    SCOPED_TRACE(testing::Message() << channel.counts[0] << " long, " << channel.size << ", moved by "
+                                    << channel.by.x << ' ' << channel.by.y);
+    const Vec3 high = {1.0 * channel.counts[0], 1.0 * channel.counts[1], 1.0 * channel.counts[2]};
+    const auto in_body = [&](Vec3 p) {
+      const Vec3 from = p - Vec3{high.x / 4, high.y / 2, high.z / 2};
+      return std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)}) < channel.size / 2 + 0.01;
+    };
+    generate::Arrays arrays = generate::box(channel.counts, {0, 0, 0}, high);
+    std::erase_if(arrays.cells, [&](const Corners& c) {
+      return std::all_of(c.begin(), c.end(), [&](Index v) { return in_body(arrays.points[v]); });
+    });
+    for (Vec3& p : arrays.points)
+      if (in_body(p)) p = p + channel.by;
+    TetMesh mesh = built(arrays);
+    ASSERT_GT(n_inverted(mesh), 50U);
+    ImproveOptions only_moves = repair_only();
+    only_moves.min_dihedral = 1e-3;
+    only_moves.ops = Ops::kSmooth;
+    EXPECT_TRUE(improve(mesh, only_moves).invalid_cells.empty());
+    EXPECT_EQ(n_inverted(mesh), 0U);
+  }
 }
 
 TEST(Untangle, WidthsEndWhereTheMeshEnds) {
@@ -158,12 +172,12 @@ TEST(Untangle, WidthsEndWhereTheMeshEnds) {
     TetMesh mesh = jittered(5, 0.6, seed);  // sides are turned over
     const Result result = improve(mesh, repair_only());
     n_left += result.invalid_cells.size();
-    // 1, 3 and 7 layers are all, the last two in two ways; in the plain goal and in the one asked for, and
-    // once more where clusters are held.
+    // 1, 3 and 7 layers are all; in the plain goal and in the one asked for, and once more where clusters are
+    // held.
     std::map<int, int> n_widths;  // by iteration
     for (const PassReport& pass : result.passes) {
-      if (pass.stage != "untangle" || (pass.op != "unfold" && pass.op != "relax")) continue;
-      EXPECT_LE(++n_widths[pass.iteration], 4 * 5);
+      if (pass.stage != "untangle" || pass.op != "unfold") continue;
+      EXPECT_LE(++n_widths[pass.iteration], 4 * 3);
     }
   }
   EXPECT_GT(n_left, 4U);
