@@ -143,7 +143,7 @@ void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   best.settle();
 }
 
-void run_usual(const Run& run, double enough = std::numeric_limits<double>::lowest());
+void run_usual(const Run& run);
 
 /// The run with a flat surface, from the beginning, and the better of what there was and what comes: a free
 /// run may do all that this one may.
@@ -155,19 +155,17 @@ void run_flat(const Run& run, Beginning from) {
   const FlatSurface surface(run.mesh, *run.surface, run.policy());
   Run part = run.with(strategy);
   part.surface = surface.get();
-  run_usual(part, strategy.claimed->goal->catches_up * best.worst());
+  run_usual(part);
   rebuild(run.surface, run.mesh, run.policy());
   best.settle();
 }
 
-/// A default run, whatever the surface may do. `enough`: degrees; where the worst angle is below when all
-/// cells have been improved, nothing more is done.
-void run_usual(const Run& run, double enough) {
+/// A default run, whatever the surface may do.
+void run_usual(const Run& run) {
   const bool lacks = run.strategy.frozen && lacks_vertices(run);
   std::optional<Beginning> beginning;
   if (lacks || run.strategy.flat) beginning.emplace(run);
   mend_and_improve_all(run);
-  if (smallest_dihedral(run.mesh, run.policy()) < enough) return;
   const bool is_poor = frozen_may_help(run);
   reach_claimed(run, run.findings.met_cell_bound);
   if (is_poor) run_frozen(run);
@@ -177,12 +175,15 @@ void run_usual(const Run& run, double enough) {
     run_frozen(run, std::move(beginning));
 }
 
-/// Where a goal was missed, the run without one from the beginning, and the better of both.
+/// Where a goal was missed, the run without one from the beginning, and of both the one that comes closer: a
+/// goal asks for nothing but the worst angle.
 void run_without_goal(const Run& run, const GoalEffort& goal, Beginning from) {
   if (run.control.stopped() || !may_rise(run, run.strategy.claimed->goal->degrees)) return;
-  Best best(run, goal.may_fall, Loss::kMadeUpFor);
+  constexpr double kAll = 1;
+  Best best(run, kAll);
   from.put_back(run);
   run_usual(run.with(*run.strategy.without_goal));
+  best.note();
   polish(run, run.strategy.polish, goal.degrees);
   best.settle();
 }

@@ -359,9 +359,6 @@ struct GoalEffort {
   double more_cells = kMoreCells;
   int turns = 3;
   double pays = kClaimShare;
-  /// Share of the worst angle of a free run that the one with a flat surface has to have, once all cells have
-  /// been improved, for it to go on: work for what is claimed may bring twice as much, hardly more.
-  double catches_up = 0.5;
 };
 
 /// The worst angle as far as it goes, whatever it costs in time: after a default run. Shown by --runs max.

@@ -25,6 +25,18 @@ TetMesh pressed(Index n, double jitter, double height) {
   return built(arrays);
 }
 
+/// One layer of cubes whose vertices have slid within the sides: `low` thick at one end, `high` at the other.
+TetMesh layer(Index n, double low, double high) {
+  generate::Arrays arrays = generate::box({n, n, 1}, {0, 0, 0}, {1.0 * n, 1.0 * n, 1});
+  for (std::size_t i = 0; i < arrays.points.size(); ++i) {
+    Vec3& p = arrays.points[i];
+    for (int d = 0; d < 2; ++d)
+      if (p[d] > 0 && p[d] < n) p[d] += 0.6 * generate::random_unit(1, 2 * i + d) - 0.3;
+    p.z *= low + (high - low) * p.x / n;
+  }
+  return built(arrays);
+}
+
 /// A grid that leans far over: x grows by `lean` times z.
 TetMesh sheared(Index n, double lean) {
   generate::Arrays arrays = generate::jittered_box({n, n, n}, 0.2, 7);
@@ -290,6 +302,8 @@ TEST(Rules, FreeSurfaceEndsNoLowerThanAFlatOneAndAMissedGoalNoLowerThanADefaultR
   for (double lean : {4.0, 8.0}) all.push_back(sheared(5, lean));
   for (double height : {0.1, 0.05}) all.push_back(pressed(4, 0.2, height));
   all.push_back(graded(6, 1.7));
+  all.push_back(layer(8, 0.06, 0.06));
+  all.push_back(layer(8, 0.02, 0.22));
   std::size_t n_missed = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     double flat = 0;
