@@ -66,7 +66,9 @@ class TupleMap {
 
   /// Index into entries(); size() when nothing is attached to these vertices.
   std::size_t position(const std::array<VertexHandle, N>& vertices) const {
-    const auto at = position_.find(Order::key(vertices));
+    const auto key = Order::key(vertices);
+    if (!may_have(key)) return entries_.size();
+    const auto at = position_.find(key);
     return at == position_.end() ? entries_.size() : at->second;
   }
   /// nullptr when nothing is attached to these vertices.
@@ -81,10 +83,12 @@ class TupleMap {
   /// Overwrites what is there.
   T& set(const std::array<VertexHandle, N>& vertices, T value) {
     const auto [at, is_new] = position_.try_emplace(Order::key(vertices), entries_.size());
-    if (is_new)
+    if (is_new) {
       entries_.push_back({vertices, std::move(value)});
-    else
+      mark(at->first);
+    } else {
       entries_[at->second].value = std::move(value);
+    }
     return entries_[at->second].value;
   }
 
@@ -123,17 +127,20 @@ class TupleMap {
     position_.erase(found);
     position_[Order::key(others)] = at;
     entries_[at].vertices = others;
+    mark(Order::key(others));
     return true;
   }
 
   void clear() {
     entries_.clear();
     position_.clear();
+    marks_.clear();
   }
 
   /// Heap memory in bytes, estimated for the hash table.
   std::size_t memory_bytes() const {
-    return entries_.capacity() * sizeof(Entry) + position_.bucket_count() * sizeof(void*) +
+    return entries_.capacity() * sizeof(Entry) + marks_.capacity() * sizeof(marks_[0]) +
+           position_.bucket_count() * sizeof(void*) +
            position_.size() * (sizeof(std::array<VertexHandle, N>) + sizeof(std::size_t) + 2 * sizeof(void*));
   }
 
@@ -154,8 +161,31 @@ class TupleMap {
   }
 
  private:
+  using Key = std::array<VertexHandle, N>;
+
+  static constexpr std::size_t kMarksOfEntry = 16;
+
+  std::size_t mark_of(const Key& key) const { return TupleHash()(key) & (64 * marks_.size() - 1); }
+  /// False for most keys that nothing is attached to, which is what most are that are asked for: one look at
+  /// a bit instead of a walk through the table.
+  bool may_have(const Key& key) const {
+    if (marks_.empty()) return false;
+    const std::size_t bit = mark_of(key);
+    return (marks_[bit / 64] >> (bit % 64) & 1) != 0;
+  }
+  /// Marks of entries that are gone stay until there is no more room.
+  void mark(const Key& key) {
+    if (64 * marks_.size() < kMarksOfEntry * position_.size()) {
+      marks_.assign(std::max<std::size_t>(2 * marks_.size(), 1), 0);
+      for (const auto& [other, at] : position_) mark(other);
+    }
+    const std::size_t bit = mark_of(key);
+    marks_[bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+
   std::vector<Entry> entries_;
-  std::unordered_map<std::array<VertexHandle, N>, std::size_t, TupleHash> position_;
+  std::unordered_map<Key, std::size_t, TupleHash> position_;
+  std::vector<std::uint64_t> marks_;  // bits by hash; their number is a power of two
 };
 
 }  // namespace hfr

@@ -88,27 +88,26 @@ std::size_t edge_count(const TetMesh& mesh, std::span<const HalfFaceHandle> cons
 // A cell belongs to the root of its smallest neighbour, if that is smaller than itself: one look for most
 // cells, and few roots are left to be joined.
 std::size_t count_components(const TetMesh& mesh) {
-  std::vector<Index> root(mesh.n_cells());
-  std::vector<Index> number(mesh.n_cells());  // of a root among these
-  std::size_t n_roots = 0;
+  std::vector<Index> number(mesh.n_cells());   // of the root that a cell belongs to
+  std::vector<std::array<Index, 2>> touching;  // roots
+  Index n_roots = 0;
   for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
     if (mesh.is_deleted(CellHandle(i))) continue;
-    auto least = static_cast<Index>(i);
-    for (const HalfFaceHandle m : mesh.cell(CellHandle(i)).mate)
-      if (m.is_valid()) least = std::min(least, static_cast<Index>(cell_of(m).idx()));
-    if (least == i) number[i] = static_cast<Index>(n_roots++);
-    root[i] = least == i ? least : root[least];
+    const auto& mates = mesh.cell(CellHandle(i)).mate;
+    std::size_t least = i;
+    for (const HalfFaceHandle m : mates)
+      if (m.is_valid()) least = std::min<std::size_t>(least, cell_of(m).idx());
+    number[i] = least == i ? n_roots++ : number[least];
+    for (const HalfFaceHandle m : mates) {
+      if (!m.is_valid() || cell_of(m).idx() >= i) continue;
+      const std::array<Index, 2> both = {number[cell_of(m).idx()], number[i]};
+      if (both[0] != both[1] && (touching.empty() || both != touching.back())) touching.push_back(both);
+    }
   }
   par::DisjointSets<Index> sets(n_roots);
   std::size_t components = n_roots;
-  if (n_roots < 2) return n_roots;
-  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
-    if (mesh.is_deleted(CellHandle(i))) continue;
-    for (const HalfFaceHandle m : mesh.cell(CellHandle(i)).mate) {
-      if (!m.is_valid() || cell_of(m).idx() > i || root[cell_of(m).idx()] == root[i]) continue;
-      if (sets.join(number[root[i]], number[root[cell_of(m).idx()]])) --components;
-    }
-  }
+  for (const auto& [one, other] : touching)
+    if (sets.join(one, other)) --components;
   return components;
 }
 

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
+#include <random>
+
 #include "HalfFace/Check.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/Writer.hh"
@@ -185,6 +189,50 @@ TEST(TupleMap, ErasedEntryGivesItsPlaceToTheLastOne) {
   EXPECT_EQ(*map.find(edge(3, 4)), 3);
   EXPECT_EQ(map.find(edge(2, 3)), nullptr);
   EXPECT_EQ(map.size(), 2U);
+}
+
+TEST(TupleMap, HoldsWhatASortedMapHolds) {
+  TupleMap<2, int> map;
+  std::map<std::pair<Index, Index>, int> expected;
+  std::minstd_rand random(1);
+  const auto draw = [&random](Index n) { return static_cast<Index>(random() % n); };
+  const auto edge = [](std::pair<Index, Index> e) {
+    return std::array{VertexHandle(e.second), VertexHandle(e.first)};
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const std::pair<Index, Index> one = std::minmax({draw(40), 40 + draw(40)});
+    const std::pair<Index, Index> other = std::minmax({draw(40), 40 + draw(40)});
+    const Index what = draw(8);
+    if (what < 5) {
+      map.set(edge(one), i);
+      expected[one] = i;
+    } else if (what == 5) {
+      EXPECT_EQ(map.erase(edge(one)), expected.erase(one) == 1);
+    } else if (what == 6) {
+      EXPECT_EQ(map.erase_unordered(edge(one)), expected.erase(one) == 1);
+    } else if (!expected.contains(other)) {
+      const auto found = expected.find(one);
+      EXPECT_EQ(map.rekey(edge(one), edge(other)), found != expected.end());
+      if (found == expected.end()) continue;
+      expected[other] = found->second;
+      expected.erase(one);
+    }
+    if (draw(4'000) == 0) {
+      map.clear();
+      expected.clear();
+    }
+  }
+  EXPECT_GT(map.size(), 100U);
+  ASSERT_EQ(map.size(), expected.size());
+  for (Index a = 0; a < 40; ++a)
+    for (Index b = 40; b < 80; ++b) {
+      const auto found = expected.find({a, b});
+      const int* value = map.find(edge({a, b}));
+      ASSERT_EQ(value != nullptr, found != expected.end());
+      if (value != nullptr) {
+        EXPECT_EQ(*value, found->second);
+      }
+    }
 }
 
 TEST(TupleProperties, OrderCountsOnlyForDirectedThings) {
