@@ -79,9 +79,7 @@ void add_bound_options(Command command, ImproveLine& line) {
 /// How it is done.
 void add_method_options(Command command, ImproveLine& line) {
   command.group("Advanced");
-  command.option("--ops", line.ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
-      .type_name("LIST")
-      .shows_default("all but cluster");
+  add_ops_option(command, line.ops);
   command.option("--iterations", line.improve.iterations, "At most N bulk iterations; 0 is no limit")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<int>::max()))
@@ -94,11 +92,7 @@ void add_method_options(Command command, ImproveLine& line) {
   command.option("--metric", line.metric, "Quality metric of the bulk passes; an unknown name lists them")
       .type_name("NAME")
       .shows_default("volume-length");
-  command
-      .option("--rounds", line.rounds,
-              "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
-      .type_name("NAME")
-      .shows_default("auto");
+  add_rounds_option(command, line.rounds);
   command.option("--smoother", line.smoother, "newton, candidates, laplacian or taubin")
       .type_name("NAME")
       .shows_default("newton");
@@ -160,6 +154,19 @@ void add_device_options(Command command, ImproveLine& line) {
   command.flag("--profile", line.improve.device_tuning.profile, "Measure every kernel; in the JSON report");
 }
 }  // namespace
+
+void add_ops_option(Command command, std::string& ops) {
+  command.option("--ops", ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
+      .type_name("LIST")
+      .shows_default("all but cluster");
+}
+
+void add_rounds_option(Command command, std::string& rounds) {
+  command
+      .option("--rounds", rounds, "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
+      .type_name("NAME")
+      .shows_default("auto");
+}
 
 void add_improve_options(Command command, ImproveLine& line, CommonOptions& common) {
   add_examples(command);

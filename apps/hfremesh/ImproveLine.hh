@@ -41,6 +41,9 @@ struct ImproveLine {
   ImproveOptions improve;
 };
 
+/// The operators of a run and how they take turns; `ops` and `rounds` must outlive the parser's run.
+void add_ops_option(Command command, std::string& ops);
+void add_rounds_option(Command command, std::string& rounds);
 /// `line` and `common` must outlive the parser's run.
 void add_improve_options(Command command, ImproveLine& line, CommonOptions& common);
 /// What the library is asked for. Throws for a name that there is not.

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "ExitCode.hh"
+#include "ImproveLine.hh"
 #include "Numbers.hh"
 #include "Parser.hh"
 #include "Report.hh"
@@ -73,14 +74,8 @@ void add_options(Command command, PartsLine& line) {
           "swaps, vertex collapse, smoothing and new vertices, and where --ops has it by cluster search")
       .type_name("DEG")
       .check(real_number(0, 70.5, false));
-  command.option("--ops", line.ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
-      .type_name("LIST")
-      .shows_default("all but cluster");
-  command
-      .option("--rounds", line.rounds,
-              "auto, by-kind or mixed: kinds of operators in turn, or in one selection")
-      .type_name("NAME")
-      .shows_default("auto");
+  add_ops_option(command, line.ops);
+  add_rounds_option(command, line.rounds);
   command.flag("--no-insert", line.no_insert, "No new vertices");
   command.option("--min-cells", line.min_cells, "No vertex is removed below N cells; 0: 81 % of the input's")
       .type_name("N")

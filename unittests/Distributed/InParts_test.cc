@@ -10,6 +10,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "Distributed/Parts.hh"
 #include "Distributed/SharedFolder.hh"
@@ -208,17 +209,18 @@ TEST(InParts, OneFileHasTheBytesOfSharedMemory) {
   }
 }
 
-struct Inserting {
+/// A grid and a run over it.
+struct Improving {
   mpi::GridOptions grid;
   ImproveOptions options;
 };
 
 /// A goal that takes new vertices; and one that insertion alone works for, so that some cells have to wait
 /// for others, with room for all vertices, for some, and for none.
-std::vector<Inserting> inserting() {
-  std::vector<Inserting> all = {{grid({7, 8, 10}, 0.28), polish_towards(26)}};
+std::vector<Improving> inserting() {
+  std::vector<Improving> all = {{grid({7, 8, 10}, 0.28), polish_towards(26)}};
   for (const std::size_t more : {0U, 100U, 40U, 1U}) {
-    Inserting one{grid({7, 8, 10}, 0.28), polish_towards(14)};
+    Improving one{grid({7, 8, 10}, 0.28), polish_towards(14)};
     one.options.ops = Ops::kInsert;
     if (more > 0) one.options.max_cells = whole_of(one.grid).n_cells() + more;
     all.push_back(one);
@@ -250,45 +252,58 @@ void expect_two_layers(const mpi::DistributedMesh& parts) {
   EXPECT_EQ(n_wrong, 0U);
 }
 
+struct BothRuns {
+  mpi::PartsResult in_parts;
+  std::optional<Result> shared;  ///< on rank 0
+};
+
+/// The run in parts, and on rank 0 in shared memory: the same bytes, and no fault on any rank.
+BothRuns improved_both_ways(mpi::Comm& comm, const Improving& one, mpi::Partition how) {
+  const SharedFolder folder(comm);
+  mpi::DistributedMesh parts(comm);
+  mpi::generate_in_parts(parts, one.grid, how);
+  BothRuns runs{mpi::improve(parts, one.options), {}};
+  const mpi::PartsCheck checked = mpi::check(parts);
+  EXPECT_TRUE(checked.is_good) << checked.message;
+  expect_two_layers(parts);
+  mpi::write_vtu(parts, folder.path() / "parts.vtu");
+  if (comm.rank() != 0) return runs;
+  TetMesh mesh = whole_of(one.grid);
+  runs.shared = hfr::improve(mesh, one.options);
+  EXPECT_EQ(runs.in_parts.after.n_cells, mesh.n_cells());
+  EXPECT_EQ(runs.in_parts.after.n_vertices, mesh.n_vertices());
+  EXPECT_EQ(runs.in_parts.goal_reached, runs.shared->goal_reached);
+  io::write(folder.path() / "whole.vtu", mesh);
+  EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+  return runs;
+}
+
+std::size_t n_of(const std::vector<PassReport>& passes, std::string_view op) {
+  std::size_t n = 0;
+  for (const PassReport& pass : passes) n += pass.op == op ? pass.winners : 0;
+  return n;
+}
+
 TEST(InParts, InsertedVerticesHaveTheBitsOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
-  const SharedFolder folder(comm);
   std::size_t n_inserted = 0;
   std::set<std::size_t> n_cells;
   for (const mpi::Partition how : kCuts)
-    for (const Inserting& one : inserting()) {
-      mpi::DistributedMesh parts(comm);
-      mpi::generate_in_parts(parts, one.grid, how);
-      const mpi::PartsResult result = mpi::improve(parts, one.options);
-      const mpi::PartsCheck checked = mpi::check(parts);
-      EXPECT_TRUE(checked.is_good) << checked.message;
-      expect_two_layers(parts);
-      mpi::write_vtu(parts, folder.path() / "parts.vtu");
-      if (comm.rank() != 0) continue;
-      TetMesh mesh = whole_of(one.grid);
-      const Result shared = hfr::improve(mesh, one.options);
-      for (const PassReport& pass : shared.passes) n_inserted += pass.op == "insert" ? pass.winners : 0;
-      n_cells.insert(mesh.n_cells());
-      EXPECT_EQ(result.after.n_cells, mesh.n_cells());
-      EXPECT_EQ(result.after.n_vertices, mesh.n_vertices());
-      EXPECT_EQ(result.goal_reached, shared.goal_reached);
-      io::write(folder.path() / "whole.vtu", mesh);
-      EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+    for (const Improving& one : inserting()) {
+      const BothRuns runs = improved_both_ways(comm, one, how);
+      if (!runs.shared) continue;
+      n_inserted += n_of(runs.shared->passes, "insert");
+      n_cells.insert(runs.in_parts.after.n_cells);
     }
   if (comm.rank() != 0) return;
   EXPECT_GT(n_inserted, 100U);
   EXPECT_GE(n_cells.size(), 4U) << "no bound on cells was met";
 }
 
-struct Searching {
-  mpi::GridOptions grid;
-  ImproveOptions options;
-};
-
 /// Runs that come to cluster search: where there is no room for new vertices, where few other operators may
 /// do something before, in one selection or in turn, and where none may.
-std::vector<Searching> searching() {
-  std::vector<Searching> all = {{grid({12, 11, 13}, 0.26, 0.03), polish_towards(25)}};
+std::vector<Improving> searching() {
+  std::vector<Improving> all = {{grid({12, 11, 13}, 0.26, 0.03), polish_towards(25)}};
   all[0].options.ops = Ops::kDefault | Ops::kCluster;
   all[0].options.max_cells = 1000;
   const auto add = [&](double goal, Ops ops, Rounds rounds) {
@@ -304,52 +319,28 @@ std::vector<Searching> searching() {
 
 TEST(InParts, SearchedClustersHaveTheBitsOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
-  const SharedFolder folder(comm);
   for (const mpi::Partition how : kCuts)
-    for (const Searching& one : searching()) {
-      mpi::DistributedMesh parts(comm);
-      mpi::generate_in_parts(parts, one.grid, how);
-      const mpi::PartsResult result = mpi::improve(parts, one.options);
-      const mpi::PartsCheck checked = mpi::check(parts);
-      EXPECT_TRUE(checked.is_good) << checked.message;
-      expect_two_layers(parts);
-      mpi::write_vtu(parts, folder.path() / "parts.vtu");
-      if (comm.rank() != 0) continue;
-      TetMesh mesh = whole_of(one.grid);
-      const Result shared = hfr::improve(mesh, one.options);
-      std::size_t n_searched = 0, n_told = 0;
-      for (const PassReport& pass : shared.passes) n_searched += pass.op == "cluster" ? pass.winners : 0;
-      for (const PassReport& pass : result.passes) n_told += pass.op == "cluster" ? pass.winners : 0;
+    for (const Improving& one : searching()) {
+      const BothRuns runs = improved_both_ways(comm, one, how);
+      if (!runs.shared) continue;
+      const std::size_t n_searched = n_of(runs.shared->passes, "cluster");
       EXPECT_GT(n_searched, 0U) << "nothing is left to cluster search";
-      EXPECT_EQ(n_told, n_searched);
-      EXPECT_EQ(result.goal_reached, shared.goal_reached);
-      io::write(folder.path() / "whole.vtu", mesh);
-      EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+      EXPECT_EQ(n_of(runs.in_parts.passes, "cluster"), n_searched);
     }
 }
 
 TEST(InParts, KindsInOneSelectionHaveTheBitsOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
-  const SharedFolder folder(comm);
   for (const mpi::Partition how : kCuts)
     for (const Ops ops : {Ops::kDefault, without(Ops::kDefault, Ops::kNode)}) {
-      const mpi::GridOptions grid_options = grid({10, 9, 11}, 0.24);
-      ImproveOptions options = polish_towards(24);
-      options.rounds = Rounds::kMixed;
-      options.ops = ops;
-      mpi::DistributedMesh parts(comm);
-      mpi::generate_in_parts(parts, grid_options, how);
-      const mpi::PartsResult result = mpi::improve(parts, options);
-      EXPECT_TRUE(mpi::check(parts).is_good);
-      mpi::write_vtu(parts, folder.path() / "parts.vtu");
-      if (comm.rank() != 0) continue;
-      const auto n_mixed = std::ranges::count(result.passes, "mixed", &PassReport::op);
+      Improving one{grid({10, 9, 11}, 0.24), polish_towards(24)};
+      one.options.rounds = Rounds::kMixed;
+      one.options.ops = ops;
+      const BothRuns runs = improved_both_ways(comm, one, how);
+      if (!runs.shared) continue;
+      const auto n_mixed = std::ranges::count(runs.in_parts.passes, "mixed", &PassReport::op);
       EXPECT_GT(n_mixed, 0);
-      TetMesh mesh = whole_of(grid_options);
-      const Result shared = hfr::improve(mesh, options);
-      EXPECT_EQ(std::ranges::count(shared.passes, "mixed", &PassReport::op), n_mixed);
-      io::write(folder.path() / "whole.vtu", mesh);
-      EXPECT_EQ(bytes_of(folder.path() / "parts.vtu"), bytes_of(folder.path() / "whole.vtu"));
+      EXPECT_EQ(std::ranges::count(runs.shared->passes, "mixed", &PassReport::op), n_mixed);
     }
 }
 
@@ -441,20 +432,11 @@ TEST(InParts, FilesThatCannotBeReadInRangesAreRefusedOnAllRanks) {
   if (world.rank() == 0) io::write(path, mesh);
   world.sum(0);
   const std::string good = bytes_of(path);
-  const auto refusal = [&](const std::string& bytes) -> std::string {
+  const auto refusal = [&](const std::string& bytes) {
     world.sum(0);  // all have done with the file before
     if (world.rank() == 0) std::ofstream(path, std::ios::binary) << bytes;
     world.sum(0);
-    mpi::Comm comm(MPI_COMM_WORLD);
-    mpi::DistributedMesh parts(comm);
-    try {
-      mpi::read_ranges(parts, path);
-    } catch (const mpi::RankFailed& failed) {
-      return failed.what();
-    } catch (const std::exception& error) {
-      return comm.fail(2, error.what()).what();
-    }
-    return {};
+    return refusal_of([&](mpi::DistributedMesh& parts) { mpi::read_ranges(parts, path); });
   };
   const auto with = [&](const std::string& was, const std::string& is) {
     std::string bytes = good;
@@ -538,18 +520,10 @@ TEST(InParts, WhatIsLeftOutOfPiecesIsNamed) {
 TEST(InParts, BrokenPiecesAreRefusedOnAllRanks) {
   mpi::Comm world(MPI_COMM_WORLD);
   const SharedFolder folder(world);
-  const auto refusal = [&](const std::string& index) -> std::string {
+  const auto refusal = [&](const std::string& index) {
     if (world.rank() == 0) std::ofstream(folder.path() / "bad.pvtu") << index;
-    mpi::Comm comm(MPI_COMM_WORLD);
-    mpi::DistributedMesh parts(comm);
-    try {
-      mpi::read_pvtu(parts, folder.path() / "bad.pvtu");
-    } catch (const mpi::RankFailed& failed) {
-      return failed.what();
-    } catch (const std::exception& error) {
-      return comm.fail(2, error.what()).what();
-    }
-    return {};
+    return refusal_of(
+        [&](mpi::DistributedMesh& parts) { mpi::read_pvtu(parts, folder.path() / "bad.pvtu"); });
   };
   using testing::HasSubstr;
   EXPECT_THAT(refusal("<VTKFile/>"), HasSubstr("no index of pieces"));

@@ -30,6 +30,24 @@ struct Density {
   bool regions = true;
 };
 
+/// A kind of label alone, by turns, everything, and nothing.
+inline Density density_of(std::uint64_t seed) {
+  switch (seed) {
+    case 2:
+      return {0, 0, 20, 0, 0, 0, false};  // edges
+    case 3:
+      return {0, 0, 0, 3, 0, 0, false};  // vertices
+    case 4:
+      return {2, 15, 0, 0, 0, 4, false};  // faces
+    case 5:
+      return {0, 0, 0, 0, 4, 0, true};  // fixed vertices and regions
+    case 7:
+      return {0, 0, 0, 0, 0, 0, false};
+    default:
+      return {};
+  }
+}
+
 inline ImproveOptions polish_towards(double degrees) {
   ImproveOptions options;
   options.min_dihedral = degrees;

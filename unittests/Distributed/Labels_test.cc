@@ -17,12 +17,7 @@ TEST(PartLabels, LabelledMeshesHaveTheBytesOfSharedMemory) {
   const auto path = folder.path() / "in.vtu";
   std::size_t n_winners = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    Density density;
-    if (seed == 2) density = {0, 0, 20, 0, 0, 0, false};  // edges alone
-    if (seed == 3) density = {0, 0, 0, 3, 0, 0, false};   // vertices alone
-    if (seed == 4) density = {2, 15, 0, 0, 0, 4, false};  // faces alone
-    if (seed == 5) density = {0, 0, 0, 0, 4, 0, true};    // fixed vertices and regions
-    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(7, 0.45, seed), seed, density));
+    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(7, 0.45, seed), seed, density_of(seed)));
     comm.sum(0);
     n_winners += expect_bytes(comm, folder, path, polish_towards(seed % 2 == 0 ? 14 : 25));
     comm.sum(0);

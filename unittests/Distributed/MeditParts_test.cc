@@ -361,16 +361,8 @@ class Refusals {
     world_.sum(0);
     if (world_.rank() == 0) std::ofstream(folder_.path() / "in.1.mesh") << text;
     world_.sum(0);
-    mpi::Comm comm(MPI_COMM_WORLD);
-    mpi::DistributedMesh parts(comm);
-    try {
-      mpi::read_medit_parts(parts, folder_.path() / "in.mesh");
-    } catch (const mpi::RankFailed& failed) {
-      return failed.what();
-    } catch (const std::exception& error) {
-      return comm.fail(2, error.what()).what();
-    }
-    return {};
+    return refusal_of(
+        [&](mpi::DistributedMesh& parts) { mpi::read_medit_parts(parts, folder_.path() / "in.mesh"); });
   }
   void remove(const char* name) {
     if (world_.rank() == 0) std::filesystem::remove(folder_.path() / name);

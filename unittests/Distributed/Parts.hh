@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <exception>
 #include <ranges>
+#include <string>
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
@@ -18,6 +20,22 @@
 #include "Scheduler/Workspace.hh"
 
 namespace hfr::test {
+
+/// The line with which act(parts) is refused, on a rank that finds the fault and on the others; empty where
+/// it is not.
+template <class Act>
+std::string refusal_of(Act&& act) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  mpi::DistributedMesh parts(comm);
+  try {
+    act(parts);
+  } catch (const mpi::RankFailed& failed) {
+    return failed.what();
+  } catch (const std::exception& error) {
+    return comm.fail(2, error.what()).what();
+  }
+  return {};
+}
 
 /// A mesh and what rounds keep of it.
 struct Whole {

@@ -60,14 +60,8 @@ TEST(WriteRanges, AllFormatsHaveTheBytesOfSharedMemory) {
   const SharedFolder folder(comm);
   const auto path = folder.path() / "in.vtu";
   std::size_t n_bytes = 0;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    Density density;
-    if (seed == 2) density = {0, 0, 20, 0, 0, 0, false};  // edges alone
-    if (seed == 3) density = {0, 0, 0, 3, 0, 0, false};   // vertices alone
-    if (seed == 4) density = {2, 15, 0, 0, 0, 4, false};  // faces alone
-    if (seed == 5) density = {0, 0, 0, 0, 4, 0, true};    // fixed vertices and regions
-    if (seed == 6) density = {0, 0, 0, 0, 0, 0, false};   // nothing
-    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(6, 0.45, seed), seed, density));
+  for (std::uint64_t seed = 1; seed <= 7; ++seed) {
+    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(6, 0.45, seed), seed, density_of(seed)));
     comm.sum(0);
     n_bytes += expect_same_files(comm, folder, path, seed % 2 == 0 ? 0 : 20);
     comm.sum(0);
@@ -177,19 +171,11 @@ TEST(WriteRanges, ARankThatFailsLeavesTheFileThatWasThere) {
 TEST(WriteRanges, WhatCannotBeWrittenIsRefused) {
   mpi::Comm world(MPI_COMM_WORLD);
   const SharedFolder folder(world);
-  const auto refusal = [&](const std::filesystem::path& path,
-                           const io::WriteOptions& options) -> std::string {
-    mpi::Comm comm(MPI_COMM_WORLD);
-    try {
-      mpi::DistributedMesh parts(comm);
+  const auto refusal = [&](const std::filesystem::path& path, const io::WriteOptions& options) {
+    return refusal_of([&](mpi::DistributedMesh& parts) {
       mpi::generate_in_parts(parts, {});
       mpi::write_ranges(parts, path, options);
-    } catch (const mpi::RankFailed& failed) {
-      return failed.what();
-    } catch (const std::exception& error) {
-      return comm.fail(2, error.what()).what();
-    }
-    return {};
+    });
   };
   using testing::HasSubstr;
   EXPECT_THAT(refusal(folder.path() / "a.ovm", {}), HasSubstr("known are .mesh, .meshb, .msh and .vtu"));
