@@ -71,7 +71,8 @@ void add_options(Command command, PartsLine& line) {
       .option(
           "--min-dihedral", line.min_dihedral,
           "Goal for the smallest dihedral angle: the cells that miss it are worked on by edge removal, face "
-          "swaps, vertex collapse, smoothing and new vertices, and where --ops has it by cluster search")
+          "swaps, vertex collapse, smoothing and new vertices, and where --ops has it by cluster search; "
+          "inverted and flat cells are mended first")
       .type_name("DEG")
       .check(real_number(0, 70.5, false));
   add_ops_option(command, line.ops);
@@ -165,11 +166,6 @@ class PartsRun {
       seconds();  // are of no step
     }
     bool goal_reached = true;
-    if (found.n_invalid > 0 && line_.min_dihedral > 0)
-      throw Failure(ExitCode::kInvalidCells,
-                    fmt::format("meshes in parts do not have untangling yet, and this one has "
-                                "{} inverted or flat cells; nothing was written",
-                                grouped(found.n_invalid)));
     if (line_.min_dihedral > 0) {
       const mpi::PartsResult result = improve();
       found = result.after;

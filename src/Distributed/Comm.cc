@@ -327,4 +327,10 @@ Block Comm::receive_block() {
   return block;
 }
 
+std::vector<std::byte> told_by_first(Comm& comm, const Packer& said) {
+  std::vector<Packer> to(comm.n_ranks());
+  if (comm.rank() == 0) std::fill(to.begin(), to.end(), said);
+  return std::move(comm.exchange(to).front().bytes);
+}
+
 }  // namespace hfr::mpi

@@ -193,6 +193,9 @@ class Comm {
   PerPhase<double> seconds_{};
 };
 
+/// What rank 0 has packed, on all of them.
+std::vector<std::byte> told_by_first(Comm& comm, const Packer& said);
+
 }  // namespace hfr::mpi
 
 #endif

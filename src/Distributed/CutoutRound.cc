@@ -2,9 +2,11 @@
 #include "Distributed/CutoutRound.hh"
 
 #include <algorithm>
+#include <unordered_set>
 #include <utility>
 
 #include "Distributed/PartRound.hh"
+#include "Scheduler/Select.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -13,14 +15,17 @@ constexpr std::uint8_t kDeeper = 2;  // more layers round a cell from which an e
 
 }  // namespace
 
-/// In rank order, a candidate wins when no cell of its scope is taken.
-std::vector<std::size_t> CutoutRound::independent(std::span<const Candidate> candidates) const {
+/// In rank order, a candidate wins when no cell of its scope is taken, and it makes nothing twice.
+std::vector<std::size_t> CutoutRound::independent(std::span<const Candidate> candidates,
+                                                  bool check_links) const {
   std::vector<std::uint8_t> is_taken(cutout_.mesh().n_cells(), 0);
+  std::unordered_set<std::uint64_t> made;
   std::vector<std::size_t> won;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const auto scope = candidates[i].scope;
     if (std::any_of(scope.begin(), scope.end(), [&](CellHandle c) { return is_taken[c.idx()] != 0; }))
       continue;
+    if (check_links && !add_unless_there(candidates[i].made, made)) continue;
     for (CellHandle c : scope) is_taken[c.idx()] = 1;
     won.push_back(i);
   }
@@ -29,8 +34,8 @@ std::vector<std::size_t> CutoutRound::independent(std::span<const Candidate> can
 
 /// Nothing where an evaluation has come to the rim. Else the independent ones for which the bounds have room;
 /// slots as PartRound has them.
-auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain)
-    -> Selected {
+auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+                         bool check_links) -> Selected {
   const auto& met = cutout_.rim().has_met;
   for (std::size_t c = 0; c < met.size(); ++c)
     if (met[c] != 0) met_.push_back(cutout_.number(CellHandle(c)));
@@ -38,7 +43,7 @@ auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_
   if (!met_.empty()) return selected;
   const std::span<const std::uint64_t> free = parts_.free_slots();
   std::vector<std::uint64_t> back;
-  for (std::size_t i : independent(candidates)) {
+  for (std::size_t i : independent(candidates, check_links)) {
     const PlanBase& plan = *candidates[i].plan;
     const std::size_t n_same = std::min(plan.n_removed, plan.n_created);
     const std::size_t loss = plan.removes_vertex ? plan.n_removed - n_same : 0;
@@ -95,12 +100,6 @@ Packer CutoutRound::said(const RoundCounts& counts) const {
     said.put_all(change.labels);
   }
   return said;
-}
-
-std::vector<std::byte> told_by_first(Comm& comm, const Packer& said) {
-  std::vector<Packer> to(comm.n_ranks());
-  if (comm.rank() == 0) std::fill(to.begin(), to.end(), said);
-  return std::move(comm.exchange(to).front().bytes);
 }
 
 std::optional<RoundCounts> follow(DistributedMesh& parts, std::span<const std::byte> said,

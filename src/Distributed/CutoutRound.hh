@@ -33,7 +33,8 @@ class CutoutRound : public RoundPlace {
   std::uint64_t number(VertexHandle v) const override { return cutout_.number(v); }
   std::uint64_t number(CellHandle c) const override { return cutout_.number(c); }
   CellHandle slot(std::uint64_t number) override { return cutout_.add_slot(number); }
-  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain) override;
+  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+                  bool check_links) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override { return mine; }
 
@@ -50,7 +51,7 @@ class CutoutRound : public RoundPlace {
     std::vector<LabelRecord> labels;
   };
 
-  std::vector<std::size_t> independent(std::span<const Candidate> candidates) const;
+  std::vector<std::size_t> independent(std::span<const Candidate> candidates, bool check_links) const;
 
   Cutout& cutout_;
   const DistributedMesh& parts_;
@@ -59,9 +60,6 @@ class CutoutRound : public RoundPlace {
   std::vector<std::uint64_t> freed_;  // in the order in which they go to the free list
   std::vector<Change> changes_;
 };
-
-/// What rank 0 has packed, on all of them.
-std::vector<std::byte> told_by_first(Comm& comm, const Packer& said);
 
 /// What CutoutRound has said of the round, into this part: each rank takes what lies near its own vertices; a
 /// new vertex belongs to the owner of the vertex with the smallest number among its neighbours. Nothing where

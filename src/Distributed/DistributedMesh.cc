@@ -8,6 +8,7 @@
 
 #include "Distributed/Cut.hh"
 #include "Distributed/PartMessage.hh"
+#include "Distributed/PartPatches.hh"
 #include "HalfFace/Writer.hh"
 
 namespace hfr::mpi {
@@ -120,6 +121,26 @@ void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint6
                 "vertex " + std::to_string(vertex_number_[v]) +
                     ": its cells do not connect through faces, or are more than " +
                     std::to_string(Star::kCapacity) + "; a mesh in parts cannot have that yet");
+  HFR_REQUIRE(!has_negative_component(*this),
+              "most cells of a mesh in parts, and of each piece that hangs together, have to be positive");
+}
+
+std::shared_ptr<const DistributedMesh> DistributedMesh::copy() const {
+  return std::shared_ptr<const DistributedMesh>(new DistributedMesh(*this));
+}
+
+void DistributedMesh::put_back(const DistributedMesh& copy) {
+  const std::uint32_t clock = work_.clock;
+  const double floor = work_.floor;
+  const bool holds_damage = work_.holds_damage;
+  static_cast<State&>(*this) = copy;
+  work_.clock = clock;
+  work_.floor = floor;
+  work_.holds_damage = holds_damage;
+  std::fill(work_.changed.begin(), work_.changed.end(), clock);
+  std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
+  std::fill(work_.claim.begin(), work_.claim.end(), kUnclaimed);
+  work_.all_touched = true;
 }
 
 VertexHandle DistributedMesh::vertex_at(std::uint64_t number) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -18,6 +19,30 @@
 
 namespace hfr::mpi {
 
+namespace detail {
+
+/// What a rank has of a mesh that is cut among the ranks.
+struct PartState {
+  TetMesh mesh_;
+  Workspace work_;
+  PartLabels labels_;
+  std::vector<std::uint64_t> vertex_number_;  // ascending
+  std::vector<int> owner_;
+  std::vector<std::uint64_t> cell_number_;  // by slot; the first n_sorted_ ascend
+  std::size_t n_sorted_ = 0;
+  std::unordered_map<std::uint64_t, Index> later_;  // slots from n_sorted_ on
+  RankSets near1_, near2_, told_;
+  std::vector<HalfFaceHandle> open_;  // faces behind which something may come
+  std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
+  std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
+  std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
+  std::uint64_t n_slots_ = 0, n_vertices_ = 0;
+  std::vector<std::uint64_t> free_;
+  std::uint32_t clock_at_scatter_ = 0;
+};
+
+}  // namespace detail
+
 /// A mesh that is cut among the ranks. Each vertex has an owner, for good; a cell belongs to the owner of its
 /// vertex with the smallest number. A rank holds the cells with a vertex of its own and two layers of cells
 /// round them: all that have a vertex within two edges of its own ones. That is what it takes to evaluate
@@ -30,10 +55,9 @@ namespace hfr::mpi {
 /// What has to be equal on all parts that hold it is: cells, their qualities and pending bits, points, what
 /// hangs on the vertices, edges and faces of cells (labels, and what is fixed), and within two edges of own
 /// vertices change stamps, star sizes and incident cells.
-class DistributedMesh {
+class DistributedMesh : private detail::PartState {
  public:
   explicit DistributedMesh(Comm& comm) : comm_(comm) {}
-  DistributedMesh(const DistributedMesh&) = delete;
   DistributedMesh& operator=(const DistributedMesh&) = delete;
 
   /// Why a mesh cannot be cut yet; empty where it can. Cell properties and bits, pinched vertices.
@@ -64,6 +88,12 @@ class DistributedMesh {
   /// To all ranks that hold a cell with these vertices, and into this part. Each on the rank that owns its
   /// smallest vertex. All take part.
   void hand_out_labels(std::span<const LabelRecord> records);
+
+  /// Of this part, to come back to: as much memory as the part takes.
+  std::shared_ptr<const DistributedMesh> copy() const;
+  /// Makes it what the copy is, all cells pending and all vertices changed now. What the workspace has of the
+  /// run goes on: clock, floor, and whether damage is held. All take part.
+  void put_back(const DistributedMesh& copy);
 
   /// What gather() brings.
   enum class Gather : std::uint8_t {
@@ -187,23 +217,10 @@ class DistributedMesh {
   void write_whole(TetMesh& mesh, Workspace& work, std::span<const VertexRecord> vertices,
                    std::span<const CellRecord> cells, par::Policy policy) const;
 
+  using State = detail::PartState;
+  DistributedMesh(const DistributedMesh&) = default;
+
   Comm& comm_;
-  TetMesh mesh_;
-  Workspace work_;
-  PartLabels labels_;
-  std::vector<std::uint64_t> vertex_number_;  // ascending
-  std::vector<int> owner_;
-  std::vector<std::uint64_t> cell_number_;  // by slot; the first n_sorted_ ascend
-  std::size_t n_sorted_ = 0;
-  std::unordered_map<std::uint64_t, Index> later_;  // slots from n_sorted_ on
-  RankSets near1_, near2_, told_;
-  std::vector<HalfFaceHandle> open_;  // faces behind which something may come
-  std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
-  std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
-  std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
-  std::uint64_t n_slots_ = 0, n_vertices_ = 0;
-  std::vector<std::uint64_t> free_;
-  std::uint32_t clock_at_scatter_ = 0;
 };
 
 }  // namespace hfr::mpi

@@ -103,7 +103,9 @@ class Conductor : public Ranks {
   Conductor(Comm& comm, const Sharing& sharing, par::Policy alone)
       : comm_(comm), sharing_(sharing), alone_(alone), worker_(comm) {}
 
-  bool can_do(PassKind kind, Metric metric) const override { return PartPasses::can_do(kind, metric); }
+  bool can_do(PassKind kind, const RankMetric& metric) const override {
+    return metric.metric != Metric::kVolumeLength && PartPasses::can_do(kind, metric);
+  }
   bool can_take(const TetMesh& mesh, const Workspace& work) const override {
     return DistributedMesh::reason_against(mesh, work).empty();
   }

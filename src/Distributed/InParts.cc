@@ -1,29 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The polish of hfr::improve(), run by all ranks at the same time: each has its part as the mesh of the run,
-// and what the run asks of the whole (counts, the worst cell, bounds on cells) comes from reductions. So all
-// ranks decide alike.
+// Untangling and the polish of hfr::improve(), run by all ranks at the same time: each has its part as the
+// mesh of the run, and what the run asks of the whole (counts, the worst cell, bounds on cells) comes from
+// reductions. So all ranks decide alike.
 #include "Distributed/InParts.hh"
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 #include "Distributed/PartPasses.hh"
+#include "Distributed/PartUnfolding.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Checkpoint.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Run.hh"
 #include "Remesh/Survey.hh"
+#include "Remesh/WholeRun.hh"
 
 namespace hfr::mpi {
 namespace {
 
 /// The ranks as the run of one of them sees them.
-class Residents : public Ranks {
+class Residents : public Ranks, public MeshInParts {
  public:
-  explicit Residents(DistributedMesh& mesh) : mesh_(mesh), passes_(mesh, n_rounds_) {}
+  Residents(DistributedMesh& mesh, par::Policy policy)
+      : mesh_(mesh), policy_(policy), passes_(mesh, n_rounds_) {}
 
   bool keep_mesh() const override { return true; }
-  bool can_do(PassKind kind, Metric metric) const override {
+  MeshInParts* parts() override { return this; }
+  bool can_do(PassKind kind, const RankMetric& metric) const override {
     const bool is_on_cutouts = kind == PassKind::kInsert || kind == PassKind::kCluster;
     return PartPasses::can_do(is_on_cutouts ? PassKind::kEdge : kind, metric);
   }
@@ -39,11 +45,64 @@ class Residents : public Ranks {
   std::size_t n_cells() const override { return static_cast<std::size_t>(mesh_.n_cells()); }
   void bring_back(TetMesh&, Workspace&) override {}
 
+  Survey survey() override {
+    const InParts found = mpi::survey(mesh_, 0, policy_);
+    return {found.worst, static_cast<std::size_t>(found.n_invalid)};
+  }
+  std::size_t n_below(double degrees) override {
+    return static_cast<std::size_t>(mpi::survey(mesh_, degrees, policy_).n_below_goal);
+  }
+  Standing standing() override;
+  Box box() override;
+  std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) override {
+    return std::make_unique<PartUnfolding>(mesh_, effort, policy_);
+  }
+  std::shared_ptr<const void> copy() const override { return mesh_.copy(); }
+  void put_back(const std::shared_ptr<const void>& copy) override {
+    mesh_.put_back(*std::static_pointer_cast<const DistributedMesh>(copy));
+  }
+  std::string fault() override {
+    const PartsCheck checked = check(mesh_);
+    return checked.is_good ? std::string() : checked.message;
+  }
+
  private:
   DistributedMesh& mesh_;
+  par::Policy policy_;
   std::uint64_t n_rounds_ = 0;
   PartPasses passes_;
 };
+
+/// Of whose inverted cells the volumes come together on all ranks.
+Standing Residents::standing() {
+  const Survey found = survey();
+  if (found.n_invalid == 0) return standing_of(found.worst, {});
+  std::vector<CellHandle> invalid = invalid_cells(mesh_.part(), policy_);
+  std::erase_if(invalid, [&](CellHandle c) { return !mesh_.is_own(c); });
+  InvalidVolumes volumes = volumes_of(mesh_.part(), invalid);
+  volumes.n_flat = static_cast<std::size_t>(mesh_.comm().sum(volumes.n_flat));
+  volumes.inverted = mesh_.comm().all_gather(std::span<const double>(volumes.inverted));
+  return standing_of(found.worst, std::move(volumes));
+}
+
+Box Residents::box() {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const TetMesh& part = mesh_.part();
+  Box box{{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}};
+  for (std::size_t i = 0; i < part.n_vertices(); ++i) {
+    if (!mesh_.is_own(VertexHandle(i))) continue;
+    const Vec3 p = part.point(VertexHandle(i));
+    for (int d = 0; d < 3; ++d) {
+      box.low[d] = std::min(box.low[d], p[d]);
+      box.high[d] = std::max(box.high[d], p[d]);
+    }
+  }
+  for (int d = 0; d < 3; ++d) {
+    box.low[d] = mesh_.comm().min(box.low[d]);
+    box.high[d] = -mesh_.comm().min(-box.high[d]);
+  }
+  return box;
+}
 
 /// What of the options is not there in parts; empty where all is.
 std::string reason_against(const ImproveOptions& options) {
@@ -63,14 +122,26 @@ std::string reason_against(const ImproveOptions& options) {
   return {};
 }
 
-/// The boundary lies on itself at a vertex of this rank. What this part ends with is no boundary, and of
-/// positive cells none of it is folded.
+/// Whether the boundary lies on itself at a vertex of any rank, which has all faces of the boundary there.
+/// What a part ends with elsewhere is no boundary.
 bool is_folded(DistributedMesh& mesh, par::Policy policy) {
-  const std::vector<HalfFaceHandle> folded = folded_faces(mesh.part(), policy);
-  return std::any_of(folded.begin(), folded.end(), [&](HalfFaceHandle h) {
-    const auto v = mesh.part().halfface_vertices(h);
-    return std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return mesh.is_own(u); });
-  });
+  const auto at = [&](VertexHandle v) { return mesh.is_own(v); };
+  return mesh.comm().sum(folded_faces(mesh.part(), policy, at).empty() ? 0 : 1) > 0;
+}
+
+/// The run over a mesh of positive cells, without a copy to come back to. True where the smallest angle has
+/// fallen below that of the input.
+bool polish_valid(const Run& run, double degrees, double worst_before) {
+  const auto has_fallen = [&] {
+    Standing now, before;
+    now.worst = run.survey().worst;
+    before.worst = worst_before;
+    return !is_no_worse(now, before);
+  };
+  polish(run, run.strategy.polish, degrees);
+  if (!has_fallen()) return false;
+  polish_to(run.within(run.strategy.bounds_asked), run.strategy.mending(), worst_before);
+  return has_fallen();
 }
 
 /// As before the first run.
@@ -142,36 +213,29 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   const par::Policy policy = options.policy;
   PartsResult result;
   result.before = result.after = survey(mesh, *options.min_dihedral, policy);
-  HFR_REQUIRE(result.before.n_invalid == 0, "meshes in parts do not have untangling yet, and this one has " +
-                                                std::to_string(result.before.n_invalid) +
-                                                " inverted or flat cells");
-  HFR_REQUIRE(mesh.comm().sum(is_folded(mesh, policy) ? 1 : 0) == 0,
-              "meshes in parts cannot have a boundary that lies on itself or goes through itself yet");
-  if (result.before.n_below_goal == 0) {
+  if (result.before.n_below_goal == 0 && result.before.n_invalid == 0) {
     result.goal_reached = true;
     return result;
   }
   begin(mesh);
-  const Strategy strategy = resolve(options, {result.before.worst, 0}, result.before.n_cells);
+  const Survey found{result.before.worst, static_cast<std::size_t>(result.before.n_invalid)};
+  const Strategy strategy = resolve(options, found, static_cast<std::size_t>(result.before.n_cells));
   RunControl control;
   Findings findings;
+  findings.is_folded = is_folded(mesh, policy);
   DeviceSession device;
-  Residents residents(mesh);
-  const Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
-                nullptr,     nullptr,     strategy.bounds, false,   &residents};
-  polish(run, strategy.polish, *options.min_dihedral);
-  result.after = survey(mesh, *options.min_dihedral, policy);
-  const auto has_fallen = [&] {
-    Standing now, before;
-    now.worst = result.after.worst;
-    before.worst = result.before.worst;
-    return !is_no_worse(now, before);
-  };
-  if (has_fallen()) {
-    polish_to(run.within(strategy.bounds_asked), strategy.mending(), result.before.worst);
-    result.after = survey(mesh, *options.min_dihedral, policy);
+  Residents residents(mesh, policy);
+  Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
+          nullptr,     nullptr,     strategy.bounds, false,   &residents};
+  if (found.n_invalid > 0 || findings.is_folded) {
+    Checkpoint checkpoint(residents, policy);
+    run.checkpoint = &checkpoint;
+    run.keep(found.n_invalid == 0);
+    run_to_the_end(run);
+  } else {
+    result.has_fallen = polish_valid(run, *options.min_dihedral, result.before.worst);
   }
-  result.has_fallen = has_fallen();
+  result.after = survey(mesh, *options.min_dihedral, policy);
   result.changed = control.n_changes() > 0;
   result.goal_reached = result.after.n_below_goal == 0 && result.after.n_invalid == 0;
   result.passes = std::move(control.passes());

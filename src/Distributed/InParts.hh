@@ -26,7 +26,7 @@ struct GridOptions {
 };
 /// Makes the parts, each on its rank: the points, cells and numbers of the mesh that the function for shared
 /// memory makes, which may have more cells here than an index can count. `how`: kNumbers are slices, all else
-/// blocks. Throws InvalidInput for what that function refuses, and where most cells of a part are inverted.
+/// blocks. Throws InvalidInput for what that function refuses, and where most cells are inverted.
 void generate_in_parts(DistributedMesh& mesh, const GridOptions& options,
                        Partition how = Partition::kCoordinates);
 
@@ -50,20 +50,21 @@ struct PartsResult {
   InParts before, after;
   bool changed = false;
   bool goal_reached = false;
-  /// The smallest angle is below that of the input, for which hfr::improve() would have put the input back.
-  /// Seen only where an obtuse angle was the worst.
+  /// The input had positive cells, and the smallest angle is below its smallest one, for which hfr::improve()
+  /// would have put the input back. Seen only where an obtuse angle was the worst.
   bool has_fallen = false;
   std::vector<PassReport> passes;
   double seconds = 0;
 };
-/// The polish towards options.min_dihedral: edge removal, removal of faces and of fans, vertex collapse,
-/// smoothing, insertion and cluster search on the cells that miss it, as far as options.ops has them. With
-/// options.polish_only, hfr::improve() of the whole mesh gives the same bits, for each number of ranks and
-/// threads. For insertion and cluster search rank 0 holds what the cells that are left below the goal then
-/// have round them, some hundred cells each.
-/// Throws InvalidInput, naming it, for what is not there in parts: runs without polish_only, a surface that
-/// may change, fixed things, devices, time limits, callbacks, maps, other smoothers; and where the mesh has
-/// cells to untangle or a boundary that lies on itself.
+/// Mends inverted and flat cells, then polishes towards options.min_dihedral: edge removal, removal of faces
+/// and of fans, vertex collapse, smoothing, insertion and cluster search on the cells that miss it, as far as
+/// options.ops has them. With options.polish_only, hfr::improve() of the whole mesh gives the same bits, for
+/// each number of ranks and threads. For insertion and cluster search rank 0 holds what the cells that are
+/// left below the goal then have round them, some hundred cells each. Where the mesh has invalid cells, or a
+/// boundary that lies on itself, each rank keeps a copy of its part, and rank 0 selects the winners of all
+/// rounds: then a run that would end worse than it began is taken back. Throws InvalidInput, naming it, for
+/// what is not there in parts: runs without polish_only, a surface that may change, fixed things, devices,
+/// time limits, callbacks, maps, other smoothers.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

@@ -215,10 +215,10 @@ DistributedMesh::Piece Incoming::piece() {
     has_regions = has_regions || c.region != 0;
   });
   points_ = {};
-  piece.mesh = build(std::move(points), cells);
+  piece.mesh = build(std::move(points), cells, {}, nullptr, NonManifold::kKeep, Turning::kConflicts);
   for (std::size_t c = 0; c < cells.size(); ++c)
     HFR_REQUIRE(piece.mesh.cell(CellHandle(c)).v[2].idx() == cells[c][2],
-                "cells of a mesh in parts have to be oriented alike, and most of them positive");
+                "cells of a mesh in parts have to be oriented alike");
   if (has_regions)
     for (std::size_t c = 0; c < cells.size(); ++c) piece.mesh.set_region(CellHandle(c), cells_[c].region);
   cells_ = {};

@@ -97,8 +97,7 @@ RoundCounts insert_in_parts(DistributedMesh& parts, const Ranks::Dig& dig, const
   if (parts.comm().sum(n_own) == 0 && waiting.empty()) return {};
   Turns turns = take_turns(parts.comm(), gather_poor(parts, dig.look.below, list, waiting));
   waiting = turns.waiting;
-  return dig.look.metric == Metric::kMinSine ? insert(parts, dig, turns, depth, MinSine2{})
-                                             : insert(parts, dig, turns, depth, MinDihedral{});
+  return with_metric(dig.look, [&](const auto& metric) { return insert(parts, dig, turns, depth, metric); });
 }
 
 }  // namespace hfr::mpi

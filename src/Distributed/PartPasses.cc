@@ -19,11 +19,13 @@
 #include "Operators/FanMerge.hh"
 #include "Operators/MultiFaceRemoval.hh"
 #include "Operators/SmoothMaxMin.hh"
+#include "Operators/SmoothNewton.hh"
 #include "Operators/VertexCollapse.hh"
 
 namespace hfr::mpi {
-bool PartPasses::can_do(PassKind kind, Metric metric) {
-  return (metric == Metric::kMinSine || metric == Metric::kMinDihedral) &&
+bool PartPasses::can_do(PassKind kind, const RankMetric& metric) {
+  return (metric.metric == Metric::kMinSine || metric.metric == Metric::kMinDihedral ||
+          metric.metric == Metric::kVolumeLength) &&
          (kind == PassKind::kEdge || kind == PassKind::kFace || kind == PassKind::kMultiFace ||
           kind == PassKind::kNode || kind == PassKind::kSmooth || kind == PassKind::kFan ||
           kind == PassKind::kMixed);
@@ -50,7 +52,7 @@ Ranks::Tally PartPasses::tally(double below) {
 
 RoundCounts PartPasses::run(const Ranks::Look& look) {
   const Comm::InPhase phase(parts_.comm(), Phase::kEvaluate);
-  return look.metric == Metric::kMinSine ? pass(look, MinSine2{}) : pass(look, MinDihedral{});
+  return with_metric(look, [&](const auto& metric) { return pass(look, metric); });
 }
 
 RoundCounts PartPasses::dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting) {
@@ -113,7 +115,9 @@ RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
           std::count_if(vertices.begin(), vertices.end(), [&](VertexHandle v) { return parts_.is_own(v); });
       if (parts_.comm().sum(static_cast<std::uint64_t>(n_own)) == 0) return {};
       const Comm::InPhase phase(parts_.comm(), Phase::kSmooth);
-      return smooth_parts(parts_, MaxMinSearch{}, metric, vertices, policy);
+      // As smooth_pass() of PassRunner.
+      using Search = std::conditional_t<std::is_same_v<M, Untangling>, NewtonSearch, MaxMinSearch>;
+      return smooth_parts(parts_, Search{}, metric, vertices, policy);
     }
   }
 }
@@ -121,10 +125,11 @@ RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
 /// As PassRunner has it.
 template <class M>
 RoundCounts PartPasses::mixed(const Ranks::Look& look, const M& metric, const Worklist& list) {
-  using Op = AnyOf<EdgeRemoval<M>, MultiFaceRemoval<M>, VertexCollapse<M>>;
+  using Faces = std::conditional_t<std::is_same_v<M, Untangling>, FaceSwap<M>, MultiFaceRemoval<M>>;
+  using Op = AnyOf<EdgeRemoval<M>, Faces, VertexCollapse<M>>;
   using Seed = typename Op::Seed;
   const Workspace& work = parts_.work();
-  const Op op{{EdgeRemoval<M>{metric, work.quality}, MultiFaceRemoval<M>{metric, work.quality},
+  const Op op{{EdgeRemoval<M>{metric, work.quality}, Faces{metric, work.quality},
                VertexCollapse<M>{metric, work.quality, work.frozen}}};
   const std::size_t n_cells = list.cells().size();
   std::vector<VertexHandle> vertices;

@@ -13,13 +13,14 @@
 
 namespace hfr::mpi {
 
-/// The passes of the polish over the parts of a mesh. All ranks call all of it in the same order.
+/// The passes of the polish, and of untangling, over the parts of a mesh. All ranks call all of it in the
+/// same order.
 class PartPasses {
  public:
   /// `n_rounds`: counts rounds in which there was something to look at.
   PartPasses(DistributedMesh& parts, std::uint64_t& n_rounds) : parts_(parts), n_rounds_(n_rounds) {}
 
-  static bool can_do(PassKind kind, Metric metric);
+  static bool can_do(PassKind kind, const RankMetric& metric);
   RoundCounts run(const Ranks::Look& look);
   /// A round of insertion, on rank 0: see PartInsertion.
   RoundCounts dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting);

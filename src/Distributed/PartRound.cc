@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "HalfFace/Writer.hh"
+#include "Scheduler/Select.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -31,6 +32,21 @@ struct Announcement {
   std::uint32_t seed_place = 0, seed_kind = 0, number = 0, n_cells = 0;
 };
 
+/// A candidate as rank 0 hears of it where links are checked; its cells and what it makes follow.
+struct Contender {
+  std::uint64_t key = 0;
+  SeedName name{};
+  std::uint64_t seed_number = 0;
+  std::uint32_t seed_place = 0, number = 0;
+};
+
+auto by_rank_order(const Contender& c) { return std::tie(c.key, c.name, c.seed_number, c.seed_place); }
+
+/// Of number `number` of that rank's.
+std::uint64_t candidate_name(int rank, std::uint32_t number) {
+  return (static_cast<std::uint64_t>(rank) << 32U) | number;
+}
+
 struct Decision {
   std::uint32_t number = 0;
   std::uint32_t has_won = 0;
@@ -38,11 +54,14 @@ struct Decision {
 
 }  // namespace
 
-auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain)
-    -> Selected {
+auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+                       bool check_links) -> Selected {
   const Comm::InPhase phase(comm_, Phase::kSelect);
   const bool is_anyone_told = announce(candidates);
-  decide(candidates, is_anyone_told);
+  if (check_links)
+    decide_on_first(candidates);
+  else
+    decide(candidates, is_anyone_told);
   Selected selected;
   for (std::size_t e = 0; e < entries_.size(); ++e)
     if (entries_[e].state == State::kWon) selected.winners.push_back({entries_[e].own, entries_[e].seed, {}});
@@ -155,6 +174,60 @@ void PartRound::decide(std::span<const Candidate> candidates, bool is_anyone_tol
   for (std::size_t e = 0; e < entries_.size(); ++e)
     if (entries_[e].state == State::kWon)
       for (CellHandle c : scope_of(entries_[e], candidates)) mesh_.work().claim[c.idx()] = kUnclaimed;
+}
+
+/// Two candidates that make the same edge may lie further from each other than ranks know of candidates. So
+/// rank 0 goes through those of all, as select_by_marking() does.
+void PartRound::decide_on_first(std::span<const Candidate> candidates) {
+  sub_rounds_ = 1;
+  std::vector<Packer> to(comm_.n_ranks());
+  for (const Entry& entry : entries_) {
+    if (entry.own == Winner::kOfOthers) continue;
+    const Candidate& candidate = candidates[entry.own];
+    to[0].put(Contender{entry.key, entry.name, entry.seed_number, entry.seed.place,
+                        static_cast<std::uint32_t>(entry.own)});
+    std::vector<std::uint64_t> cells;
+    for (CellHandle c : candidate.scope) cells.push_back(mesh_.number(c));
+    to[0].put_all(cells);
+    to[0].put_all(candidate.made);
+  }
+  struct Heard {
+    Contender contender;
+    int home = 0;
+    std::vector<std::uint64_t> cells, made;
+  };
+  std::vector<Heard> all;
+  for (const Comm::Message& message : comm_.exchange(to))
+    for (Unpacker in(message.bytes); !in.at_end();) {
+      Heard& one = all.emplace_back();
+      one.contender = in.get<Contender>();
+      one.home = message.from;
+      one.cells = in.get_all<std::uint64_t>();
+      one.made = in.get_all<std::uint64_t>();
+    }
+  std::sort(all.begin(), all.end(), [](const Heard& a, const Heard& b) {
+    return by_rank_order(a.contender) < by_rank_order(b.contender);
+  });
+  std::vector<std::uint64_t> won;
+  std::unordered_set<std::uint64_t> taken, made;
+  for (const Heard& one : all) {
+    const bool is_free =
+        std::none_of(one.cells.begin(), one.cells.end(), [&](std::uint64_t c) { return taken.contains(c); });
+    if (!is_free || !add_unless_there(one.made, made)) continue;
+    taken.insert(one.cells.begin(), one.cells.end());
+    won.push_back(candidate_name(one.home, one.contender.number));
+  }
+  std::sort(won.begin(), won.end());
+  Packer said;
+  said.put_all(won);
+  const std::vector<std::byte> bytes = told_by_first(comm_, said);
+  won = Unpacker(bytes).get_all<std::uint64_t>();
+  for (Entry& entry : entries_) {
+    const auto number =
+        entry.own == Winner::kOfOthers ? entry.number_at_home : static_cast<std::uint32_t>(entry.own);
+    const bool has_won = std::binary_search(won.begin(), won.end(), candidate_name(entry.home, number));
+    entry.state = has_won ? State::kWon : State::kLost;
+  }
 }
 
 /// In rank order: a candidate has lost when a winner has one of its cells, and waits while one that is

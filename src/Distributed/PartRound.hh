@@ -20,7 +20,8 @@ namespace hfr::mpi {
 /// those of the round in shared memory, whatever the number of ranks.
 ///
 /// What ranks say to each other: candidates that reach within one edge of a vertex of another rank, then
-/// whether they have won, until all have; the winners that take or leave slots, to all ranks; what has
+/// whether they have won, until all have; where links are checked, all candidates to rank 0, and which have
+/// won to all; the winners that take or leave slots, to all ranks; what has
 /// changed within two edges of another rank's vertices.
 class PartRound : public RoundPlace {
  public:
@@ -33,7 +34,8 @@ class PartRound : public RoundPlace {
   std::uint64_t number(VertexHandle v) const override { return mesh_.number(v); }
   std::uint64_t number(CellHandle c) const override { return mesh_.number(c); }
   CellHandle slot(std::uint64_t number) override { return mesh_.slot_of(number); }
-  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain) override;
+  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+                  bool check_links) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;
   /// After cells have come and gone here by DistributedMesh::apply(): brings what is near to others' vertices
@@ -73,6 +75,7 @@ class PartRound : public RoundPlace {
   bool announce(std::span<const Candidate> candidates);
   void hear(const Comm::Message& message);
   void decide(std::span<const Candidate> candidates, bool is_anyone_told);
+  void decide_on_first(std::span<const Candidate> candidates);
   void sweep(std::span<const Candidate> candidates);
   std::span<const CellHandle> scope_of(const Entry& entry, std::span<const Candidate> candidates) const {
     return entry.own == Winner::kOfOthers ? std::span<const CellHandle>(entry.scope)

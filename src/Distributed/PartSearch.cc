@@ -40,8 +40,8 @@ RoundCounts search_in_parts(DistributedMesh& parts, const Ranks::Search& search,
                             std::uint8_t depth) {
   const std::vector<std::uint64_t> cells = listed_by_all(parts, list);
   if (cells.empty()) return {};
-  return search.look.metric == Metric::kMinSine ? search_clusters(parts, search, cells, depth, MinSine2{})
-                                                : search_clusters(parts, search, cells, depth, MinDihedral{});
+  return with_metric(
+      search.look, [&](const auto& metric) { return search_clusters(parts, search, cells, depth, metric); });
 }
 
 }  // namespace hfr::mpi

@@ -115,7 +115,7 @@ std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
   return groups;
 }
 
-auto PartSmoothing::tell(std::span<const VertexHandle> moved) -> std::vector<Come> {
+auto PartSmoothing::tell_points(std::span<const VertexHandle> moved) -> std::vector<Come> {
   Comm& comm = mesh_.comm();
   std::vector<Packer> to(comm.n_ranks());
   RankSet set(mesh_.within_two().words());
@@ -137,6 +137,11 @@ auto PartSmoothing::tell(std::span<const VertexHandle> moved) -> std::vector<Com
       if (v.is_valid()) came.push_back({v, news.point, {}});
     }
   }
+  return came;
+}
+
+auto PartSmoothing::tell(std::span<const VertexHandle> moved) -> std::vector<Come> {
+  std::vector<Come> came = tell_points(moved);
   if (!came.empty()) find_links(came);
   return came;
 }

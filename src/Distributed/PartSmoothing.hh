@@ -36,6 +36,8 @@ class PartSmoothing {
   /// Tells the ranks that hold them of own vertices that have moved; returns what came from others and is
   /// held here. O(zone) where something came.
   std::vector<Come> tell(std::span<const VertexHandle> moved);
+  /// The same without half-faces.
+  std::vector<Come> tell_points(std::span<const VertexHandle> moved);
 
  private:
   void find_links(std::vector<Come>& came);

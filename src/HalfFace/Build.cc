@@ -107,7 +107,7 @@ class MeshBuilder {
     mesh_.points_ = std::move(points);
   }
 
-  TetMesh run(BuildReport* report, NonManifold non_manifold) {
+  TetMesh run(BuildReport* report, NonManifold non_manifold, Turning turning) {
     if (input_.size() > HalfFaceHandle::kInvalid / 12)
       throw ResourceLimit(std::to_string(input_.size()) +
                           " cells are too many for 32-bit indices; build with HFR_INDEX64=ON");
@@ -118,7 +118,7 @@ class MeshBuilder {
     refuse_double_cells();
     if (n_conflicts > 0) agree();
     BuildReport mended;
-    const Signs signs = count_signs();
+    const Signs signs = turning == Turning::kMost ? count_signs() : Signs();
     if (signs.negative > signs.positive) {
       turn([](std::size_t) { return true; });
       mended.flipped = true;
@@ -430,8 +430,8 @@ class MeshBuilder {
 };
 
 TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells, par::Policy policy,
-              BuildReport* report, NonManifold non_manifold) {
-  return MeshBuilder(std::move(points), cells, policy).run(report, non_manifold);
+              BuildReport* report, NonManifold non_manifold, Turning turning) {
+  return MeshBuilder(std::move(points), cells, policy).run(report, non_manifold, turning);
 }
 
 }  // namespace hfr

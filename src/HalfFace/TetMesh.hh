@@ -521,6 +521,12 @@ enum class NonManifold : std::uint8_t {
   kSplit  ///< one part keeps the vertex, that of the smallest cell; each other one gets a copy of it
 };
 
+/// What build() does where most cells are negative.
+enum class Turning : std::uint8_t {
+  kMost,      ///< turns the whole, or the component
+  kConflicts  ///< nothing: for a part of a mesh, which may be the inverted one
+};
+
 /// Builds the connectivity of a mesh from arrays: n points, m cells of four 0-based point indices in either
 /// orientation. Cells that contradict their neighbours are put into the neighbours' orientation, which may
 /// make them inverted: that is the truth about them. The whole is flipped when most cells are then negative;
@@ -530,7 +536,8 @@ enum class NonManifold : std::uint8_t {
 /// oriented alike, or an edge that cells go all the way round and that others have, too
 /// (Rule::kDuplicateEdge); ResourceLimit for more cells than an index can count.
 TetMesh build(std::vector<Vec3> points, std::span<const std::array<Index, 4>> cells, par::Policy policy = {},
-              BuildReport* report = nullptr, NonManifold non_manifold = NonManifold::kKeep);
+              BuildReport* report = nullptr, NonManifold non_manifold = NonManifold::kKeep,
+              Turning turning = Turning::kMost);
 
 template <class Visit>
 bool TetMesh::walk_ring(CellHandle c, int edge, Visit&& visit) const {

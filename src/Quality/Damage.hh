@@ -28,6 +28,13 @@ class Damage {
     const auto& v = mesh.cell(c).v;
     add(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
   }
+  /// Those of another cluster, after those that there are.
+  void join(const Damage& other) {
+    sum_.n_inverted += other.sum_.n_inverted;
+    sum_.n_flat += other.sum_.n_flat;
+    sum_.overlap += other.sum_.overlap;
+    sum_.worst = hfr_lesser(sum_.worst, other.sum_.worst);
+  }
   /// The same with vertex v at x.
   void add(const TetMesh& mesh, CellHandle c, VertexHandle v, Vec3 x) {
     const auto& w = mesh.cell(c).v;

@@ -65,7 +65,8 @@ bool fold(const TetMesh& mesh, VertexHandle v, HalfFaceHandle f, HalfFaceHandle 
 
 }  // namespace
 
-std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy) {
+std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy,
+                                         const std::function<bool(VertexHandle)>& at) {
   const auto boundary = par::compact<Index>(policy, 4 * mesh.n_cells(), [&](std::size_t i) {
     const HalfFaceHandle h(i);
     return !mesh.is_deleted(cell_of(h)) && !mesh.opposite_halfface(h).is_valid();
@@ -91,6 +92,7 @@ std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy
     auto& mine = found[static_cast<std::size_t>(part)];
     const std::size_t end = par::part_begin(n_vertices, n_parts, part + 1);
     for (std::size_t v = par::part_begin(n_vertices, n_parts, part); v < end; ++v) {
+      if (at && !at(corners[first[v]].vertex)) continue;
       for (std::size_t i = first[v]; i < first[v + 1]; ++i) {
         for (std::size_t j = i + 1; j < first[v + 1]; ++j) {
           if (!fold(mesh, corners[i].vertex, corners[i].face, corners[j].face)) continue;

@@ -8,69 +8,51 @@
 #include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/MeshInParts.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
 namespace {
 
-/// Relative: sums of volumes and angles that are nothing but rounded otherwise are the same.
-constexpr double kRounding = 1e-12;
 /// A better worst angle alone is worth a copy once one cell in so many has been changed: a copy costs about
 /// 15 ns a cell, a change some microseconds.
 constexpr std::size_t kChangesShare = 16;
 
-bool is_more(double a, double b) { return a > b + kRounding * std::abs(b); }
-
 }  // namespace
 
-void restore(TetMesh& mesh, std::shared_ptr<TetMesh> copy) {
-  if (copy.use_count() == 1)
-    mesh.restore(std::move(*copy));
+MeshCopy copy_of(const TetMesh& mesh, MeshInParts* parts) {
+  if (parts) return {nullptr, parts->copy()};
+  return {std::make_shared<TetMesh>(mesh), nullptr};
+}
+
+void restore(TetMesh& mesh, MeshInParts* parts, MeshCopy copy) {
+  if (parts)
+    parts->put_back(copy.parts);
+  else if (copy.mesh.use_count() == 1)
+    mesh.restore(std::move(*copy.mesh));
   else
-    mesh.restore(TetMesh(*copy));
-}
-
-Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy) {
-  Standing standing;
-  standing.worst = found.worst;
-  if (found.n_invalid == 0) return standing;
-  std::vector<double> volumes;
-  for (CellHandle c : invalid_cells(mesh, policy)) {
-    const auto& v = mesh.cell(c).v;
-    const Vec3 a = mesh.point(v[0]), b = mesh.point(v[1]), p = mesh.point(v[2]), q = mesh.point(v[3]);
-    if (orientation(a, b, p, q) == 0) {
-      ++standing.n_flat;
-      continue;
-    }
-    ++standing.n_inverted;
-    volumes.push_back(std::abs(Volume{}(a, b, p, q)) / 6.0);
-  }
-  std::sort(volumes.begin(), volumes.end());  // so that their sum is the same in any order
-  for (double volume : volumes) standing.overlap += volume;
-  return standing;
-}
-
-bool is_no_worse(const Standing& now, const Standing& before) {
-  return now.n_inverted <= before.n_inverted &&
-         now.n_inverted + now.n_flat <= before.n_inverted + before.n_flat &&
-         !is_more(now.overlap, before.overlap) && !is_more(before.worst, now.worst);
-}
-
-bool is_better(const Standing& a, const Standing& b) {
-  if (a.n_inverted != b.n_inverted) return a.n_inverted < b.n_inverted;
-  if (a.n_flat != b.n_flat) return a.n_flat < b.n_flat;
-  if (is_more(a.overlap, b.overlap) || is_more(b.overlap, a.overlap)) return a.overlap < b.overlap;
-  return a.worst > b.worst;
+    mesh.restore(TetMesh(*copy.mesh));
 }
 
 Checkpoint::Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy)
     : policy_(policy), input_(standing_of(input, found, policy)) {}
 
+Checkpoint::Checkpoint(MeshInParts& parts, par::Policy policy)
+    : policy_(policy), parts_(&parts), input_(parts.standing()) {}
+
+Standing Checkpoint::standing(const TetMesh& mesh) const {
+  return parts_ ? parts_->standing() : standing_of(mesh, survey(mesh, policy_), policy_);
+}
+
+std::size_t Checkpoint::n_cells(const TetMesh& mesh) const {
+  return parts_ ? parts_->n_cells() : mesh.n_logical_cells();
+}
+
 void Checkpoint::keep(TetMesh& mesh, bool valid, std::size_t n_changes) {
   if (valid && !input_.is_valid()) return;
   if (kept_) {
     const std::size_t n_since = std::max(n_changes, kept_after_) - std::min(n_changes, kept_after_);
-    const bool little = n_since < mesh.n_logical_cells() / kChangesShare;
+    const bool little = n_since < n_cells(mesh) / kChangesShare;
     if (n_changes == kept_after_ || (valid && little)) return;
     const Standing now = standing(mesh);
     if (!is_no_worse(now, input_) || !is_better(now, kept_standing_)) return;
@@ -81,24 +63,30 @@ void Checkpoint::keep(TetMesh& mesh, bool valid, std::size_t n_changes) {
   } else {
     kept_standing_ = n_changes == 0 ? input_ : standing(mesh);
   }
-  kept_ = std::make_shared<TetMesh>(mesh);
+  kept_ = copy_of(mesh, parts_);
   kept_after_ = n_changes;
 }
 
 void Checkpoint::put_back(TetMesh& mesh) {
-  restore(mesh, std::exchange(kept_, nullptr));
+  restore(mesh, parts_, std::exchange(kept_, {}));
   restored_ = true;
 }
 
 void Checkpoint::require_sound(TetMesh& mesh) {
-  // What was put back since the copy was made (see Trial) may be older than the copy, with fewer slots.
-  const bool is_older = mesh.n_cells() < kept_->n_cells() || mesh.n_vertices() < kept_->n_vertices();
-  const CheckResult found = is_older ? check(mesh, {.last = Rule::kDuplicateEdge, .policy = policy_})
-                                     : check_changes(mesh, *kept_, policy_);
-  if (found) return;
+  const std::string fault = parts_ ? parts_->fault() : fault_of(mesh);
+  if (fault.empty()) return;
   put_back(mesh);
-  throw InternalError("a rule of the mesh was broken on the way (" + std::string(rule_name(found.rule)) +
-                      ": " + found.message + "); please report this, with the mesh and the options");
+  throw InternalError("a rule of the mesh was broken on the way (" + fault +
+                      "); please report this, with the mesh and the options");
+}
+
+std::string Checkpoint::fault_of(const TetMesh& mesh) const {
+  const TetMesh& kept = *kept_.mesh;
+  // What was put back since the copy was made (see Trial) may be older than the copy, with fewer slots.
+  const bool is_older = mesh.n_cells() < kept.n_cells() || mesh.n_vertices() < kept.n_vertices();
+  const CheckResult found = is_older ? check(mesh, {.last = Rule::kDuplicateEdge, .policy = policy_})
+                                     : check_changes(mesh, kept, policy_);
+  return found ? std::string() : std::string(rule_name(found.rule)) + ": " + found.message;
 }
 
 bool Checkpoint::settle(TetMesh& mesh, bool known_no_worse, const std::function<void()>& mend) {
@@ -124,7 +112,7 @@ bool Checkpoint::settle(TetMesh& mesh, bool known_no_worse, const std::function<
 void Checkpoint::settle_after_failure(TetMesh& mesh) noexcept {
   if (!kept_) return;
   try {
-    if (check_changes(mesh, *kept_, policy_) && is_no_worse(standing(mesh), input_)) return;
+    if (check_changes(mesh, *kept_.mesh, policy_) && is_no_worse(standing(mesh), input_)) return;
   } catch (...) {  // too little memory to look: what was kept is safe
   }
   put_back(mesh);

@@ -3,35 +3,29 @@
 #define HFR_REMESH_CHECKPOINT_HH
 
 #include <functional>
-#include <limits>
 #include <memory>
+#include <string>
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
+#include "Remesh/Standing.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
 
-/// Makes the mesh what the copy is, and takes the copy for it where nobody else has it.
-void restore(TetMesh& mesh, std::shared_ptr<TetMesh> copy);
+class MeshInParts;
 
-/// What no run may leave worse than it was.
-struct Standing {
-  std::size_t n_inverted = 0;
-  std::size_t n_flat = 0;
-  double overlap = 0;                                      ///< sum of |volume| of the inverted cells
-  double worst = std::numeric_limits<double>::infinity();  ///< smallest decision value of MinDihedral
+/// A copy of the mesh of a run: one of these.
+struct MeshCopy {
+  std::shared_ptr<TetMesh> mesh;
+  std::shared_ptr<const void> parts;  ///< see MeshInParts::copy()
 
-  bool is_valid() const { return n_inverted + n_flat == 0; }
+  explicit operator bool() const { return mesh || parts; }
 };
-/// Of a mesh in which survey() has found that. Does not depend on the order of the cells. Another pass over
-/// them where some are invalid.
-Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy);
-/// No more inverted cells, no more inverted and flat ones together, no more overlap, no smaller worst angle.
-bool is_no_worse(const Standing& now, const Standing& before);
-/// Fewer inverted cells; if as many, fewer inverted and flat ones; if as many, less overlap; if as much, a
-/// larger worst angle.
-bool is_better(const Standing& a, const Standing& b);
+/// `parts`: where the mesh is part of one that is in parts; null: it is all there is.
+MeshCopy copy_of(const TetMesh& mesh, MeshInParts* parts);
+/// Makes the mesh what the copy is, and takes the copy for it where nobody else has it.
+void restore(TetMesh& mesh, MeshInParts* parts, MeshCopy copy);
 
 /// Sees to it that a run ends no worse than it began, whatever ends it. Stages that may lower what counts are
 /// announced: before the first of them the mesh is copied, and again before later ones where it is no worse
@@ -43,13 +37,14 @@ bool is_better(const Standing& a, const Standing& b);
 class Checkpoint {
  public:
   Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy);
+  /// Of a mesh in parts, each of whose ranks has one, and calls all of it at the same time as the others. The
+  /// meshes that it is given are parts.
+  Checkpoint(MeshInParts& parts, par::Policy policy);
 
   const Standing& input() const { return input_; }
-  bool has_copy() const { return kept_ != nullptr; }
+  bool has_copy() const { return bool(kept_); }
   /// The mesh as it was after so many operators, where that is what is kept; it is not to be changed.
-  std::shared_ptr<TetMesh> copy_after(std::size_t n_changes) const {
-    return n_changes == kept_after_ ? kept_ : nullptr;
-  }
+  MeshCopy copy_after(std::size_t n_changes) const { return n_changes == kept_after_ ? kept_ : MeshCopy(); }
   /// Whether the run may end with this mesh.
   bool allows(const TetMesh& mesh) const { return is_no_worse(standing(mesh), input_); }
 
@@ -73,14 +68,18 @@ class Checkpoint {
   bool is_input() const { return restored_ && kept_after_ == 0; }
 
  private:
-  Standing standing(const TetMesh& mesh) const { return standing_of(mesh, survey(mesh, policy_), policy_); }
+  Standing standing(const TetMesh& mesh) const;
+  std::size_t n_cells(const TetMesh& mesh) const;
   void put_back(TetMesh& mesh);
   /// Throws InternalError, with the mesh as it was kept, where the mesh breaks a rule that the copy keeps.
   void require_sound(TetMesh& mesh);
+  /// The first rule that it breaks since the copy was made; empty where it breaks none.
+  std::string fault_of(const TetMesh& mesh) const;
 
   par::Policy policy_;
+  MeshInParts* parts_ = nullptr;
   Standing input_;
-  std::shared_ptr<TetMesh> kept_;  // a Snapshot may have it, too
+  MeshCopy kept_;  // a Snapshot may have it, too
   Standing kept_standing_;
   std::size_t kept_after_ = 0;  // changes
   bool restored_ = false;

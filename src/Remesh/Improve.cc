@@ -15,55 +15,15 @@
 #include "Remesh/Explain.hh"
 #include "Remesh/FixedParts.hh"
 #include "Remesh/MapRecorder.hh"
-#include "Remesh/Pipeline.hh"
-#include "Remesh/Polish.hh"
-#include "Remesh/RestoreVolume.hh"
 #include "Remesh/Run.hh"
 #include "Remesh/RunMemory.hh"
-#include "Remesh/Snapshot.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
+#include "Remesh/WholeRun.hh"
 
 namespace hfr {
 namespace {
-
-/// Before the end of a run that may have left the mesh worse than its input: works on what has fallen below
-/// the input's smallest angle, if that is all, and puts back what was kept if that does not do. False when it
-/// did that.
-bool settle(const Run& run, bool known_to_meet) {
-  Checkpoint& checkpoint = *run.checkpoint;
-  const auto mend = [&] {
-    if (run.control.stopped() || run.strategy.course == Course::kCompat) return;
-    Run mending = run.within(run.strategy.bounds_asked);
-    mending.may_add_poor_cells = run.strategy.course == Course::kAnyCost;
-    polish_to(mending, run.strategy.mending(), checkpoint.input().worst);
-  };
-  if (!checkpoint.settle(run.mesh, known_to_meet, mend)) return true;
-  const Survey found = survey(run.mesh, run.policy());
-  run.control.add_undo(checkpoint.changes_kept(), found.n_invalid, found.worst);
-  return false;
-}
-
-/// All stages. Over inverted or flat cells first without holding each cluster to being no more damaged: from
-/// a state between that is worse, more of them come right. Where the mesh ends worse for it than it began,
-/// again from the beginning, and held.
-bool run_twice_if_worse(const Run& run) {
-  const auto run_all = [&] {
-    const bool met = run_stages(run);
-    if (run.strategy.volume) restore_volume(run, *run.strategy.volume);
-    return met;
-  };
-  if (run.checkpoint->input().is_valid()) return run_all();
-  run.work.floor = run.checkpoint->input().worst;
-  Snapshot before(run);
-  run.work.holds_damage = false;
-  const bool met = run_all();
-  run.work.holds_damage = true;
-  if (met || run.control.stopped() || run.checkpoint->allows(run.mesh)) return met;
-  before.put_back(run);
-  return run_all();
-}
 
 /// What a run is made of, and leaves for the report.
 struct Parts {
@@ -103,13 +63,11 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& su
   if (findings.is_folded || !work.pinched.empty()) run.keep(valid);
   run.surface = surface.get();
   run.ranks = memory.ranks;
-  bool met = run_twice_if_worse(run);
-  const bool stays = settle(run, met);
-  met = stays && met;
-  memory.knows_stars = stays;
+  const Ending ending = run_to_the_end(run);
+  memory.knows_stars = ending.stays;
   if (surface.get()) memory.is_folded.reset();
   surface_report = surface.report(mesh);
-  return met;
+  return ending.meets;
 }
 
 /// Gives the mesh handles without gaps, in the old order where nothing has changed. Returns where each vertex

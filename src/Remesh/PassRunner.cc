@@ -68,6 +68,8 @@ PassRunner<Metric>::PassRunner(const Run& run, Metric metric, std::string stage,
     device_.emplace(*this, [this](PassKind kind, const Turn& turn) { (this->*row(kind).run)(turn); });
   if constexpr (std::is_same_v<Metric, MinSine2>) ranks_.emplace(*this, hfr::Metric::kMinSine);
   if constexpr (std::is_same_v<Metric, MinDihedral>) ranks_.emplace(*this, hfr::Metric::kMinDihedral);
+  if constexpr (std::is_same_v<Metric, Untangling>)
+    if (run.is_part()) ranks_.emplace(*this, RankMetric(metric));
   if (run.checkpoint && may_lower_angles()) run.keep(n_invalid() == 0);
 }
 

@@ -34,7 +34,9 @@ constexpr double kBulkDone = 0.5;
 /// Mends what is inverted or flat, and finds out whether what is left can be mended at all.
 void mend_invalid(const Run& run) {
   if (run.strategy.untangle && !untangle(run, *run.strategy.untangle)) {
-    const std::vector<CellHandle> left = invalid_cells(run.mesh, run.policy());
+    // In parts nothing asks about that.
+    const std::vector<CellHandle> left =
+        run.is_part() ? std::vector<CellHandle>() : invalid_cells(run.mesh, run.policy());
     if (!run.surface && !left.empty())
       run.findings.is_unfillable =
           !unfillable_faces(run.mesh, left, folded_faces(run.mesh, run.policy()), run.policy()).empty();
@@ -194,7 +196,7 @@ bool run_to_goal(const Run& run, const GoalEffort& goal) {
   if (run_towards_goal(run, goal)) return true;
   // That goes on with a frozen surface, too.
   if (beginning) run_without_goal(run, goal, std::move(*beginning));
-  return n_below(run.mesh, goal.degrees, run.policy()) == 0;
+  return run.n_below(goal.degrees) == 0;
 }
 
 bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
@@ -227,7 +229,7 @@ void improve_all(const Run& run, double floor, std::span<const TargetAngle> targ
 bool run_stages(const Run& run) {
   if (run.strategy.plain) {
     const bool is_valid = run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal) ||
-                          survey(run.mesh, run.policy()).n_invalid == 0;
+                          run.survey().n_invalid == 0;
     run.keep(is_valid);
   }
   switch (run.strategy.course) {

@@ -8,7 +8,7 @@
 
 namespace hfr {
 
-RankPasses::RankPasses(PassState& state, Metric metric)
+RankPasses::RankPasses(PassState& state, const RankMetric& metric)
     : state_(state), metric_(metric), n_exceptions_(std::uncaught_exceptions()) {
   state_.ranks_ = this;
   is_resident_ = state_.run_.is_part();
@@ -23,11 +23,26 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
   const Run& run = state_.run_;
   if (!run.ranks || !run.ranks->can_do(kind, metric_)) return false;
   if (run.surface || turn.focus.everything() || !turn.focus.around.empty()) return false;
-  if (state_.n_invalid() > 0 || run.findings.is_folded || run.strategy.pass.ranks_exactly) return false;
+  const bool checks_links = state_.n_invalid() > 0 || run.findings.is_folded;
+  if ((checks_links && !run.is_part()) || run.strategy.pass.ranks_exactly) return false;
   if (kind == PassKind::kSmooth && run.strategy.pass.smoother != Smoother::kNewton) return false;
   if (is_resident_) return true;
   return state_.n_below(turn.focus.below) >= run.ranks->least_cells(run.mesh.n_logical_cells()) &&
          run.ranks->can_take(run.mesh, run.work);
+}
+
+void RankPasses::renew(Ranks::Look& look) {
+  const Run& run = state_.run_;
+  look.since = std::exchange(state_.looked_[static_cast<std::size_t>(look.kind)], run.work.clock);
+  look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
+  look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
+  look.check_links = state_.n_invalid() > 0 || run.findings.is_folded;
+}
+
+void RankPasses::count(const Turn& turn) {
+  const Ranks::Tally tally = state_.run_.ranks->tally(turn.focus.below);
+  state_.n_invalid_ = tally.n_invalid;
+  state_.worst_ = tally.worst;
 }
 
 std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, const Turn& turn) {
@@ -43,15 +58,15 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
   is_resident_ = true;
   const PassEffort& effort = run.strategy.pass;
   Ranks::Look look{kind, metric_, turn.focus.below, 0, effort.seed, 0, 0, run.policy().threads};
-  if (effort.first_edge_does) look.first_edge_beyond = effort.few_seeds;
+  // As edge_pass() of PassRunner.
+  if (effort.first_edge_does && metric_.metric != Metric::kVolumeLength)
+    look.first_edge_beyond = effort.few_seeds;
   look.ops = turn.removes_vertices ? effort.ops : without(effort.ops, Ops::kNode);
   RoundCounts total;
   std::size_t first = 0;
   const int most = kind == PassKind::kSmooth ? 1 : effort.rounds;
   for (int r = 0; r < most && (kind == PassKind::kSmooth || !run.control.stopped()); ++r) {
-    look.since = std::exchange(state_.looked_[static_cast<std::size_t>(kind)], run.work.clock);
-    look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
-    look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
+    renew(look);
     const RoundCounts counts =
         kind == PassKind::kCluster
             ? run.ranks->search({look, effort.least_gain, effort.search_points, effort.search_nodes})
@@ -60,12 +75,11 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
     if (!run.is_part()) ++run.work.clock;  // the round has, of its own workspace
     if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
     total += counts;
+    if (state_.n_invalid() > 0) count(turn);
     if (r == 0) first = counts.winners;
     if (counts.winners * effort.little <= first) break;
   }
-  const Ranks::Tally tally = run.ranks->tally(turn.focus.below);
-  state_.n_invalid_ = tally.n_invalid;
-  state_.worst_ = tally.worst;
+  count(turn);
   state_.report(name, turn, total, run.control.seconds() - start);
   return total.winners;
 }
@@ -88,22 +102,18 @@ std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) 
   RoundCounts total;
   std::size_t first = 0;
   for (int r = 0; r < effort.insert_rounds && !run.control.stopped(); ++r) {
-    dig.look.since =
-        std::exchange(state_.looked_[static_cast<std::size_t>(PassKind::kInsert)], run.work.clock);
-    dig.look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
-    dig.look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
+    renew(dig.look);
     const RoundCounts counts = run.ranks->dig(dig, waiting_);
     if (counts.rounds == 0) break;
     if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
     total += counts;
+    if (state_.n_invalid() > 0) count(turn);
     if (r == 0) first = counts.winners;
     if (counts.winners < counts.held_back) break;  // the room is used up
     if (counts.seeds > effort.few_seeds && counts.winners < counts.seeds / turn.seeds_of_vertex) break;
     if (counts.winners * effort.little <= first && waiting_.empty()) break;
   }
-  const Ranks::Tally tally = run.ranks->tally(turn.focus.below);
-  state_.n_invalid_ = tally.n_invalid;
-  state_.worst_ = tally.worst;
+  count(turn);
   state_.report(name, turn, total, run.control.seconds() - start);
   return total.winners;
 }

@@ -13,11 +13,12 @@ namespace hfr {
 
 /// The passes of a stage on several ranks. The mesh stays there from one pass to the next, and comes back
 /// when a pass that runs here asks for it, or at the end of the stage: each hand-over is a line "gather" in
-/// the report. Only stages whose passes have a focus and no invalid cell: docs/distributed.md says which.
+/// the report. Only stages whose passes have a focus and, unless the ranks keep the mesh, no invalid cell:
+/// docs/distributed.md says which.
 class RankPasses {
  public:
   /// `metric`: that of the passes. Nothing is done unless the run has ranks.
-  RankPasses(PassState& state, Metric metric);
+  RankPasses(PassState& state, const RankMetric& metric);
   ~RankPasses() noexcept(false);
   RankPasses(const RankPasses&) = delete;
   RankPasses& operator=(const RankPasses&) = delete;
@@ -34,9 +35,13 @@ class RankPasses {
 
  private:
   bool takes(PassKind kind, const Turn& turn);
+  /// What the next round of a pass has to know.
+  void renew(Ranks::Look& look);
+  /// Brings the counts of the stage up to date.
+  void count(const Turn& turn);
 
   PassState& state_;
-  Metric metric_;
+  RankMetric metric_;
   bool is_resident_ = false;
   std::vector<std::uint64_t> waiting_;  // numbers of cells, for their turn in insert()
   int n_exceptions_;                    // when this was made

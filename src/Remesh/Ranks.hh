@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Operators/Metrics.hh"
 #include "Parallel/Parallel.hh"
 #include "Quality/Metric.hh"
 #include "Remesh/Options.hh"
@@ -16,6 +17,17 @@
 namespace hfr {
 
 enum class PassKind : std::uint8_t;
+class MeshInParts;
+
+/// What passes on ranks measure cells by: kMinSine, kMinDihedral, or Untangling, whose volume-length is of
+/// positive cells and which says how the others are measured.
+struct RankMetric {
+  Metric metric;
+  Untangling untangling{};  ///< with kVolumeLength
+
+  RankMetric(Metric angles = Metric::kMinSine) : metric(angles) {}
+  explicit RankMetric(const Untangling& of) : metric(Metric::kVolumeLength), untangling(of) {}
+};
 
 /// Other processes that can do some of the passes of a run, with the same bits: what Distributed/ has for
 /// whoever runs stages. While they have the mesh, that of the run is an older one.
@@ -25,7 +37,7 @@ class Ranks {
   /// clock stood at `since`.
   struct Look {
     PassKind kind{};
-    Metric metric = Metric::kMinSine;
+    RankMetric metric;
     double below = 0;
     std::uint32_t since = 0;
     std::uint64_t seed = 1;
@@ -36,6 +48,8 @@ class Ranks {
     std::uint64_t first_edge_beyond = std::numeric_limits<std::uint64_t>::max();
     /// Of a mixed pass: the kinds that compete.
     Ops ops = Ops::kNone;
+    /// See RoundOptions::check_links.
+    bool check_links = false;
   };
   /// One round of insertion over such cells and those that wait from the round before.
   struct Dig {
@@ -61,8 +75,10 @@ class Ranks {
   /// of them: then each of them runs the same stages at the same time, which have only passes that they can
   /// do.
   virtual bool keep_mesh() const { return false; }
+  /// Where they keep it.
+  virtual MeshInParts* parts() { return nullptr; }
   /// Whether they can do passes of this kind in this metric, over a mesh like this one.
-  virtual bool can_do(PassKind kind, Metric metric) const = 0;
+  virtual bool can_do(PassKind kind, const RankMetric& metric) const = 0;
   virtual bool can_take(const TetMesh& mesh, const Workspace& work) const = 0;
   /// From how many cells in focus on it is worth their while, with so many cells in all.
   virtual std::size_t least_cells(std::size_t n_cells) const = 0;

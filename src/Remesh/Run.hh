@@ -5,6 +5,7 @@
 #include "HalfFace/TetMesh.hh"
 #include "Remesh/Checkpoint.hh"
 #include "Remesh/DeviceSession.hh"
+#include "Remesh/MeshInParts.hh"
 #include "Remesh/Ranks.hh"
 #include "Remesh/RunControl.hh"
 #include "Remesh/Strategy.hh"
@@ -55,7 +56,13 @@ struct Run {
   par::Policy policy() const { return strategy.pass.policy; }
   /// Whether this mesh is a part of that of the run; see Ranks::keep_mesh().
   bool is_part() const { return ranks && ranks->keep_mesh(); }
-  /// Of the whole.
+  /// Where it is; null elsewhere.
+  MeshInParts* parts() const { return is_part() ? ranks->parts() : nullptr; }
+  /// Of the whole, as the two below.
+  Survey survey() const { return is_part() ? parts()->survey() : hfr::survey(mesh, policy()); }
+  std::size_t n_below(double degrees) const {
+    return is_part() ? parts()->n_below(degrees) : hfr::n_below(mesh, degrees, policy());
+  }
   std::size_t n_cells() const { return is_part() ? ranks->n_cells() : mesh.n_logical_cells(); }
   /// Whether the bound on cells leaves room for those of another vertex.
   bool has_room() const { return bounds.max == 0 || n_cells() + strategy.pass.cells_of_vertex <= bounds.max; }

@@ -16,12 +16,13 @@ namespace hfr {
 class Snapshot {
  public:
   explicit Snapshot(const Run& run);
-  const TetMesh& mesh() const { return *mesh_; }
+  /// Not of a run over a mesh in parts.
+  const TetMesh& mesh() const { return *mesh_.mesh; }
   /// With a line in the report. Once only, in the run that it is of.
   void put_back(const Run& run);
 
  private:
-  std::shared_ptr<TetMesh> mesh_;  // the checkpoint may have it, too
+  MeshCopy mesh_;  // the checkpoint may have it, too
   SurfaceCopy surface_;
   std::size_t n_changes_;
 };

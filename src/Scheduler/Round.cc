@@ -207,20 +207,27 @@ class RoundCore::State {
   /// The same where the mesh is a part of one, bounds on cells included: winners are those that are committed
   /// here, among them candidates of other parts.
   void select_among_parts(RoundCounts& counts) {
-    HFR_REQUIRE(!options_.check_links && work_.pinched.empty() && !options_.worst_first,
-                "a round over parts of a mesh checks no links and does not rank by the exact worst cell");
+    HFR_REQUIRE(
+        work_.pinched.empty() && !options_.worst_first,
+        "a round over parts of a mesh has no pinched vertices and does not rank by the exact worst cell");
     scopes_ = ScopeList(options_.policy, keys_.size(), [&](std::size_t i, Scope& out) {
       const PlanBase& plan = round_.candidate(keys_[i].index);
       round_.scope(plan, out);
       require_sizes(plan, out.size());
     });
     std::vector<RoundPlace::Candidate> candidates(keys_.size());
+    Cavity cavity;
     for (std::size_t i = 0; i < keys_.size(); ++i) {
       const PlanBase& plan = round_.candidate(keys_[i].index);
-      candidates[i] = {keys_[i].key, name_in_whole(identities_[keys_[i].index]), round_.address(plan), &plan,
-                       scopes_[i]};
+      candidates[i] = {keys_[i].key,         name_in_whole(identities_[keys_[i].index]),
+                       round_.address(plan), &plan,
+                       scopes_[i],           {}};
+      if (!options_.check_links) continue;
+      round_.cavity(plan, cavity);
+      candidates[i].made = hashes_of_created(cavity);
     }
-    RoundPlace::Selected selected = options_.place->select(candidates, options_.may_lose, options_.may_gain);
+    RoundPlace::Selected selected =
+        options_.place->select(candidates, options_.may_lose, options_.may_gain, options_.check_links);
     counts.held_back = selected.held_back;
     winners_.clear();
     for (RoundPlace::Winner& one : selected.winners) {
@@ -298,15 +305,21 @@ class RoundCore::State {
                              std::unordered_set<std::uint64_t>& created) const {
     round_.cavity(plan, cavity);
     if (!holds_links(cavity)) return true;
+    return add_unless_there(hashes_of_created(cavity), created);
+  }
+
+  /// By the numbers that vertices have in the whole mesh.
+  std::vector<std::uint64_t> hashes_of_created(const Cavity& cavity) const {
     std::vector<std::uint64_t> hashes;
     for (const Simplex& simplex : created_simplices(mesh_, cavity)) {
       std::uint64_t h = 0;
-      for (VertexHandle v : simplex) h = mix64(h ^ v.idx()) + 0x9e3779b97f4a7c15ULL;
-      if (created.contains(h)) return false;
+      for (VertexHandle v : simplex) {
+        const std::uint64_t number = options_.place && v.is_valid() ? options_.place->number(v) : v.idx();
+        h = mix64(h ^ number) + 0x9e3779b97f4a7c15ULL;
+      }
       hashes.push_back(h);
     }
-    created.insert(hashes.begin(), hashes.end());
-    return true;
+    return hashes;
   }
 
   void commit() {

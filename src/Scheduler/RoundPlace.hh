@@ -27,6 +27,8 @@ class RoundPlace {
     SeedAddress seed;
     const PlanBase* plan = nullptr;
     std::span<const CellHandle> scope;
+    /// Where links are checked: hashes of the edges and faces that it would make, which may be made once.
+    std::vector<std::uint64_t> made;
   };
   /// What has to be committed here: all winners, of any part, that lie near a vertex of this one.
   struct Winner {
@@ -51,9 +53,10 @@ class RoundPlace {
   virtual std::uint64_t number(CellHandle c) const = 0;
   /// The slot of that number; adds it to the mesh where this part has none.
   virtual CellHandle slot(std::uint64_t number) = 0;
-  /// The first independent set over all parts, within the bounds on cells of the whole.
-  virtual Selected select(std::span<const Candidate> candidates, std::size_t may_lose,
-                          std::size_t may_gain) = 0;
+  /// The first independent set over all parts, within the bounds on cells of the whole. `check_links`: no two
+  /// winners make the same edge or face; a candidate that would is refused when its turn comes.
+  virtual Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+                          bool check_links) = 0;
   /// After the winners were committed, in their order: brings what this part holds of others up to date.
   virtual void finish(std::span<const Commit> commits) = 0;
   /// Of the counts of all parts the sum.

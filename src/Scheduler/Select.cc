@@ -43,6 +43,13 @@ std::vector<std::uint32_t> select_by_marking(const ScopeList& scopes, std::span<
   return winners;
 }
 
+bool add_unless_there(std::span<const std::uint64_t> values, std::unordered_set<std::uint64_t>& there) {
+  if (std::any_of(values.begin(), values.end(), [&](std::uint64_t v) { return there.contains(v); }))
+    return false;
+  there.insert(values.begin(), values.end());
+  return true;
+}
+
 std::vector<std::uint32_t> select_by_claims(par::Policy policy, const ScopeList& scopes,
                                             std::span<std::uint32_t> claim, std::size_t* sub_rounds) {
   std::vector<State> state(scopes.size(), State::kUndecided);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
@@ -61,6 +62,8 @@ inline constexpr std::size_t kClaimCandidates = 8192;
 /// a candidate whose cells are free.
 std::vector<std::uint32_t> select_by_marking(const ScopeList& scopes, std::span<std::uint32_t> claim,
                                              const std::function<bool(std::size_t)>& accept = {});
+/// For accept(): adds the values unless one of them is there.
+bool add_unless_there(std::span<const std::uint64_t> values, std::unordered_set<std::uint64_t>& there);
 /// Lock-free: every undecided candidate lowers the claim of its cells to its own number; who holds all its
 /// cells has won, who meets a winner has lost; repeated until all are decided. `sub_rounds`, where given,
 /// gets the number of repetitions.

@@ -15,12 +15,13 @@ namespace hfr {
 /// thrown away after (the paper's "generated at the time of use").
 class StarTable {
  public:
+  StarTable() = default;
   /// `vertices` ascending; `star_size` as star_sizes() has it, of any size. Only a vertex that no cell has
   /// has an empty star.
   StarTable(const TetMesh& mesh, std::span<const VertexHandle> vertices,
             std::span<const std::uint32_t> star_size, par::Policy policy = {});
 
-  std::size_t size() const { return begin_.size() - 1; }
+  std::size_t size() const { return begin_.empty() ? 0 : begin_.size() - 1; }
   /// Half-faces opposite vertex number i, one a cell of its star, ascending.
   std::span<const HalfFaceHandle> link(std::size_t i) const {
     return {links_.data() + begin_[i], links_.data() + begin_[i + 1]};

@@ -133,8 +133,6 @@ TEST(InParts, WhatIsNotThereIsNamed) {
   EXPECT_THAT(refusal([](auto& o) { o.surface.mode = SurfaceMode::kFlat; }),
               HasSubstr("surfaces that may change"));
   EXPECT_THAT(refusal([](auto& o) { o.time_limit = 1; }), HasSubstr("time limits"));
-  mpi::generate_in_parts(parts, grid({6, 6, 6}, 0.5));
-  EXPECT_THAT(refusal([](auto&) {}), HasSubstr("untangling"));
 }
 
 /// Of a part in which something is spoilt on one rank, all ranks learn.

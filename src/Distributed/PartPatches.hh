@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_PART_PATCHES_HH
+#define HFR_DISTRIBUTED_PART_PATCHES_HH
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "Distributed/DistributedMesh.hh"
+
+namespace hfr::mpi {
+
+/// Some vertices of a mesh in parts, joined where they share a cell: each patch goes by the smallest number
+/// of its vertices. All ranks make one at the same time.
+class PartPatches {
+ public:
+  /// `vertices`: those of the whole that this part knows of, ascending: all within one edge of own ones.
+  PartPatches(const DistributedMesh& parts, std::span<const VertexHandle> vertices);
+
+  /// Of a vertex within one edge of own ones; kNoNumber where it is in none.
+  std::uint64_t of(VertexHandle v) const { return patch_[v.idx()]; }
+  /// Of a cell, by any vertex of it that is in one.
+  std::uint64_t of(CellHandle c) const;
+
+ private:
+  const DistributedMesh& parts_;
+  std::vector<std::uint64_t> patch_;  // by vertex of the part
+};
+
+/// Whether a connected part of the mesh has more negative cells than positive ones: build() turns such. Whose
+/// vertices all connect through faces. All take part.
+bool has_negative_component(const DistributedMesh& parts);
+
+}  // namespace hfr::mpi
+
+#endif

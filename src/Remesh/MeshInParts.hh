@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_REMESH_MESH_IN_PARTS_HH
+#define HFR_REMESH_MESH_IN_PARTS_HH
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "Remesh/Standing.hh"
+#include "Remesh/Survey.hh"
+#include "Remesh/Unfolding.hh"
+
+namespace hfr {
+
+/// What stages ask of a mesh of which several processes hold a part each, beside its passes: see
+/// Ranks::keep_mesh(). All answers are those of the whole, the same everywhere; all processes ask at the same
+/// time.
+class MeshInParts {
+ public:
+  virtual ~MeshInParts() = default;
+  virtual std::size_t n_cells() const = 0;
+  virtual Survey survey() = 0;
+  virtual Standing standing() = 0;
+  /// Cells whose smallest dihedral is below so many degrees.
+  virtual std::size_t n_below(double degrees) = 0;
+  /// Of all its points.
+  virtual Box box() = 0;
+  virtual std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) = 0;
+  /// Of the part, to come back to.
+  virtual std::shared_ptr<const void> copy() const = 0;
+  /// Makes the part what the copy is, with a workspace as after Workspace::attach().
+  virtual void put_back(const std::shared_ptr<const void>& copy) = 0;
+  /// The first rule of check() that the mesh breaks; empty where it breaks none.
+  virtual std::string fault() = 0;
+};
+
+}  // namespace hfr
+
+#endif

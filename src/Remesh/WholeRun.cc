@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/WholeRun.hh"
+
+#include "Remesh/Pipeline.hh"
+#include "Remesh/Polish.hh"
+#include "Remesh/RestoreVolume.hh"
+#include "Remesh/Snapshot.hh"
+
+namespace hfr {
+namespace {
+
+/// Before the end of a run that may have left the mesh worse than its input: works on what has fallen below
+/// the input's smallest angle, if that is all, and puts back what was kept if that does not do. False when it
+/// did that.
+bool settle(const Run& run, bool known_to_meet) {
+  Checkpoint& checkpoint = *run.checkpoint;
+  const auto mend = [&] {
+    if (run.control.stopped() || run.strategy.course == Course::kCompat) return;
+    Run mending = run.within(run.strategy.bounds_asked);
+    mending.may_add_poor_cells = run.strategy.course == Course::kAnyCost;
+    polish_to(mending, run.strategy.mending(), checkpoint.input().worst);
+  };
+  if (!checkpoint.settle(run.mesh, known_to_meet, mend)) return true;
+  const Survey found = run.survey();
+  run.control.add_undo(checkpoint.changes_kept(), found.n_invalid, found.worst);
+  return false;
+}
+
+/// All stages. Over inverted or flat cells first without holding each cluster to being no more damaged: from
+/// a state between that is worse, more of them come right. Where the mesh ends worse for it than it began,
+/// again from the beginning, and held.
+bool run_twice_if_worse(const Run& run) {
+  const auto run_all = [&] {
+    const bool met = run_stages(run);
+    if (run.strategy.volume) restore_volume(run, *run.strategy.volume);
+    return met;
+  };
+  if (run.checkpoint->input().is_valid()) return run_all();
+  run.work.floor = run.checkpoint->input().worst;
+  Snapshot before(run);
+  run.work.holds_damage = false;
+  const bool met = run_all();
+  run.work.holds_damage = true;
+  if (met || run.control.stopped() || run.checkpoint->allows(run.mesh)) return met;
+  before.put_back(run);
+  return run_all();
+}
+
+}  // namespace
+
+Ending run_to_the_end(const Run& run) {
+  const bool met = run_twice_if_worse(run);
+  const bool stays = settle(run, met);
+  return {stays && met, stays};
+}
+
+}  // namespace hfr

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes in parts with inverted and flat cells, beside what shared memory makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "Distributed/Labelled.hh"
+#include "Distributed/PartPatches.hh"
+#include "Distributed/PartUnfolding.hh"
+#include "Parallel/DisjointSets.hh"
+
+namespace hfr::test {
+namespace {
+
+using Motion = std::function<Vec3(Vec3 p, bool is_inside)>;
+
+/// A box of unit cubes, each vertex where a motion brings it.
+TetMesh moved_box(generate::Counts counts, const Motion& motion) {
+  const Vec3 high = {1.0 * counts[0], 1.0 * counts[1], 1.0 * counts[2]};
+  generate::Arrays arrays = generate::box(counts, {0, 0, 0}, high);
+  for (Vec3& p : arrays.points)
+    p = motion(p, p.x > 0 && p.x < high.x && p.y > 0 && p.y < high.y && p.z > 0 && p.z < high.z);
+  return build(arrays.points, arrays.cells);
+}
+
+/// Away from there by up to so much, in every direction.
+class Jitter {
+ public:
+  explicit Jitter(std::uint64_t seed) : engine_(seed) {}
+  Vec3 operator()(double by) {
+    std::uniform_real_distribution<double> at(-by, by);
+    const double x = at(engine_), y = at(engine_), z = at(engine_);
+    return {x, y, z};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+TetMesh tangled_inside(generate::Counts counts, double by, std::uint64_t seed) {
+  Jitter jitter(seed);
+  return moved_box(counts, [&](Vec3 p, bool is_inside) { return is_inside ? p + jitter(by) : p; });
+}
+
+/// Two corners of the box, far from each other, and nothing between them.
+TetMesh two_tangles(std::uint64_t seed) {
+  Jitter jitter(seed);
+  return moved_box({9, 4, 4}, [&](Vec3 p, bool is_inside) {
+    return is_inside ? p + jitter(p.x < 3 || p.x > 6 ? 0.9 : 0.1) : p;
+  });
+}
+
+/// All cells round the middle are inverted, those of whole parts among them.
+TetMesh inside_out(std::uint64_t seed) {
+  Jitter jitter(seed);
+  return moved_box({6, 5, 6}, [&](Vec3 p, bool is_inside) {
+    if (!is_inside) return p;
+    const Vec3 middle = {3, 2.5, 3};
+    return middle - 0.7 * (p - middle) + jitter(0.1);
+  });
+}
+
+/// Vertices that lie on their neighbours.
+TetMesh with_flat_cells(std::uint64_t seed) {
+  Jitter jitter(seed);
+  return moved_box({5, 5, 5}, [&](Vec3 p, bool is_inside) {
+    if (!is_inside) return p;
+    return jitter(1).x < -0.7 ? p - Vec3{1, 0, 0} : p + jitter(0.2);
+  });
+}
+
+/// The boundary has moved, and the inside stayed behind.
+TetMesh left_behind(double by) {
+  return moved_box({5, 5, 4}, [&](Vec3 p, bool is_inside) {
+    return is_inside ? p : p + Vec3{by * std::sin(p.y * 0.6), 0.3 * by * std::sin(p.x * 0.6), 0};
+  });
+}
+
+/// The boundary goes through itself, so that not all cells can be mended, and may end worse than it began.
+TetMesh folded(generate::Counts counts, std::uint64_t seed) {
+  Jitter jitter(seed);
+  return moved_box(counts, [&](Vec3 p, bool) { return p + jitter(0.6); });
+}
+
+std::vector<std::pair<std::string, TetMesh>> tangled() {
+  std::vector<std::pair<std::string, TetMesh>> all;
+  for (const std::uint64_t seed : {1, 2})
+    all.emplace_back("inside, " + std::to_string(seed), tangled_inside({4, 5, 4}, 0.6 + 0.2 * seed, seed));
+  all.emplace_back("two tangles", two_tangles(3));
+  all.emplace_back("inside out", inside_out(4));
+  all.emplace_back("flat", with_flat_cells(5));
+  all.emplace_back("left behind", left_behind(2.5));
+  return all;
+}
+
+/// What the runs of a test have come to, over all meshes.
+struct Seen {
+  std::size_t unfolded = 0, reconnected = 0, smoothed = 0, inserted = 0, searched = 0, undone = 0, left = 0;
+
+  void add(const Result& result) {
+    for (const PassReport& pass : result.passes) {
+      if (pass.stage == "undo") ++undone;
+      if (pass.stage != "untangle") continue;
+      std::size_t& n = pass.op == "unfold"    ? unfolded
+                       : pass.op == "smooth"  ? smoothed
+                       : pass.op == "insert"  ? inserted
+                       : pass.op == "cluster" ? searched
+                                              : reconnected;
+      n += pass.winners;
+    }
+    left += result.invalid_cells.size();
+  }
+};
+
+/// By all ranks and in shared memory: the same bytes, the same passes.
+void expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const std::filesystem::path& in,
+                     const ImproveOptions& options, Seen& seen) {
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, in, 300);
+  const mpi::PartsResult result = mpi::improve(parts, options);
+  const mpi::PartsCheck checked = mpi::check(parts);
+  EXPECT_TRUE(checked.is_good) << checked.message;
+  mpi::write_vtu(parts, folder.path() / "parts.vtu");
+  if (comm.rank() == 0) {
+    TetMesh mesh = io::read(in);
+    const Result shared = hfr::improve(mesh, options);
+    seen.add(shared);
+    EXPECT_EQ(shared.goal_reached, result.goal_reached);
+    EXPECT_EQ(shared.changed, result.changed);
+    EXPECT_EQ(shared.invalid_cells.size(), result.after.n_invalid);
+    EXPECT_EQ(shared.passes.size(), result.passes.size());
+    for (std::size_t i = 0; i < std::min(shared.passes.size(), result.passes.size()); ++i) {
+      const PassReport &a = shared.passes[i], &b = result.passes[i];
+      EXPECT_EQ(a.stage + " " + a.op, b.stage + " " + b.op) << "pass " << i;
+      EXPECT_EQ(a.winners, b.winners) << a.op << ", pass " << i;
+      EXPECT_EQ(a.n_inverted, b.n_inverted) << a.op << ", pass " << i;
+      EXPECT_EQ(a.worst, b.worst) << a.op << ", pass " << i;
+    }
+    io::write(folder.path() / "whole.vtu", mesh);
+    EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
+  }
+  comm.sum(0);
+}
+
+TEST(UntangledParts, TangledMeshesHaveTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  Seen seen;
+  for (const auto& [name, mesh] : tangled()) {
+    SCOPED_TRACE(name);
+    if (comm.rank() == 0) io::write(path, mesh);
+    comm.sum(0);
+    expect_same_run(comm, folder, path, polish_towards(12), seen);
+  }
+  if (comm.rank() != 0) return;
+  EXPECT_GT(seen.unfolded, 200U);
+}
+
+/// What cannot be mended is left, held to links to the end, and where it ends worse than it began, begun
+/// anew.
+TEST(UntangledParts, FoldedBoundariesHaveTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  Seen seen;
+  for (const bool is_flat : {true, false}) {
+    if (comm.rank() == 0) io::write(path, is_flat ? folded({2, 2, 1}, 23) : folded({2, 2, 2}, 10));
+    comm.sum(0);
+    ImproveOptions options = polish_towards(3);
+    SCOPED_TRACE(is_flat);
+    expect_same_run(comm, folder, path, options, seen);
+  }
+  if (comm.rank() != 0) return;
+  EXPECT_GT(seen.left, 0U) << "all cells have been mended";
+  EXPECT_GT(seen.reconnected, 0U);
+  EXPECT_GT(seen.smoothed, 0U);
+  EXPECT_GT(seen.undone, 0U) << "no run is put back";
+}
+
+/// Reconnecting alone, in turn and in one selection, with searched clusters, and with threads.
+TEST(UntangledParts, OtherOperatorsHaveTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  if (comm.rank() == 0) io::write(path, tangled_inside({4, 4, 4}, 0.8, 7));
+  comm.sum(0);
+  Seen seen;
+  for (const Ops ops : {without(Ops::kDefault, Ops::kSmooth) | Ops::kCluster, Ops::kInsert | Ops::kCluster,
+                        Ops::kDefault | Ops::kCluster})
+    for (const Rounds rounds : {Rounds::kAuto, Rounds::kMixed}) {
+      if (ops == (Ops::kInsert | Ops::kCluster) && rounds == Rounds::kMixed) continue;
+      ImproveOptions options = polish_towards(5);
+      options.ops = ops;
+      options.rounds = rounds;
+      options.policy.threads = rounds == Rounds::kMixed ? 2 : 1;
+      SCOPED_TRACE(static_cast<int>(ops));
+      expect_same_run(comm, folder, path, options, seen);
+    }
+  if (comm.rank() != 0) return;
+  EXPECT_GT(seen.reconnected, 50U);
+  EXPECT_GT(seen.inserted, 0U);
+  EXPECT_GT(seen.searched, 0U);
+}
+
+/// With regions, labels and fixed vertices.
+TEST(UntangledParts, LabelledMeshesHaveTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  Seen seen;
+  for (const std::uint64_t seed : {2, 3}) {
+    if (comm.rank() == 0)
+      io::write_mesh(path, labelled(tangled_inside({4, 3, 4}, 0.7, seed), seed, density_of(seed)));
+    comm.sum(0);
+    expect_same_run(comm, folder, path, polish_towards(1), seen);
+  }
+  if (comm.rank() == 0) {
+    EXPECT_GT(seen.unfolded, 10U);
+    EXPECT_GT(seen.reconnected, 0U);
+  }
+}
+
+/// What only the whole shows: a piece of the mesh that was written the other way round, which shared memory
+/// turns. Parts that have inverted cells alone are none.
+TEST(UntangledParts, PiecesOfNegativeCellsAreRefused) {
+  mpi::Comm world(MPI_COMM_WORLD);
+  const SharedFolder folder(world);
+  const auto path = folder.path() / "in.vtu";
+  const auto refusal = [&](bool turns_all) {
+    if (world.rank() == 0) {
+      io::MeshData data = io::disassemble(moved_box({3, 3, 3}, [](Vec3 p, bool) { return p; }));
+      io::MeshData other = io::disassemble(moved_box({2, 2, 2}, [](Vec3 p, bool) {
+        return p + Vec3{10, 0, 0};
+      }));
+      if (turns_all)
+        for (auto& cell : data.cells) std::swap(cell[2], cell[3]);
+      for (auto& cell : other.cells) {
+        std::swap(cell[2], cell[3]);
+        for (Index& v : cell) v += static_cast<Index>(data.points.size());
+        data.cells.push_back(cell);
+      }
+      data.points.insert(data.points.end(), other.points.begin(), other.points.end());
+      io::write_mesh(path, data);
+    }
+    world.sum(0);
+    return refusal_of([&](mpi::DistributedMesh& parts) { mpi::read_ranges(parts, path); });
+  };
+  EXPECT_THAT(refusal(false), testing::HasSubstr("each piece that hangs together, have to be positive"));
+  EXPECT_THAT(refusal(true), testing::HasSubstr("each piece that hangs together, have to be positive"));
+}
+
+TEST(UntangledParts, SumsHaveTheOrderOfNumbersHoweverManyComeTogether) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  constexpr std::uint64_t kEnd = 5000;
+  std::mt19937_64 engine(3);
+  std::vector<mpi::Numbered> mine;
+  double serial = 0, backwards = 0;
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < kEnd; ++i) {
+    const double value = std::ldexp(static_cast<double>(engine() >> 11U), -static_cast<int>(engine() % 60));
+    const auto who = static_cast<int>(engine() % comm.n_ranks());
+    if (engine() % 3 == 0) continue;
+    values.push_back(value);
+    serial += value;
+    if (who == comm.rank()) mine.insert(mine.begin(), {i, value});
+  }
+  for (std::size_t i = values.size(); i-- > 0;) backwards += values[i];
+  EXPECT_NE(serial, backwards) << "the order does not matter for these";
+  for (const std::uint64_t at_once : {7000U, 1000U, 37U})
+    EXPECT_EQ(mpi::sum_in_order(comm, mine, kEnd, at_once), serial) << at_once;
+  EXPECT_EQ(mpi::sum_in_order(comm, {}, kEnd), 0.0);
+}
+
+/// Long ones that wind through many parts, too.
+TEST(UntangledParts, PatchesAreThoseOfTheWhole) {
+  for (const mpi::Partition how : {mpi::Partition::kCoordinates, mpi::Partition::kNumbers})
+    for (const unsigned one_in : {2U, 3U, 5U}) {
+      mpi::Comm comm(MPI_COMM_WORLD);
+      mpi::GridOptions grid;
+      grid.cavity.counts = {9, 7, 8};
+      grid.cavity.amplitude = 0;
+      mpi::DistributedMesh parts(comm);
+      mpi::generate_in_parts(parts, grid, how);
+      const generate::Arrays arrays = generate::cavity(grid.cavity);
+      const TetMesh whole = build(arrays.points, arrays.cells);
+      std::mt19937_64 engine(one_in);
+      std::vector<std::uint8_t> is_in(whole.n_vertices());
+      for (auto& in : is_in) in = engine() % one_in == 0 ? 1 : 0;
+      par::DisjointSets<Index> sets(whole.n_vertices());
+      for (CellHandle c : whole.cells())
+        for (VertexHandle u : whole.cell(c).v)
+          for (VertexHandle v : whole.cell(c).v)
+            if (is_in[u.idx()] && is_in[v.idx()]) sets.join(u.idx(), v.idx());
+      std::vector<VertexHandle> known;
+      const auto is_near = [&](VertexHandle v) {
+        bool found = parts.is_own(v);
+        mpi::for_ranks(parts.near(v), [&](int r) { found = found || r == comm.rank(); });
+        return found;
+      };
+      for (std::size_t v = 0; v < parts.part().n_vertices(); ++v)
+        if (is_in[parts.number(V(v))] && is_near(V(v))) known.push_back(V(v));
+      const mpi::PartPatches patches(parts, known);
+      std::size_t n_wrong = 0;
+      for (VertexHandle v : known)
+        n_wrong += patches.of(v) == sets.find(static_cast<Index>(parts.number(v))) ? 0 : 1;
+      EXPECT_EQ(n_wrong, 0U) << one_in;
+    }
+}
+
+TEST(UntangledParts, APartThatIsPutBackIsWhatItWas) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  if (comm.rank() == 0) io::write_mesh(path, labelled(tangled_inside({5, 4, 5}, 0.5, 2), 2, density_of(1)));
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, path);
+  mpi::write_vtu(parts, folder.path() / "before.vtu");
+  const auto copy = parts.copy();
+  EXPECT_TRUE(mpi::improve(parts, polish_towards(15)).changed);
+  const std::uint32_t clock = parts.work().clock;
+  parts.put_back(*copy);
+  EXPECT_EQ(parts.work().clock, clock);
+  parts.work().set_qualities(parts.part(), MinSine2{}, {});
+  EXPECT_TRUE(mpi::check(parts).is_good);
+  mpi::write_vtu(parts, folder.path() / "after.vtu");
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(bytes_of(folder.path() / "before.vtu") == bytes_of(folder.path() / "after.vtu"));
+  }
+  comm.sum(0);
+  mpi::improve(parts, polish_towards(15));
+  mpi::write_vtu(parts, folder.path() / "after.vtu");
+  if (comm.rank() == 0) {
+    TetMesh mesh = io::read(path);
+    hfr::improve(mesh, polish_towards(15));
+    io::write(folder.path() / "whole.vtu", mesh);
+    EXPECT_TRUE(bytes_of(folder.path() / "whole.vtu") == bytes_of(folder.path() / "after.vtu"));
+  }
+}
+
+/// Whatever a rank is doing when it fails, all ranks end, and all know why.
+TEST(UntangledParts, ARankThatFailsEndsAll) {
+  mpi::Comm world(MPI_COMM_WORLD);
+  if (world.size() == 1) GTEST_SKIP() << "one rank fails alone";
+  const SharedFolder folder(world);
+  const auto path = folder.path() / "in.vtu";
+  if (world.rank() == 0) io::write(path, tangled_inside({4, 4, 4}, 0.8, 7));
+  world.sum(0);
+  const auto run = [&](std::uint64_t call) -> std::uint64_t {
+    mpi::Comm comm(MPI_COMM_WORLD);
+    if (comm.rank() == comm.size() - 1) comm.fail_at_call(call);
+    try {
+      mpi::DistributedMesh parts(comm);
+      mpi::read_ranges(parts, path);
+      mpi::improve(parts, polish_towards(1));
+      EXPECT_EQ(call, 0U);
+    } catch (const mpi::RankFailed& failed) {
+      EXPECT_EQ(failed.rank(), comm.size() - 1);
+    } catch (const ResourceLimit& error) {
+      EXPECT_EQ(comm.fail(5, error.what()).rank(), comm.size() - 1);
+    }
+    return comm.n_calls();
+  };
+  const std::uint64_t n_calls = run(0);
+  for (std::uint64_t k = 1; k <= 6; ++k) run(n_calls * k / 7);
+}
+
+}  // namespace
+}  // namespace hfr::test
