@@ -24,21 +24,24 @@ constexpr std::size_t kPiece = std::size_t{1} << 30;  // of a block
 /// holds it up.
 constexpr std::size_t kManyPieces = std::size_t{1} << 20;
 
-/// Gives way to other processes while there is nothing to do: ranks may share a core. Who sleeps is woken
-/// before those who only give way: on a busy machine that is what counts. Sleeps for a sixteenth of the time
-/// that it has waited, so that it comes little late and takes little from whoever works.
+/// Gives way to other processes while there is nothing to do: ranks may share a core. What comes soon is met
+/// awake, since to sleep and to be woken takes longer than most answers. Then it sleeps: on a busy machine
+/// who sleeps is woken before those who only give way. It does so for a sixteenth of the time that it has
+/// waited, so that it comes little late and takes little from whoever works.
 class Patience {
  public:
-  void pause() {
+  void pause() const {
     using namespace std::chrono;
-    if (++n_ <= 200) return;
+    constexpr microseconds kAwake(500), kLongest(2'000);
     const auto waited = duration_cast<microseconds>(steady_clock::now() - start_);
-    std::this_thread::sleep_for(std::clamp(waited / 16, microseconds(20), microseconds(2'000)));
+    if (waited < kAwake)
+      std::this_thread::yield();
+    else
+      std::this_thread::sleep_for(std::min(waited / 16, kLongest));
   }
 
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  int n_ = 0;
 };
 
 int to_count(std::size_t n) {
@@ -100,7 +103,7 @@ void Comm::require(int result) {
 
 void Comm::wait(MPI_Request& request) {
   const InPhase waiting(*this, Phase::kWait);
-  Patience patience;
+  const Patience patience;
   for (int done = 0;;) {
     require(MPI_Test(&request, &done, MPI_STATUS_IGNORE));
     if (done) return;
@@ -172,7 +175,7 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
   }
   MPI_Request barrier = MPI_REQUEST_NULL;
   bool in_barrier = false;
-  Patience patience;
+  const Patience patience;
   for (int done = 0; !done;) {
     int is_there = 0;
     MPI_Status status;
