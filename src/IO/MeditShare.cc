@@ -27,23 +27,26 @@ struct Section {
   medit::Heading heading;
   std::string name;
   std::uint64_t n = 0;
-  std::uint64_t begin = 0;  ///< first line, or byte
+  std::uint64_t begin = 0;    ///< first line, or byte
+  std::uint64_t n_lines = 0;  ///< of a text; 0 of bytes
 };
 
 class TextSections {
  public:
   TextSections(const std::filesystem::path& path, const Processes& processes)
-      : text_(path, {'#', [](std::string_view line) { return 'A' <= line[0] && line[0] <= 'Z'; }},
-              processes) {
+      : text_(path, {'#', [](std::string_view line) { return 'A' <= line[0] && line[0] <= 'Z'; }}, processes),
+        rank_(processes.rank),
+        n_processes_(processes.n) {
     const auto& marks = text_.marks();
     if (marks.empty() || marks[0].line != 0 || marks[0].word != "MeshVersionFormatted")
       text_.fail("not a Medit file: no MeshVersionFormatted");
+    read_alone(0, 1, 4);
     for (std::size_t i = 1; i < marks.size() && !has_end_; ++i) {
       const medit::Heading heading = medit::heading_of(marks[i].word);
       if (heading.keyword == Keyword::kEnd)
         has_end_ = true;
       else if (heading.keyword == Keyword::kDimension)
-        count(i, 3, 3);
+        read_alone(i, 3, 3);
       else
         add(i, heading);
     }
@@ -60,13 +63,31 @@ class TextSections {
       in.finish();
     });
   }
+  /// Expects no keyword in a section that is left out: one that does not begin a line has not been seen. Each
+  /// process looks at its part.
+  void leave_out(const Section& section) {
+    const auto first_of = [&](std::size_t rank) {
+      return section.begin + section.n_lines * rank / n_processes_;
+    };
+    text_.for_lines(first_of(rank_), first_of(rank_ + 1), [](std::uint64_t, TextLine& in) {
+      in.word();
+      while (in.has_more())
+        if (const std::string_view word = in.word(); medit::is_keyword(word))
+          in.fail(std::string(word) +
+                  " stands inside a line; in ranges, files are read whose keywords begin one");
+    });
+  }
   [[noreturn]] void fail(const std::string& message) const { text_.fail(message); }
 
  private:
   /// The number behind a keyword, and the line after it.
   std::pair<std::uint64_t, std::uint64_t> count(std::size_t mark, std::int64_t low, std::int64_t high) {
     const std::uint64_t line = text_.marks()[mark].line;
-    const auto read = [&](TextLine& in) { return in.integer_in(low, high, "number of entries"); };
+    const auto read = [&](TextLine& in) {
+      const std::int64_t found = in.integer_in(low, high, "number of entries");
+      in.finish();
+      return found;
+    };
     const std::int64_t here = text_.at_line(line, [&](TextLine& in) {
       in.word();
       return in.has_more() ? read(in) : std::int64_t{-1};
@@ -74,22 +95,31 @@ class TextSections {
     if (here >= 0) return {static_cast<std::uint64_t>(here), line + 1};
     return {static_cast<std::uint64_t>(text_.at_line(line + 1, read)), line + 2};
   }
+  std::uint64_t end_of(std::size_t mark) const {
+    return mark + 1 < text_.marks().size() ? text_.marks()[mark + 1].line : text_.n_lines();
+  }
+  /// A keyword with a number and no entries.
+  void read_alone(std::size_t mark, std::int64_t low, std::int64_t high) {
+    if (count(mark, low, high).second != end_of(mark))
+      fail(text_.marks()[mark].word + ": a keyword has to follow");
+  }
   void add(std::size_t mark, const medit::Heading& heading) {
-    const std::uint64_t end =
-        mark + 1 < text_.marks().size() ? text_.marks()[mark + 1].line : text_.n_lines();
-    Section section{heading, text_.marks()[mark].word, 0, 0};
+    Section section{heading, text_.marks()[mark].word, 0, text_.marks()[mark].line, 0};
+    const std::uint64_t end = end_of(mark);
     if (heading.keyword != Keyword::kUnknown) {
       std::tie(section.n, section.begin) = count(mark, 0, std::numeric_limits<std::int64_t>::max());
       const std::uint64_t found = end - std::min(end, section.begin);
       if (found < section.n)
         fail(medit::too_few_entries(section.name, static_cast<std::int64_t>(section.n), found) +
              " lines; in ranges, files are read that have each entry on a line of its own");
-      if (found > section.n && section.n > 0) fail(section.name + ": there are more entries than it says");
+      if (found > section.n) fail(section.name + ": there are more entries than it says");
     }
+    section.n_lines = end - std::min(end, section.begin);
     sections_.push_back(std::move(section));
   }
 
   TextChunks text_;
+  std::size_t rank_, n_processes_;
   std::vector<Section> sections_;
   bool has_end_ = false;
 };
@@ -164,6 +194,8 @@ class BinarySections {
       }
     }
   }
+  /// Where a section ends is said by its beginning.
+  void leave_out(const Section&) {}
   [[noreturn]] void fail(const std::string& message) const { in_.fail(message); }
 
  private:
@@ -194,7 +226,7 @@ class BinarySections {
     }
     Section section{
         heading, heading.name.empty() ? "section " + std::to_string(heading.code) : std::string(heading.name),
-        0, 0};
+        0, 0, 0};
     const std::uint64_t n_count = version_ < 4 ? 4 : 8;
     if (!heading.name.empty()) {
       const std::string text = bytes(at + n_head, n_count);
@@ -317,6 +349,7 @@ class MeditShare : public MeshShare {
     if (section.n > 0 && (is_curved || medit::is_unsupported_cell(section.name)))
       file_.fail(std::to_string(section.n) + " " + section.name +
                  ": in ranges, only tetrahedra, triangles and edges of first order are read");
+    file_.leave_out(section);
     if (section.n > 0 || k == Keyword::kUnknown)
       notes_.push_back(section.name + (section.n > 0 ? " (" + std::to_string(section.n) + ")" : "") +
                        " is not kept");

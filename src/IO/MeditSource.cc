@@ -79,14 +79,13 @@ constexpr Entry kKeywords[] = {
 
 constexpr bool is_upper(char c) { return 'A' <= c && c <= 'Z'; }
 
-/// Every keyword begins with a capital; numbers, nan and inf do not.
+}  // namespace
+
 bool is_keyword(std::string_view word) {
   return !word.empty() && is_upper(word[0]) && std::all_of(word.begin(), word.end(), [](char c) {
     return is_upper(c) || ('a' <= c && c <= 'z') || ('0' <= c && c <= '9') || c == '_';
   });
 }
-
-}  // namespace
 
 Heading heading_of(std::string_view name) {
   if (name == "Dimension") return {Keyword::kDimension, 3, name};

@@ -42,6 +42,8 @@ struct Heading {
   std::string_view name;
 };
 
+/// Every keyword begins with a capital; numbers, nan and inf do not.
+bool is_keyword(std::string_view word);
 Heading heading_of(std::string_view name);
 Heading heading_of(int code);
 /// Cells that are no tetrahedra, or tetrahedra of an order above two: a file that has any is refused.

@@ -113,6 +113,15 @@ TEST(MeshShare, MeditFilesThatCannotBeReadInRangesSayWhy) {
   EXPECT_THAT(found(points + "Tetrahedra\n1\n1 2 3 4 0 0\n"), HasSubstr("there is more on this line"));
   EXPECT_THAT(found(points + "Tetrahedra\n1\n1 2 3 3 0\n"), HasSubstr("vertices are the same"));
   EXPECT_THAT(found(points + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\n"), HasSubstr("1 Hexahedra"));
+  // A keyword inside a line is one to a reader of the whole.
+  EXPECT_THAT(found(good + "Unknown 1 RequiredVertices 1\n1\n"), HasSubstr("RequiredVertices stands inside"));
+  EXPECT_THAT(found(good + "Normals\n2\n0 0 1\n0 1 0 Corners 1\n"), HasSubstr("Corners stands inside"));
+  EXPECT_THAT(found(good + "Corners 0 RequiredVertices 1\n1\n"), HasSubstr("there is more on this line"));
+  EXPECT_THAT(found(good + "Corners 0\n1\n"), HasSubstr("more entries than it says"));
+  EXPECT_THAT(found("MeshVersionFormatted 2 Corners 0\n" + good.substr(23)), HasSubstr("more on this line"));
+  EXPECT_THAT(found("MeshVersionFormatted 2\n1 Corners 0\n" + good.substr(23)),
+              HasSubstr("MeshVersionFormatted: a keyword has to follow"));
+  EXPECT_EQ(found(good + "Unknown words\nin lines # Corners\n"), "");
   EXPECT_THAT(found(good + "RequiredTriangles\n1\n2\n"), HasSubstr("RequiredTriangles 2 is out of range"));
   EXPECT_THAT(found(points + "Tetrahedra\n1\n" + std::string(70'000, ' ') + "1 2 3 4 0\n"),
               HasSubstr("a line of more than 65536 bytes"));
