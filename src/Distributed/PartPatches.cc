@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 #include "Distributed/Buffer.hh"
 #include "Parallel/DisjointSets.hh"
@@ -73,6 +74,27 @@ std::uint64_t PartPatches::of(CellHandle c) const {
   for (VertexHandle v : parts_.part().cell(c).v)
     if (of(v) != kNoNumber) return of(v);
   return kNoNumber;
+}
+
+std::vector<PatchChange> joined_on_first(Comm& comm, std::span<const PatchChange> mine) {
+  std::vector<Packer> to(comm.n_ranks());
+  if (!mine.empty()) to[0].put_all(mine);
+  std::vector<PatchChange> all;
+  for (const Comm::Message& message : comm.exchange(to)) {
+    const auto theirs = Unpacker(message.bytes).get_all<PatchChange>();
+    all.insert(all.end(), theirs.begin(), theirs.end());
+  }
+  std::ranges::sort(all, {}, [](const PatchChange& c) { return std::pair(c.patch, c.cell); });
+  std::vector<PatchChange> joined;
+  for (const PatchChange& one : all) {
+    if (joined.empty() || joined.back().patch != one.patch) {
+      joined.push_back(one);
+      continue;
+    }
+    joined.back().was.join(one.was);
+    joined.back().is.join(one.is);
+  }
+  return joined;
 }
 
 bool has_negative_component(const DistributedMesh& parts) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
+#include "Quality/Damage.hh"
 
 namespace hfr::mpi {
 
@@ -26,6 +27,15 @@ class PartPatches {
   const DistributedMesh& parts_;
   std::vector<std::uint64_t> patch_;  // by vertex of the part
 };
+
+/// What moves of its vertices have made of a cell of a patch, or of several.
+struct PatchChange {
+  std::uint64_t patch = 0, cell = kNoNumber;
+  Damage was, is;
+};
+/// On rank 0 the changes of all ranks, one for each patch, ascending; elsewhere none. Those of a patch are
+/// joined in the order of its cells, since damage has sums. All take part.
+std::vector<PatchChange> joined_on_first(Comm& comm, std::span<const PatchChange> mine);
 
 /// Whether a connected part of the mesh has more negative cells than positive ones: build() turns such. Whose
 /// vertices all connect through faces. All take part.

@@ -168,13 +168,9 @@ std::size_t PartUnfolding::keep_what_helps() {
 /// Ascending, the same on all ranks. Rank 0 is told of cells that are or were invalid, each with its number,
 /// since their volumes are summed; of the others of a patch, the worst is enough.
 std::vector<std::uint64_t> PartUnfolding::patches_that_gain(std::span<const std::uint64_t> patch_of_cell) {
-  struct Change {
-    std::uint64_t patch = 0, cell = kNoNumber;
-    Damage was, is;
-  };
   const TetMesh& part = parts_.part();
-  std::map<std::uint64_t, Change> valid;  // by patch
-  std::vector<Change> changes;
+  std::map<std::uint64_t, PatchChange> valid;  // by patch
+  std::vector<PatchChange> changes;
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     std::array<Vec3, 4> now, old;
     const auto& v = part.cell(cells_[i]).v;
@@ -184,36 +180,22 @@ std::vector<std::uint64_t> PartUnfolding::patches_that_gain(std::span<const std:
       if (at != vertices_.end() && *at == v[k])
         old[k] = before_[static_cast<std::size_t>(at - vertices_.begin())];
     }
-    Change change{patch_of_cell[i], parts_.number(cells_[i]), {}, {}};
+    PatchChange change{patch_of_cell[i], parts_.number(cells_[i]), {}, {}};
     change.was.add(old[0], old[1], old[2], old[3]);
     change.is.add(now[0], now[1], now[2], now[3]);
     if (change.was.n_invalid() + change.is.n_invalid() > 0) {
       changes.push_back(change);
       continue;
     }
-    Change& all = valid[change.patch];
+    PatchChange& all = valid[change.patch];
     all.patch = change.patch;
     all.was.join(change.was);
     all.is.join(change.is);
   }
   for (const auto& one : valid) changes.push_back(one.second);
-  std::vector<Packer> to(parts_.comm().n_ranks());
-  if (!changes.empty()) to[0].put_all(changes);
-  changes.clear();
-  for (const Comm::Message& message : parts_.comm().exchange(to)) {
-    const auto theirs = Unpacker(message.bytes).get_all<Change>();
-    changes.insert(changes.end(), theirs.begin(), theirs.end());
-  }
-  std::ranges::sort(changes, {}, [](const Change& c) { return std::pair(c.patch, c.cell); });
   std::vector<std::uint64_t> gain;
-  for (std::size_t i = 0; i < changes.size();) {
-    Change all = changes[i];
-    for (++i; i < changes.size() && changes[i].patch == all.patch; ++i) {
-      all.was.join(changes[i].was);
-      all.is.join(changes[i].is);
-    }
-    if (helps(parts_.work(), all.was, all.is)) gain.push_back(all.patch);
-  }
+  for (const PatchChange& one : joined_on_first(parts_.comm(), changes))
+    if (helps(parts_.work(), one.was, one.is)) gain.push_back(one.patch);
   Packer said;
   said.put_all(gain);
   const std::vector<std::byte> bytes = told_by_first(parts_.comm(), said);
