@@ -162,7 +162,10 @@ class PartsRun {
     mpi::InParts found = mpi::survey(mesh_, line_.min_dihedral, policy());
     say_found(line_.input.empty() ? "generated" : "read", found);
     if (!line_.input.empty()) {
-      require_good(ExitCode::kCannotRead, line_.input + ": meshes in parts cannot have");
+      if (!mpi::check(mesh_).is_good) {
+        pinched_ = mpi::pinched_edges(mesh_);
+        require_good(ExitCode::kCannotRead, line_.input + ": meshes in parts cannot have");
+      }
       seconds();  // are of no step
     }
     bool goal_reached = true;
@@ -235,7 +238,7 @@ class PartsRun {
   }
 
   void require_good(ExitCode otherwise, const std::string& what) {
-    const mpi::PartsCheck checked = mpi::check(mesh_);
+    const mpi::PartsCheck checked = mpi::check(mesh_, pinched_);
     if (!checked.is_good)
       throw Failure(otherwise, fmt::format("{}: {} (rank {})", what, checked.message, checked.rank));
   }
@@ -285,6 +288,7 @@ class PartsRun {
   const PartsLine& line_;
   mpi::Comm& comm_;
   mpi::DistributedMesh mesh_;
+  mpi::PinchedEdges pinched_;  // of the input
   Clock::time_point since_ = Clock::now();
 };
 

@@ -45,7 +45,8 @@ class Stars {
 /// Looks at one rank's part.
 class PartCheck {
  public:
-  explicit PartCheck(const DistributedMesh& mesh) : mesh_(mesh), part_(mesh.part()) {}
+  PartCheck(const DistributedMesh& mesh, const PinchedEdges& known)
+      : mesh_(mesh), part_(mesh.part()), known_(known) {}
 
   Fault run() const {
     for (std::size_t i = 0; i < part_.n_cells(); ++i)
@@ -56,6 +57,17 @@ class PartCheck {
       if (const VertexHandle v(i); mesh_.is_own(v))
         if (Fault fault = look_at(v, stars[v])) return fault;
     return {};
+  }
+  PinchedEdges pinched_edges() const {
+    PinchedEdges all;
+    const Stars stars(mesh_);
+    for (std::size_t i = 0; i < part_.n_vertices(); ++i)
+      if (const VertexHandle v(i); mesh_.is_own(v) && !part_.is_deleted(v))
+        for_edges(v, stars[v], [&](VertexHandle u, std::size_t n_fans) {
+          if (n_fans > 1) all[{mesh_.number(v), mesh_.number(u)}] = n_fans;
+          return true;
+        });
+    return all;
   }
 
  private:
@@ -118,15 +130,11 @@ class PartCheck {
     return {};
   }
 
-  /// The cells of v connect through faces, and so do those of each edge of it.
+  /// The cells of v connect through faces, and so do those of each edge of it that is not known.
   Fault look_at_links(VertexHandle v, std::span<const CellHandle> star) const {
     std::vector<std::uint8_t> seen(star.size(), 0);
     std::vector<std::size_t> found = {0};
     seen[0] = 1;
-    std::vector<std::pair<VertexHandle, std::uint32_t>> edges;  // by their other end: how many cells
-    for (CellHandle c : star)
-      for (VertexHandle u : part_.cell(c).v)
-        if (u != v) edges.emplace_back(u, c.idx());
     for (std::size_t i = 0; i < found.size(); ++i)
       for (HalfFaceHandle m : part_.cell(star[found[i]]).mate) {
         if (!m.is_valid()) continue;
@@ -136,41 +144,71 @@ class PartCheck {
           found.push_back(static_cast<std::size_t>(at - star.begin()));
       }
     if (found.size() != star.size()) return name(v) + ": its cells do not connect through faces";
+    Fault fault;
+    for_edges(v, star, [&](VertexHandle u, std::size_t n_fans) {
+      if (n_fans == 1 || n_fans <= n_known(v, u)) return true;
+      fault = "the edge of " + name(v) + " and " + name(u) + " has more than one fan of cells";
+      return false;
+    });
+    return fault;
+  }
+  std::size_t n_known(VertexHandle v, VertexHandle u) const {
+    const auto at = known_.find({mesh_.number(v), mesh_.number(u)});
+    return at == known_.end() ? 1 : at->second;
+  }
+
+  /// body(other end, fans of cells round it) for the edges of v, while it returns true.
+  template <class Body>
+  void for_edges(VertexHandle v, std::span<const CellHandle> star, Body&& body) const {
+    std::vector<std::pair<VertexHandle, CellHandle>> edges;
+    for (CellHandle c : star)
+      for (VertexHandle u : part_.cell(c).v)
+        if (u != v) edges.emplace_back(u, c);
     std::sort(edges.begin(), edges.end());
     for (std::size_t i = 0, n = 1; i < edges.size(); i += n) {
       for (n = 1; i + n < edges.size() && edges[i + n].first == edges[i].first;) ++n;
-      if (n_connected(v, edges[i].first, CellHandle(edges[i].second), n) != n)
-        return "the edge of " + name(v) + " and " + name(edges[i].first) + " has more than one fan of cells";
+      if (!body(edges[i].first, n_fans(v, std::span(edges).subspan(i, n)))) return;
     }
-    return {};
   }
-
-  /// Cells round the edge that connect to c; at most one more than `most`.
-  std::size_t n_connected(VertexHandle a, VertexHandle b, CellHandle c, std::size_t most) const {
+  /// `cells`: all of one edge of v, each with its other end.
+  std::size_t n_fans(VertexHandle v, std::span<const std::pair<VertexHandle, CellHandle>> cells) const {
+    std::vector<CellHandle> left;
+    for (const auto& one : cells) left.push_back(one.second);
+    std::size_t n = 0;
+    for (; !left.empty(); ++n) {
+      const CellHandle first = left.back();
+      left.pop_back();
+      leave_out_fan(v, cells[0].first, first, left);
+    }
+    return n;
+  }
+  /// Cells round the edge that connect to c.
+  void leave_out_fan(VertexHandle a, VertexHandle b, CellHandle c, std::vector<CellHandle>& cells) const {
     const Cell& cell = part_.cell(c);
     std::array<std::size_t, 2> off{};  // the corners that are not on the edge
-    std::size_t n_off = 0, n = 1;
+    std::size_t n_off = 0;
     for (std::size_t k = 0; k < 4; ++k)
       if (cell.v[k] != a && cell.v[k] != b && n_off < 2) off[n_off++] = k;
     for (std::size_t side = 0; side < 2; ++side) {
-      CellHandle at = c;
       VertexHandle ahead = cell.v[off[1 - side]];  // goes on through the face that has it
-      for (HalfFaceHandle h = halfface_of(c, static_cast<int>(off[side])); n <= most;) {
+      for (HalfFaceHandle h = halfface_of(c, static_cast<int>(off[side]));;) {
         const HalfFaceHandle m = part_.opposite_halfface(h);
         if (!m.is_valid()) break;
-        at = cell_of(m);
-        if (at == c) return n;  // all the way round
-        ++n;
+        const CellHandle at = cell_of(m);
+        // Each is met once, and none twice where mates do not go round.
+        const auto found = std::find(cells.begin(), cells.end(), at);
+        if (found == cells.end()) break;
+        cells.erase(found);
         const VertexHandle next = part_.cell(at).v[static_cast<std::size_t>(corner_of(m))];
         h = halfface_of(at, part_.cell(at).corner(ahead));
         ahead = next;
       }
     }
-    return n;
   }
 
   const DistributedMesh& mesh_;
   const TetMesh& part_;
+  const PinchedEdges& known_;
 };
 
 /// What is held of a cell or vertex of another rank.
@@ -283,10 +321,12 @@ Fault compare_boundaries(DistributedMesh& mesh) {
 
 }  // namespace
 
-PartsCheck check(DistributedMesh& mesh) {
+PinchedEdges pinched_edges(const DistributedMesh& mesh) { return PartCheck(mesh, {}).pinched_edges(); }
+
+PartsCheck check(DistributedMesh& mesh, const PinchedEdges& known) {
   Comm& comm = mesh.comm();
   const Comm::InPhase phase(comm, Phase::kTally);
-  Fault fault = PartCheck(mesh).run();
+  Fault fault = PartCheck(mesh, known).run();
   // What one rank finds is no reason for others to stop where all have to be asked.
   for (const auto& compare : {compare_with_owners, compare_boundaries})
     if (Fault another = compare(mesh); another && !fault) fault = std::move(another);

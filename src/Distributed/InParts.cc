@@ -61,8 +61,10 @@ class Residents : public Ranks, public MeshInParts {
   void put_back(const std::shared_ptr<const void>& copy) override {
     mesh_.put_back(*std::static_pointer_cast<const DistributedMesh>(copy));
   }
-  std::string fault() override {
-    const PartsCheck checked = check(mesh_);
+  std::string fault(const std::shared_ptr<const void>& copy) override {
+    PartsCheck checked = check(mesh_);
+    if (!checked.is_good)
+      checked = check(mesh_, pinched_edges(*std::static_pointer_cast<const DistributedMesh>(copy)));
     return checked.is_good ? std::string() : checked.message;
   }
 
@@ -230,7 +232,6 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   if (found.n_invalid > 0 || findings.is_folded) {
     Checkpoint checkpoint(residents, policy);
     run.checkpoint = &checkpoint;
-    run.keep(found.n_invalid == 0);
     run_to_the_end(run);
   } else {
     result.has_fallen = polish_valid(run, *options.min_dihedral, result.before.worst);

@@ -73,7 +73,7 @@ void Checkpoint::put_back(TetMesh& mesh) {
 }
 
 void Checkpoint::require_sound(TetMesh& mesh) {
-  const std::string fault = parts_ ? parts_->fault() : fault_of(mesh);
+  const std::string fault = parts_ ? parts_->fault(kept_.parts) : fault_of(mesh);
   if (fault.empty()) return;
   put_back(mesh);
   throw InternalError("a rule of the mesh was broken on the way (" + fault +

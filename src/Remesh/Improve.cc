@@ -59,8 +59,6 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& su
     work.attach(mesh, policy);
   if (!memory.is_folded || surface.get()) memory.is_folded = !folded_faces(mesh, policy).empty();
   findings.is_folded = *memory.is_folded;
-  // Elsewhere no new edge or face can come twice while all cells are positive, and there is no copy to make.
-  if (findings.is_folded || !work.pinched.empty()) run.keep(valid);
   run.surface = surface.get();
   run.ranks = memory.ranks;
   const Ending ending = run_to_the_end(run);

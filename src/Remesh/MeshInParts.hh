@@ -30,8 +30,8 @@ class MeshInParts {
   virtual std::shared_ptr<const void> copy() const = 0;
   /// Makes the part what the copy is, with a workspace as after Workspace::attach().
   virtual void put_back(const std::shared_ptr<const void>& copy) = 0;
-  /// The first rule of check() that the mesh breaks; empty where it breaks none.
-  virtual std::string fault() = 0;
+  /// The first rule of check() that the mesh breaks and the copy does not; empty where it breaks none.
+  virtual std::string fault(const std::shared_ptr<const void>& copy) = 0;
 };
 
 }  // namespace hfr

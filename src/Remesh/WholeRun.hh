@@ -11,8 +11,7 @@ struct Ending {
   bool meets = false;  ///< every cell is known to meet the goal
   bool stays = false;  ///< what the stages have made; otherwise what the checkpoint kept
 };
-/// All stages, and what sees to it that they leave the mesh no worse than the input. Expects a checkpoint,
-/// and one that keeps the input where it has invalid cells.
+/// All stages, and what sees to it that they leave the mesh no worse than the input. Expects a checkpoint.
 Ending run_to_the_end(const Run& run);
 
 }  // namespace hfr

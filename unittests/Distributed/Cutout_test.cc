@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "Distributed/CutoutRound.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/PartInsertion.hh"
 #include "Distributed/Parts.hh"
@@ -113,6 +114,34 @@ TEST(Cutout, InsertionThatStaysOffTheRimIsThatOfTheWhole) {
   EXPECT_EQ(n_met[4], 0);
   EXPECT_GT(n_same[2], 10);
   EXPECT_GT(n_same[4], 10);
+}
+
+/// Where links are checked, what two winners without a common cell would make is made by the first alone.
+TEST(Cutout, WinnersMakeNothingTwice) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  Sides sides(comm);
+  const std::vector<std::uint64_t> cells = {3, 700, 1300};
+  const std::vector<std::uint8_t> depth(cells.size(), 1);
+  mpi::Cutout cutout(sides.parts, cells, depth);
+  if (comm.rank() != 0) return;
+  PlanBase plan;
+  plan.n_removed = 1;
+  plan.n_created = 4;
+  plan.adds_vertex = true;
+  std::vector<CellHandle> scopes;
+  for (std::uint64_t number : cells) scopes.push_back(cutout.cell_at(number));
+  std::vector<RoundPlace::Candidate> candidates;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    candidates.push_back({i, {}, {}, &plan, std::span(&scopes[i], 1), {i == 2 ? 5U : 4U, 6U + i}});
+  const auto winners = [&](bool check_links) {
+    std::vector<std::size_t> found;
+    mpi::CutoutRound round(cutout, sides.parts);
+    for (const auto& one : round.select(candidates, kNoLimit, kNoLimit, check_links).winners)
+      found.push_back(one.candidate);
+    return found;
+  };
+  EXPECT_EQ(winners(false), (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(winners(true), (std::vector<std::size_t>{0, 2}));
 }
 
 TEST(Cutout, InsertionIsTheSameHoweverManyLayersAreTriedFirst) {

@@ -12,6 +12,7 @@
 #include "Distributed/PartPatches.hh"
 #include "Distributed/PartUnfolding.hh"
 #include "Parallel/DisjointSets.hh"
+#include "Quality/Metrics.hh"
 
 namespace hfr::test {
 namespace {
@@ -86,6 +87,45 @@ TetMesh folded(generate::Counts counts, std::uint64_t seed) {
   return moved_box(counts, [&](Vec3 p, bool) { return p + jitter(0.6); });
 }
 
+/// Positive cells that go through each other: octahedra that share their two nearest corners, u and v, each
+/// with an edge between its farthest; each would make the edge from u to v in its place. From one to the next
+/// go four cells at u and four at v, on opposite sides; or on one side, where both have an edge in common.
+TetMesh overlapping(std::size_t n, std::uint64_t seed, bool has_pinched_edges) {
+  Jitter jitter(seed);
+  std::vector<Vec3> points = {{0, 0, 1}, {0, 0, -1}};
+  std::vector<std::array<Index, 4>> cells;
+  const auto add_point = [&](double radius, double turn, double z) {
+    points.push_back(Vec3{radius * std::cos(turn), radius * std::sin(turn), z} + jitter(0.1));
+    return static_cast<Index>(points.size() - 1);
+  };
+  const auto add_cell = [&](Index a, Index b, Index c, Index d) {
+    if (orientation(points[a], points[b], points[c], points[d]) < 0) std::swap(c, d);
+    cells.push_back({a, b, c, d});
+  };
+  constexpr double kEighth = 0.25 * 3.14159265358979;
+  std::array<Index, 4> last{};
+  for (std::size_t i = 0; i < n; ++i) {
+    const double turn = kEighth * static_cast<double>(i);
+    std::array<Index, 4> rim{};
+    for (std::size_t k = 0; k < 4; ++k)
+      rim[k] = add_point(k % 2 == 0 ? 3 : 2, turn + 2 * kEighth * static_cast<double>(k), 0);
+    for (const Index end : {0U, 1U}) {
+      add_cell(rim[0], rim[2], end, rim[1]);
+      add_cell(rim[0], rim[2], end, rim[3]);
+      if (i == 0) continue;
+      const std::size_t k = has_pinched_edges ? 0 : 2 * end;
+      const double z = end == 0 ? 3 : -3, side = turn + 2 * kEighth * static_cast<double>(k);
+      const Index p = add_point(3, side, z), q = add_point(3, side + 2 * kEighth, z);
+      add_cell(end, last[k], last[k + 1], p);
+      add_cell(end, last[k + 1], p, q);
+      add_cell(end, last[k + 1], q, rim[k + 1]);
+      add_cell(end, q, rim[k + 1], rim[(k + 2) % 4]);
+    }
+    last = rim;
+  }
+  return build(points, cells);
+}
+
 std::vector<std::pair<std::string, TetMesh>> tangled() {
   std::vector<std::pair<std::string, TetMesh>> all;
   for (const std::uint64_t seed : {1, 2})
@@ -121,8 +161,9 @@ void expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const std::fil
                      const ImproveOptions& options, Seen& seen) {
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, in, 300);
+  const mpi::PinchedEdges pinched = mpi::pinched_edges(parts);
   const mpi::PartsResult result = mpi::improve(parts, options);
-  const mpi::PartsCheck checked = mpi::check(parts);
+  const mpi::PartsCheck checked = mpi::check(parts, pinched);
   EXPECT_TRUE(checked.is_good) << checked.message;
   mpi::write_vtu(parts, folder.path() / "parts.vtu");
   if (comm.rank() == 0) {
@@ -180,6 +221,37 @@ TEST(UntangledParts, FoldedBoundariesHaveTheBytesOfSharedMemory) {
   EXPECT_GT(seen.reconnected, 0U);
   EXPECT_GT(seen.smoothed, 0U);
   EXPECT_GT(seen.undone, 0U) << "no run is put back";
+}
+
+/// Links have to be checked without any cell that is inverted, where the boundary goes through itself.
+TEST(UntangledParts, OverlappingCellsHaveTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  for (const bool has_pinched_edges : {false, true}) {
+    SCOPED_TRACE(has_pinched_edges);
+    if (comm.rank() == 0) io::write(path, overlapping(24, 5, has_pinched_edges));
+    comm.sum(0);
+    Seen seen;
+    expect_same_run(comm, folder, path, polish_towards(30), seen);
+  }
+}
+
+TEST(UntangledParts, PinchedEdgesThatWereThereAreNoFault) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  if (comm.rank() == 0) io::write(path, overlapping(6, 5, true));
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, path, 300);
+  EXPECT_THAT(mpi::check(parts).message, testing::HasSubstr("has more than one fan of cells"));
+  mpi::PinchedEdges known = mpi::pinched_edges(parts);
+  // Of an octahedron to the next one, seen from both ends.
+  EXPECT_EQ(comm.sum(known.size()), 10U);
+  EXPECT_TRUE(mpi::check(parts, known).is_good);
+  if (!known.empty()) known.begin()->second = 1;
+  EXPECT_FALSE(mpi::check(parts, known).is_good);
 }
 
 /// Reconnecting alone, in turn and in one selection, with searched clusters, and with threads.
@@ -312,6 +384,43 @@ TEST(UntangledParts, PatchesAreThoseOfTheWhole) {
     }
 }
 
+/// One cell at a time, over all ranks, the damage of a patch is what it is in one go.
+TEST(UntangledParts, ChangesOfPatchesAreJoinedInTheOrderOfTheirCells) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  constexpr std::uint64_t kCells = 600, kPatches = 7;
+  Jitter jitter(11);
+  std::mt19937_64 engine(12);
+  std::vector<mpi::PatchChange> mine, whole(kPatches), backwards(kPatches);
+  std::vector<mpi::PatchChange> cells;
+  for (std::uint64_t i = 0; i < kCells; ++i) {
+    mpi::PatchChange change{engine() % kPatches, i, {}, {}};
+    change.was.add(jitter(1), jitter(1), jitter(1), jitter(1));
+    change.is.add(jitter(1), jitter(1), jitter(1), jitter(1));
+    cells.push_back(change);
+    whole[change.patch].was.join(change.was);
+    whole[change.patch].is.join(change.is);
+    if (static_cast<int>(engine() % comm.n_ranks()) == comm.rank()) mine.insert(mine.begin(), change);
+  }
+  for (std::size_t i = cells.size(); i-- > 0;) backwards[cells[i].patch].is.join(cells[i].is);
+  bool order_matters = false;
+  const std::vector<mpi::PatchChange> joined = mpi::joined_on_first(comm, mine);
+  ASSERT_EQ(joined.size(), comm.rank() == 0 ? kPatches : 0);
+  for (std::size_t p = 0; p < joined.size(); ++p) {
+    EXPECT_EQ(joined[p].patch, p);
+    for (const auto& [found, expected] :
+         {std::pair(joined[p].was, whole[p].was), std::pair(joined[p].is, whole[p].is)}) {
+      EXPECT_EQ(found.n_inverted(), expected.n_inverted());
+      EXPECT_EQ(found.n_invalid(), expected.n_invalid());
+      EXPECT_EQ(found.overlap(), expected.overlap());
+      EXPECT_EQ(found.worst(), expected.worst());
+    }
+    order_matters = order_matters || backwards[p].is.overlap() != whole[p].is.overlap();
+  }
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(order_matters) << "any order gives these sums";
+  }
+}
+
 TEST(UntangledParts, APartThatIsPutBackIsWhatItWas) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
@@ -326,6 +435,7 @@ TEST(UntangledParts, APartThatIsPutBackIsWhatItWas) {
   const std::uint32_t clock = parts.work().clock;
   parts.put_back(*copy);
   EXPECT_EQ(parts.work().clock, clock);
+  EXPECT_THAT(parts.work().changed, testing::Each(clock)) << "what failed before would not be tried again";
   parts.work().set_qualities(parts.part(), MinSine2{}, {});
   EXPECT_TRUE(mpi::check(parts).is_good);
   mpi::write_vtu(parts, folder.path() / "after.vtu");
