@@ -60,6 +60,8 @@ void drop_midside_points(MeshData& mesh, const std::vector<Index>& midside) {
   }
 
   keep_marked(mesh.vertex_labels, 1, keep);
+  if (std::ranges::all_of(mesh.vertex_labels, [](int label) { return label == 0; }))
+    mesh.vertex_labels.clear();
   for (Field& field : mesh.point_fields) {
     keep_marked(field.values, static_cast<std::size_t>(std::max(field.components, 1)), keep);
   }

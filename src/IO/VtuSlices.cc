@@ -95,46 +95,45 @@ class VtuSlices::Header {
     array.begin = first_byte_ + offset + word;
     return array;
   }
+  Array integers(const XMLElement& element) const {
+    Array found = array(element);
+    if (!is_integer(found.type) || found.components != 1)
+      file_.fail("array '" + shown(found.name) + "' must hold one integer each");
+    return found;
+  }
   Array named(const XMLElement& section, std::string_view name) const {
     for (const XMLElement* e = section.FirstChildElement("DataArray"); e;
-         e = e->NextSiblingElement("DataArray")) {
-      if (attribute(*e, "Name") != name) continue;
-      Array found = array(*e);
-      if (!is_integer(found.type) || found.components != 1)
-        file_.fail("array '" + std::string(name) + "' must hold one integer each");
-      return found;
-    }
+         e = e->NextSiblingElement("DataArray"))
+      if (attribute(*e, "Name") == name) return integers(*e);
     file_.fail("there is no array '" + std::string(name) + "'");
   }
 
   /// The array by which the reader for shared memory goes, too: the best name of those that hold labels.
-  static std::string label_array(const XMLElement* arrays, std::span<const std::string_view> names) {
+  static const XMLElement* label_array(const XMLElement* arrays, std::span<const std::string_view> names) {
     for (const std::string_view name : names)
       for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
            e = e->NextSiblingElement()) {
         const auto components = number_attribute(*e, "NumberOfComponents").value_or(1);  // 0 means 1, too
         const auto type = vtu_number_type(attribute(*e, "type"));
         if (lower(std::string(attribute(*e, "Name"))) == name && components <= 1 && type && is_integer(*type))
-          return std::string(attribute(*e, "Name"));
+          return e;
       }
-    return {};
+    return nullptr;
   }
   void read_labels(const XMLElement& piece) {
     const XMLElement* const of_points = piece.FirstChildElement("PointData");
     const XMLElement* const of_cells = piece.FirstChildElement("CellData");
-    const std::string labels = label_array(of_points, kVtkPointLabelNames),
-                      fixed = label_array(of_points, {{kVtkFixedArray}}),
-                      regions = label_array(of_cells, kVtkCellLabelNames);
-    if (!labels.empty()) file_.vertex_labels_ = named(*of_points, labels);
-    if (!fixed.empty()) file_.fixed_ = named(*of_points, fixed);
-    if (!regions.empty()) file_.regions_ = named(*of_cells, regions);
+    const XMLElement* const labels = label_array(of_points, kVtkPointLabelNames);
+    const XMLElement* const fixed = label_array(of_points, {{kVtkFixedArray}});
+    const XMLElement* const regions = label_array(of_cells, kVtkCellLabelNames);
+    if (labels) file_.vertex_labels_ = integers(*labels);
+    if (fixed) file_.fixed_ = integers(*fixed);
+    if (regions) file_.regions_ = integers(*regions);
     const auto note_others = [&](const XMLElement* arrays, const char* of) {
       for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
-           e = e->NextSiblingElement()) {
-        const std::string_view name = attribute(*e, "Name");
-        if (arrays == of_points ? name != labels && name != fixed : name != regions)
-          file_.notes_.push_back("array '" + shown(name) + "' of " + of + " left out");
-      }
+           e = e->NextSiblingElement())
+        if (e != labels && e != fixed && e != regions)
+          file_.notes_.push_back("array '" + shown(attribute(*e, "Name")) + "' of " + of + " left out");
     };
     note_others(of_points, "points");
     note_others(of_cells, "cells");

@@ -79,5 +79,15 @@ TEST(Linearise, EverythingThatBelongsToADroppedPointGoesWithIt) {
   EXPECT_EQ(mesh.point_fields[1].values[0], 4);
 }
 
+TEST(Linearise, LabelsOfDroppedPointsLeaveNoZerosBehind) {
+  MeshData mesh = samples::full();
+  mesh.cells = {{1, 2, 3, 4}};
+  mesh.triangles.clear();
+  mesh.edges.clear();
+  mesh.vertex_labels = {7, 0, 0, 0, 0};
+  drop_midside_points(mesh, {0});
+  EXPECT_TRUE(mesh.vertex_labels.empty());
+}
+
 }  // namespace
 }  // namespace hfr::io

@@ -210,6 +210,27 @@ TEST(VtuSlices, OtherArraysAreNamed) {
   EXPECT_THAT(file.notes(), testing::ElementsAre("array 'height' of points left out"));
 }
 
+TEST(VtuSlices, OfTwoArraysOfOneNameTheFirstHoldsTheLabels) {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "a.vtu";
+  Appended data(false, true);
+  const std::string points = data.array<float>("Points", "Float32", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const std::string corners = data.array<std::int64_t>("connectivity", "Int64", 1, {0, 1, 2, 3});
+  const std::string ends = data.array<std::int64_t>("offsets", "Int64", 1, {4});
+  const std::string types = data.array<std::uint8_t>("types", "UInt8", 1, {10});
+  std::string first = data.array<std::int32_t>("fixed", "Int32", 1, {0, 1, 0, 0});
+  first.replace(first.find("DataArray"), 9, "Array");  // which readers do not look at
+  const std::string second = data.array<std::int32_t>("fixed", "Int32", 1, {0, 0, 1, 0});
+  std::ofstream(path, std::ios::binary) << data.file(
+      "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">\n<Points>" + points + "</Points>\n<Cells>" + corners +
+      ends + types + "</Cells>\n<PointData>" + first + second + "</PointData>\n</Piece>\n");
+  ASSERT_EQ(fault(path), "");
+  EXPECT_TRUE(io::read(path).is_fixed(VertexHandle(1)));
+  io::VtuSlices file(path);
+  EXPECT_EQ(file.fixed(0, 4), (std::vector<std::uint8_t>{0, 1, 0, 0}));
+  EXPECT_THAT(file.notes(), testing::ElementsAre("array 'fixed' of points left out"));
+}
+
 TEST(VtuSlices, LabelsAndNamesOfAllKinds) {
   const ScratchFolder folder;
   const auto path = folder.path() / "a.vtu";
