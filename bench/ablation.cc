@@ -2,7 +2,7 @@
 // Runs of improve() with one number of the strategy multiplied, or one stage left out; bench/ablation.py
 // makes tables of them.
 // Usage: bench_ablation --list
-//        bench_ablation FILE [--set ROW FACTOR] [--goal DEGREES] [--mode MODE] [--seed N]
+//        bench_ablation FILE [--set ROW FACTOR ...] [--goal DEGREES] [--mode MODE] [--seed N]
 // --list prints each row and what it can be multiplied by. A run prints a line of JSON: degrees, the number
 // of cells and CPU seconds on one thread.
 //
@@ -215,6 +215,7 @@ std::vector<Row> make_rows() {
       number("pass.move_gain", &P::move_gain, kOffToo, kAbove),
       number("untangle.first_sweeps", &U::first_sweeps),
       number("untangle.patience", &U::patience),
+      number("untangle.still", &U::still),
       number("untangle.newton_steps", &U::newton_steps),
       number("bulk.iterations", &BulkEffort::iterations, {0, 1.0 / 3, 2}),
       number("bulk.focus", &BulkEffort::focus),
@@ -298,18 +299,19 @@ const std::vector<Row>& rows() {
   return all;
 }
 
-/// What this run changes; for all strategies that come up in it.
-const Row* changed_row = nullptr;
-double changed_by = 1;
+/// What this run changes, and by how much; for all strategies that come up in it.
+std::vector<std::pair<const Row*, double>> changes;
 
 std::shared_ptr<const Strategy> changed(const std::shared_ptr<const Strategy>& strategy);
 
 Strategy changed(Strategy strategy) {
-  if (changed_row != nullptr) changed_row->change(strategy, changed_by);
+  for (const auto& [row, factor] : changes) row->change(strategy, factor);
   strategy.plain = changed(strategy.plain);
   strategy.usual = changed(strategy.usual);
   strategy.claimed = changed(strategy.claimed);
   strategy.frozen = changed(strategy.frozen);
+  strategy.flat = changed(strategy.flat);
+  strategy.without_goal = changed(strategy.without_goal);
   return strategy;
 }
 
@@ -361,7 +363,7 @@ int list_rows() {
 int main(int argc, char** argv) {
   if (argc == 2 && std::string(argv[1]) == "--list") return list_rows();
   if (argc < 2)
-    fail("usage: bench_ablation FILE [--set ROW FACTOR] [--goal DEGREES] [--mode MODE] [--seed N]");
+    fail("usage: bench_ablation FILE [--set ROW FACTOR ...] [--goal DEGREES] [--mode MODE] [--seed N]");
   hfr::ImproveOptions options;
   options.policy.threads = 1;
   for (int i = 2; i + 1 < argc; i += 2) {
@@ -377,10 +379,9 @@ int main(int argc, char** argv) {
     } else if (name == "--seed") {
       options.seed = std::stoull(value);
     } else if (name == "--set" && i + 2 < argc) {
-      for (const hfr::Row& row : hfr::rows())
-        if (row.name == value) hfr::changed_row = &row;
-      if (hfr::changed_row == nullptr) fail("there is no row " + value);
-      hfr::changed_by = std::stod(argv[i + 2]);
+      const auto row = std::ranges::find(hfr::rows(), value, &hfr::Row::name);
+      if (row == hfr::rows().end()) fail("there is no row " + value);
+      hfr::changes.emplace_back(&*row, std::stod(argv[i + 2]));
       ++i;
     } else {
       fail("unknown option " + name);

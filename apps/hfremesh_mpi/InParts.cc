@@ -20,9 +20,13 @@
 #include <vector>
 
 #include "ExitCode.hh"
+#include "Files.hh"
 #include "ImproveLine.hh"
+#include "Json.hh"
 #include "Numbers.hh"
+#include "Options.hh"
 #include "Parser.hh"
+#include "Paths.hh"
 #include "Report.hh"
 #include "hfremesh/Distributed/InParts.hh"
 #include "hfremesh/HalfFace/Config.hh"
@@ -44,6 +48,10 @@ struct PartsLine {
   int threads_each = 1;
   std::string partition = "coordinates";
   bool distributed_output = false;
+  std::string json;  ///< file for the report, "-" for stdout, empty for none
+  bool quiet = false;
+
+  bool prints() const { return !quiet && json != "-"; }
 };
 
 void add_options(Command command, PartsLine& line) {
@@ -88,6 +96,10 @@ void add_options(Command command, PartsLine& line) {
       .type_name("N")
       .shows_default()
       .check(whole_number(1, 1024));
+  command.option("--json", line.json, "Write a report in JSON; - is stdout")
+      .type_name("FILE")
+      .transform(stream_name());
+  command.flag("-q,--quiet", line.quiet, "Print errors only");
   command.group("A grid instead of IN, as hfremesh generate cavity makes it");
   command.option("--generate", line.counts, "Cubes along x, y and z, of 6 cells each")
       .type_name("NX NY NZ")
@@ -153,20 +165,39 @@ void require_sound(const PartsLine& line) {
   improve_options(line);
 }
 
+/// Before anything is read: a run of hours ends with files that can be written.
+void look_at_files(const PartsLine& line) {
+  std::filesystem::path first(line.output);
+  if (line.distributed_output) first.replace_extension(".0.mesh");
+  const std::string output = first.string();
+  require_apart({{FileUse::Kind::kInput, "IN", line.input},
+                 {FileUse::Kind::kMesh, "-o", output},
+                 {FileUse::Kind::kReport, "--json", line.json}},
+                {});
+  for (const std::string& path : {output, line.json})
+    if (!path.empty()) require_writable(path);
+}
+
 class PartsRun {
  public:
-  PartsRun(const PartsLine& line, mpi::Comm& comm) : line_(line), comm_(comm), mesh_(comm) {}
+  /// `report`: of rank 0.
+  PartsRun(const PartsLine& line, mpi::Comm& comm, Json& report)
+      : line_(line), comm_(comm), report_(report), mesh_(comm) {}
 
   ExitCode run() {
+    begin_report();
     begin();
+    const char* const step = line_.input.empty() ? "generate" : "read";
     mpi::InParts found = mpi::survey(mesh_, line_.min_dihedral, policy());
-    say_found(line_.input.empty() ? "generated" : "read", found);
+    say_found(line_.input.empty() ? "generated" : "read", found, note_seconds(step));
+    report_["before"] = json_of(found);
+    report_["after"] = json_of(found);
     if (!line_.input.empty()) {
       if (!mpi::check(mesh_).is_good) {
         pinched_ = mpi::pinched_edges(mesh_);
         require_good(ExitCode::kCannotRead, line_.input + ": meshes in parts cannot have");
       }
-      seconds();  // are of no step
+      note_seconds("check");
     }
     bool goal_reached = true;
     if (line_.min_dihedral > 0) {
@@ -177,17 +208,73 @@ class PartsRun {
     check();
     if (!line_.output.empty()) write();
     say_memory();
-    if (found.n_invalid > 0) return ExitCode::kInvalidCells;
-    return goal_reached ? ExitCode::kDone : ExitCode::kGoalMissed;
+    if (found.n_invalid > 0) {
+      complain("{} cells are inverted or flat", grouped(found.n_invalid));
+      return ExitCode::kInvalidCells;
+    }
+    if (goal_reached) return ExitCode::kDone;
+    complain("the smallest dihedral angle is {:.4f}, below the goal of {:g}", found.min_dihedral,
+             line_.min_dihedral);
+    return ExitCode::kGoalMissed;
   }
 
  private:
   par::Policy policy() const { return par::Policy{line_.threads_each}; }
   template <class... Values>
   void say(fmt::format_string<Values...> text, Values&&... values) const {
-    if (comm_.rank() != 0) return;
+    if (comm_.rank() != 0 || !line_.prints()) return;
     fmt::print("{}\n", fmt::format(text, std::forward<Values>(values)...));
     std::fflush(stdout);
+  }
+  template <class... Values>
+  void complain(fmt::format_string<Values...> text, Values&&... values) const {
+    if (comm_.rank() != 0) return;
+    fmt::print(stderr, "hfremesh-mpi: {}: {}\n", line_.input.empty() ? "the grid" : line_.input,
+               fmt::format(text, std::forward<Values>(values)...));
+  }
+  void say_notes(const std::string& path, const std::vector<std::string>& notes) {
+    for (const std::string& note : notes) {
+      say("{}: {}", path, note);
+      report_["notes"].push_back(path + ": " + note);
+    }
+  }
+
+  void begin_report() {
+    report_["ranks"] = comm_.size();
+    report_["threads"] = policy().threads;
+    report_["notes"] = Json::array();
+    if (!line_.input.empty())
+      report_["input"] = {{"file", line_.input}};
+    else
+      report_["grid"] = {{"counts", line_.counts},
+                         {"jitter", line_.jitter},
+                         {"amplitude", line_.amplitude},
+                         {"seed", line_.seed}};
+    const ImproveOptions options = improve_options(line_);
+    report_["options"] = {{"min_dihedral", line_.min_dihedral > 0 ? Json(line_.min_dihedral) : Json()},
+                          {"ops", ops_to_list(options.ops)},
+                          {"rounds", line_.rounds.empty() ? Json() : Json(line_.rounds)},
+                          {"min_cells", line_.min_cells > 0 ? Json(line_.min_cells) : Json()},
+                          {"max_cells", line_.max_cells > 0 ? Json(line_.max_cells) : Json()}};
+  }
+  static Json json_of(const mpi::InParts& found) {
+    Json below;
+    for (std::size_t k = 0; k < found.n_below.size(); ++k)
+      below[fmt::format("{:g}", mpi::kCountedBelow[k])] = found.n_below[k];
+    return {{"vertices", found.n_vertices},
+            {"cells", found.n_cells},
+            {"boundary_faces", found.n_boundary_faces},
+            {"invalid", found.n_invalid},
+            {"min_dihedral", found.min_dihedral},
+            {"cells_below", std::move(below)},
+            {"most_held", found.most_held}};
+  }
+  /// Of a step that has ended, which may come more than once.
+  double note_seconds(const char* step) {
+    const double taken = seconds();
+    Json& all = report_["seconds"][step];
+    all = (all.is_null() ? 0 : all.get<double>()) + taken;
+    return taken;
   }
   double seconds() {
     const auto now = Clock::now();
@@ -208,9 +295,7 @@ class PartsRun {
 
   void begin() {
     if (!line_.input.empty()) {
-      reporting(ExitCode::kCannotRead, [&] {
-        for (const std::string& note : read()) say("{}: {}", line_.input, note);
-      });
+      reporting(ExitCode::kCannotRead, [&] { say_notes(line_.input, read()); });
       return;
     }
     mpi::GridOptions grid;
@@ -230,7 +315,14 @@ class PartsRun {
 
   mpi::PartsResult improve() {
     const mpi::PartsResult result = mpi::improve(mesh_, improve_options(line_));
-    say_found("improved", result.after);
+    say_found("improved", result.after, note_seconds("improve"));
+    report_["after"] = json_of(result.after);
+    report_["result"] = {{"changed", result.changed},
+                         {"goal_reached", result.goal_reached},
+                         {"n_below_goal", result.after.n_below_goal},
+                         {"has_fallen", result.has_fallen}};
+    Json& passes = report_["passes"] = Json::array();
+    for (const PassReport& pass : result.passes) passes.push_back(to_json(pass));
     if (!result.goal_reached)
       say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), line_.min_dihedral);
     if (result.has_fallen) say("  the smallest angle has fallen; hfremesh would have put the input back");
@@ -245,27 +337,27 @@ class PartsRun {
 
   void check() {
     require_good(ExitCode::kInternal, "the check has found");
-    say("checked on {} ranks: no fault, {:.2f} s", comm_.size(), seconds());
+    say("checked on {} ranks: no fault, {:.2f} s", comm_.size(), note_seconds("check"));
   }
 
   void write() {
     reporting(ExitCode::kUsage, [&] {
       if (std::filesystem::path(line_.output).extension() == ".pvtu")
         return mpi::write_pvtu(mesh_, line_.output);
-      for (const std::string& note : line_.distributed_output ? mpi::write_medit_parts(mesh_, line_.output)
-                                                              : mpi::write_ranges(mesh_, line_.output))
-        say("{}: {}", line_.output, note);
+      say_notes(line_.output, line_.distributed_output ? mpi::write_medit_parts(mesh_, line_.output)
+                                                       : mpi::write_ranges(mesh_, line_.output));
     });
-    say("written {}, {:.2f} s", line_.output, seconds());
+    report_["output"] = {{"file", line_.output}};
+    say("written {}, {:.2f} s", line_.output, note_seconds("write"));
   }
 
-  void say_found(const char* what, const mpi::InParts& found) {
+  void say_found(const char* what, const mpi::InParts& found, double taken) const {
     std::string below;
     for (std::size_t k = 0; k < found.n_below.size(); ++k)
       below +=
           fmt::format("{}{} below {:g}", k > 0 ? ", " : "", grouped(found.n_below[k]), mpi::kCountedBelow[k]);
     say("{}: {} cells, {} vertices, {} boundary faces, {:.2f} s", what, grouped(found.n_cells),
-        grouped(found.n_vertices), grouped(found.n_boundary_faces), seconds());
+        grouped(found.n_vertices), grouped(found.n_boundary_faces), taken);
     say("  smallest dihedral {:.6g} degrees; {} invalid, {}", found.min_dihedral, grouped(found.n_invalid),
         below);
     say("  a rank holds {} cells at most", grouped(found.most_held));
@@ -276,8 +368,9 @@ class PartsRun {
     rusage usage{};
     if (getrusage(RUSAGE_SELF, &usage) != 0) usage.ru_maxrss = 0;
     const auto mine = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-    std::uint64_t sum = comm_.sum(mine);
+    const std::uint64_t sum = comm_.sum(mine);
     const double most = -comm_.min(-static_cast<double>(mine));
+    report_["memory"] = {{"most", static_cast<std::uint64_t>(most)}, {"all", sum}};
     say("memory: {:.0f} MB on the rank that took most, {:.0f} MB on all", most / 1e6,
         static_cast<double>(sum) / 1e6);
 #endif
@@ -287,6 +380,7 @@ class PartsRun {
 
   const PartsLine& line_;
   mpi::Comm& comm_;
+  Json& report_;
   mpi::DistributedMesh mesh_;
   mpi::PinchedEdges pinched_;  // of the input
   Clock::time_point since_ = Clock::now();
@@ -313,23 +407,32 @@ int run_in_parts(int argc, char** argv, mpi::Comm& comm) {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // as the tool does; see Tool.cc
 #endif
+  std::optional<PartsLine> line;
+  Json report = new_report("parts");
+  const auto finish = [&](int code) {
+    if (comm.rank() != 0 || !line || line->json.empty()) return code;
+    report["exit_code"] = code;
+    return static_cast<int>(save_report(line->json, json_text(report), static_cast<ExitCode>(code)));
+  };
   const auto end = [&](const mpi::RankFailed& failed) {
     if (comm.rank() == 0) fmt::print(stderr, "hfremesh-mpi: {}\n", failed.what());
-    return failed.code();
+    report["error"] = failed.what();
+    return finish(failed.code());
   };
   try {
-    std::optional<PartsLine> line;
     int code = 0;
     if (comm.rank() == 0) try {
         line = parse(argc, argv);
+        if (line) look_at_files(*line);
       } catch (const Failure& failure) {
+        line.reset();
         fmt::print(stderr, "hfremesh-mpi: {}\n", failure.what());
         code = static_cast<int>(failure.code());
       }
     const std::array<int, 2> said = comm.from_first(std::array<int, 2>{line ? 1 : 0, code});
     if (said[0] == 0) return said[1];
     if (comm.rank() != 0) line = parse(argc, argv);
-    return static_cast<int>(PartsRun(*line, comm).run());
+    return finish(static_cast<int>(PartsRun(*line, comm, report).run()));
   } catch (const mpi::RankFailed& failed) {
     return end(failed);
   } catch (const std::exception& error) {
