@@ -122,7 +122,8 @@ void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint6
                     ": its cells do not connect through faces, or are more than " +
                     std::to_string(Star::kCapacity) + "; a mesh in parts cannot have that yet");
   HFR_REQUIRE(!has_negative_component(*this),
-              "most cells of a mesh in parts, and of each piece that hangs together, have to be positive");
+              "most cells of a mesh in parts, and of each piece that hangs together, have to be positive; "
+              "hfremesh turns such pieces");
 }
 
 std::shared_ptr<const DistributedMesh> DistributedMesh::copy() const {

@@ -216,9 +216,14 @@ DistributedMesh::Piece Incoming::piece() {
   });
   points_ = {};
   piece.mesh = build(std::move(points), cells, {}, nullptr, NonManifold::kKeep, Turning::kConflicts);
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    HFR_REQUIRE(piece.mesh.cell(CellHandle(c)).v[2].idx() == cells[c][2],
-                "cells of a mesh in parts have to be oriented alike");
+  const auto was_turned = [&](CellHandle c) { return piece.mesh.cell(c).v[2].idx() != cells[c.idx()][2]; };
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (HalfFaceHandle m : piece.mesh.cell(CellHandle(i)).mate)
+      HFR_REQUIRE(!m.is_valid() || was_turned(CellHandle(i)) == was_turned(cell_of(m)),
+                  "cells " + std::to_string(piece.cell_number[i]) + " and " +
+                      std::to_string(piece.cell_number[cell_of(m).idx()]) +
+                      " are ordered against one another, and a mesh in parts has to be oriented alike; "
+                      "hfremesh turns such cells");
   if (has_regions)
     for (std::size_t c = 0; c < cells.size(); ++c) piece.mesh.set_region(CellHandle(c), cells_[c].region);
   cells_ = {};
@@ -249,7 +254,7 @@ void Incoming::hand_to_owners(Incoming& to) {
   if (&to == this) keep_near(0);
 }
 
-std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh) {
+std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::filesystem::path& file) {
   unite();
   for (int edges = 1; edges <= 2; ++edges) {
     const Sets near = near_own(edges);
@@ -259,7 +264,11 @@ std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh) {
         },
         *this);
   }
-  mesh.assemble(piece(), n_points_, n_cells_);
+  try {
+    mesh.assemble(piece(), n_points_, n_cells_);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(file.string() + ": " + error.what());
+  }
   return mesh.attach_labels(std::exchange(labels_, {}));
 }
 

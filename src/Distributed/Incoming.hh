@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -53,8 +54,9 @@ class Incoming {
   /// the owner of its smallest vertex; where that is this object itself, only what belongs here stays. All
   /// take part.
   void hand_to_owners(Incoming& to);
-  /// From what owners have to the parts. Returns notes on labels. All take part.
-  std::vector<std::string> make_parts(DistributedMesh& mesh);
+  /// From what owners have to the parts. Returns notes on labels. All take part. Throws InvalidInput, which
+  /// names `file`, for what a mesh in parts cannot have.
+  std::vector<std::string> make_parts(DistributedMesh& mesh, const std::filesystem::path& file);
 
  private:
   using Places = std::array<Index, 4>;

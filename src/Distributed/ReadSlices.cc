@@ -233,7 +233,7 @@ std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesyste
     passage.send_labels(reader.labels(), incoming);
   }
   std::vector<std::string> notes = share->notes();
-  for (std::string& note : incoming.make_parts(mesh)) notes.push_back(std::move(note));
+  for (std::string& note : incoming.make_parts(mesh, path)) notes.push_back(std::move(note));
   mesh.part().labels().names = share->names();
   return notes;
 }

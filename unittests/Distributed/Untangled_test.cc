@@ -326,6 +326,21 @@ TEST(UntangledParts, PiecesOfNegativeCellsAreRefused) {
   EXPECT_THAT(refusal(true), testing::HasSubstr("each piece that hangs together, have to be positive"));
 }
 
+TEST(UntangledParts, CellsThatAreOrderedAgainstOneAnotherAreNamed) {
+  mpi::Comm world(MPI_COMM_WORLD);
+  const SharedFolder folder(world);
+  const auto path = folder.path() / "in.mesh";
+  if (world.rank() == 0) {
+    io::MeshData data;
+    data.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+    data.cells = {{0, 1, 2, 3}, {1, 3, 2, 4}};
+    io::write_mesh(path, data);
+  }
+  world.sum(0);
+  const std::string refusal = refusal_of([&](mpi::DistributedMesh& parts) { mpi::read_ranges(parts, path); });
+  EXPECT_THAT(refusal, testing::HasSubstr("in.mesh: cells 0 and 1 are ordered against one another"));
+}
+
 TEST(UntangledParts, SumsHaveTheOrderOfNumbersHoweverManyComeTogether) {
   mpi::Comm comm(MPI_COMM_WORLD);
   constexpr std::uint64_t kEnd = 5000;
