@@ -7,8 +7,8 @@
 #                      a copy of the files that git knows, and has lintian look at all that came out; in FOLDER/source
 #   HFR_BUILD=FOLDER   where to build; default build/deb in the checkout. The packages are in FOLDER/packages
 #   HFR_DEB_CHECK=OFF  builds the packages, and installs them nowhere
-# It needs dpkg-dev and file; for the clean root mmdebstrap, the rights of root, and a mirror that apt knows. lintian
-# looks at the packages where it is installed.
+# What the source package takes is installed. The others need dpkg-dev and file; for the clean root mmdebstrap, the rights
+# of root, and a mirror that apt knows. lintian looks at the packages where it is installed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${HFR_BUILD:-$root/build/deb}
@@ -21,6 +21,7 @@ export SOURCE_DATE_EPOCH
 
 # The source package and the packages built of it.
 from_source() {
+  "$root/scripts/install-deps.sh" --packaging
   local version work tree
   version=$(sed -nE 's/^project\(hfremesh VERSION ([0-9.]+).*/\1/p' "$root/CMakeLists.txt")
   work=$build/source
