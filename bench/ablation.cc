@@ -162,6 +162,14 @@ void keep_back(Strategy& s, double factor) {
   });
 }
 
+/// The share of the cells up to which vertices are put in for those that miss a target.
+void dig_for_few(Strategy& s, double factor) {
+  for_each(s, [&](PolishEffort& polish) {
+    if (polish.dig_share == kOneInFew)
+      polish.dig_share = factor > 0 ? scaled(kOneInFew, 1 / factor, Kind::kPlain) : kNoLimit;
+  });
+}
+
 std::vector<Row> make_rows() {
   using P = PassEffort;
   using U = UntangleEffort;
@@ -181,6 +189,7 @@ std::vector<Row> make_rows() {
       common("poor", {number("", &FirstPolish::target), number("", &H::below)}),
       common("good", {number("", &R::below, {0.67, 1.33}), number("", &C::up_to)}),
       common("few", {number("", &H::dig_share, kOffToo),
+                     {"", [](Strategy& s, double factor) { dig_for_few(s, factor); }, {}},
                      number("", &R::fewer, {}, kBelow),
                      {"", [](Strategy& s, double factor) { keep_back(s, factor); }, {}},
                      number("", &CoarsenEffort::still, {}, kBelow),
@@ -199,8 +208,9 @@ std::vector<Row> make_rows() {
       common("large_rise", {number("", &P::least_gain, kOffToo, kAbove), number("", &Y::again, {}, kAbove)}),
       common("more_cells", {number("", &G::more_cells, kBothWays, kAbove), number("", &Y::most_of_hundred)}),
       common("claim", {number("", &G::may_fall, kOffToo), number("", &G::pays)}),
-      common("iterations", {number("", &O::iterations), number("", &R::iterations),
-                            number("", &U::iterations), number("", &CoarsenEffort::iterations)}),
+      common("iterations",
+             {number("", &O::iterations), number("", &R::iterations), number("", &U::iterations),
+              number("", &CoarsenEffort::iterations), number("", &A::turns)}),
       common("idle", {number("", &O::idle), number("", &U::idle)}),
       number("pass.rounds", &P::rounds),
       number("pass.little", &P::little),
@@ -224,7 +234,6 @@ std::vector<Row> make_rows() {
       number("polish.least_fewer", &O::least_fewer),
       number("polish.fan_of", &O::fan_of),
       number("polish.few_to_dig", &O::few_to_dig, kOffToo),
-      number("polish.dig_share", &O::dig_share),
       number("polish.seeds_of_vertex", &O::seeds_of_vertex),
       number("polish.dig_again_tenths", &O::dig_again_tenths, {0.8, 1.1}),
       {"targets.list",
@@ -243,7 +252,6 @@ std::vector<Row> make_rows() {
       number("refine.of_hundred", &R::of_hundred, {0.95, 1.02}),
       stage("throughout", [](Strategy& s) { s.throughout.share = 2; }),
       stage("throughout.refine", [](Strategy& s) { s.throughout.refine.reset(); }),
-      number("throughout.movable", &H::movable, kOffToo),
       stage("neighbourhoods", [](Strategy& s) { s.neighbourhoods.reset(); }),
       number("neighbourhoods.few", &N::few),
       number("neighbourhoods.iterations", &N::iterations),
@@ -261,13 +269,9 @@ std::vector<Row> make_rows() {
        },
        {0.5, 1.5}},
       stage("patches", [](Strategy& s) { s.patch.enabled = false; }),
-      stage("patches.last",
-            [](Strategy& s) {
-              if (s.last_cells.patches.size() > 1) s.last_cells.patches.resize(1);
-            }),
+      stage("patches.last", [](Strategy& s) { s.last_cells.patches.resize(1); }),
       number("patches.layers", &A::layers, {0.67, 1.33}),
       number("patches.patches", &A::patches),
-      number("patches.turns", &A::turns),
       number("patches.rows", &A::rows, {0, 0.5}),
       number("patches.vertices", &A::vertices, kOffToo),
       number("patches.removals", &A::removals, kOffToo),

@@ -181,8 +181,7 @@ LastCellsEffort last_cells_effort(const Asked& asked) {
   if (asked.is_free()) last.again = kLargeRise;
   const PatchEffort& effort = asked.is_frozen() ? kLittleEffort : kSurfaceEffort;
   if (asked.has_goal() && asked.is_flat()) last.patches_first = {effort};
-  last.patches = {effort};
-  last.patches.insert(last.patches.end(), kLastEfforts.begin(), kLastEfforts.end());
+  last.patches = {effort, kLastEffort};
   if (asked.is_free()) last.patches_up_to = 20;
   return last;
 }

@@ -185,7 +185,7 @@ struct PolishEffort {
   /// Poor cells up to which vertices are inserted for them, and clusters searched: `few_to_dig`, or one cell
   /// in `dig_share`.
   std::size_t few_to_dig = 50;
-  std::size_t dig_share = 48;
+  std::size_t dig_share = kOneInFew;
   /// Insertion for more than PassEffort::few_seeds cells ends after a round in which fewer than one in so
   /// many got a vertex.
   std::size_t seeds_of_vertex = kNoLimit;
@@ -246,8 +246,7 @@ struct RefineEffort {
 struct ThroughoutEffort {
   PolishEffort polish;
   double below = kPoorAngle;     ///< degrees; a mesh is poor throughout where a larger share of its cells
-  double share = kManyShare;     ///< is below, or where no larger share
-  double movable = 0.05;         ///< of its vertices may move
+  double share = kManyShare;     ///< is below, or where no larger share of its vertices may move
   double dig_share = kFewShare;  ///< of the cells that miss a target, from which it is worked for in this way
   std::optional<RefineEffort> refine;   ///< in the place of refine_again, without a first one
   std::size_t of_hundred = kAllButFew;  ///< cells that there may be; the rest is for the last ones
@@ -278,7 +277,7 @@ struct PatchEffort {
   std::size_t few = kFewCells;     ///< cells below the next angle; where there are more, nothing is tried
   int layers = 3;                  ///< of cells round the worst one
   std::size_t patches = 4;         ///< at a time
-  int turns = 12;                  ///< at most
+  int turns = kIterations;         ///< at most
   std::size_t rows = kNeedleRows;  ///< of apexes over needles that are tried
   std::size_t vertices = 8;        ///< new ones for one patch, each in a try of its own
   std::size_t removals = 12;       ///< vertices next to the worst cell that are taken out instead
@@ -289,27 +288,14 @@ struct PatchEffort {
 inline constexpr PatchEffort kLittleEffort = {};
 /// Where the surface may change, which has cheaper ways to mend needles, but for the very last cells.
 inline constexpr PatchEffort kSurfaceEffort = {.turns = 4, .rows = 0};
-/// For the very last cells, one after the other.
-inline constexpr std::array<PatchEffort, 2> kLastEfforts = {
-    {{.few = 6, .layers = 2, .turns = 2, .vertices = 20, .removals = 30},
-     {.few = 6, .layers = 4, .turns = 2, .vertices = 12, .removals = 30}}};
+/// For the very last cells.
+inline constexpr PatchEffort kLastEffort = {
+    .few = 6, .layers = 2, .turns = 2, .vertices = 20, .removals = 30};
 /// One after the other, where the worst angle is to be raised at any cost: what one cannot mend, another may.
 inline constexpr std::array<PatchEffort, 3> kAllEfforts = {
-    {{.patches = 8, .turns = 40, .vertices = 20, .removals = 20, .replaces = true, .degrees = 2},
-     {.layers = 4,
-      .patches = 8,
-      .turns = 40,
-      .vertices = 20,
-      .removals = 20,
-      .replaces = true,
-      .degrees = 0.5},
-     {.layers = 2,
-      .patches = 8,
-      .turns = 40,
-      .vertices = 20,
-      .removals = 20,
-      .replaces = true,
-      .degrees = 3}}};
+    {{.patches = 8, .vertices = 20, .removals = 20, .replaces = true, .degrees = 2},
+     {.layers = 4, .patches = 8, .vertices = 20, .removals = 20, .replaces = true, .degrees = 0.5},
+     {.layers = 2, .patches = 8, .vertices = 20, .removals = 20, .replaces = true, .degrees = 3}}};
 
 /// What holds for each try on a patch.
 struct PatchTrial {

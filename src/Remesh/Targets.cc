@@ -38,7 +38,7 @@ void raise_throughout(const Run& run, const ThroughoutEffort& effort, double deg
 bool lacks_vertices(const Run& run) {
   const auto& frozen = run.work.frozen;
   const auto n_movable = static_cast<double>(std::count(frozen.begin(), frozen.end(), 0));
-  return n_movable <= run.strategy.throughout.movable * static_cast<double>(frozen.size());
+  return n_movable <= run.strategy.throughout.share * static_cast<double>(frozen.size());
 }
 
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
