@@ -46,8 +46,9 @@ class TextRanges : public Ranges {
   void read_section(std::size_t mark);
   template <class Read>
   void read_text(std::size_t mark, Read&& read);
-  void read_nodes(std::uint64_t line);
-  void read_elements(std::uint64_t line);
+  /// These return the first line behind what they have read.
+  std::uint64_t read_nodes(std::uint64_t line);
+  std::uint64_t read_elements(std::uint64_t line);
   NodeBlock next_nodes(std::uint64_t line);
   ElementBlock next_elements(std::uint64_t line, const Entities& entities);
   void require_lines(std::uint64_t begin, std::uint64_t n, const char* what) const {
@@ -92,6 +93,15 @@ void TextRanges::read_section(std::size_t mark) {
   if (name.starts_with("$End")) return;
   if (mark + 1 == text_.marks().size() || text_.marks()[mark + 1].word != "$End" + name.substr(1))
     text_.fail("section " + shown(name) + " is not closed");
+  const auto read_lines = [&](auto&& read) {
+    text_.at_line(found.line, [](TextLine& in) {
+      in.word();
+      in.finish();
+      return true;
+    });
+    if (read(found.line + 1) != text_.marks()[mark + 1].line)
+      text_.fail("section " + name + " has another number of lines than it announces");
+  };
   if (name == "$PhysicalNames")
     read_text(mark, [&](TextSource& in) {
       gmsh::read_names(in, [&](int dimension, int label, std::string text) {
@@ -102,12 +112,12 @@ void TextRanges::read_section(std::size_t mark) {
     read_text(mark, [&](TextSource& in) { read_entities4(in, version_, name != "$Entities", entities_); });
   if (name == "$Nodes") {
     if (!node_blocks_.empty()) text_.fail("a second section of nodes");
-    read_nodes(found.line + 1);
+    read_lines([&](std::uint64_t line) { return read_nodes(line); });
   }
   if (name == "$Elements") {
     if (has_elements_) text_.fail("a second $Elements section");
     has_elements_ = true;
-    read_elements(found.line + 1);
+    read_lines([&](std::uint64_t line) { return read_elements(line); });
   }
   if (name == "$ParametricNodes") text_.fail(kNoParametricNodes);
   leave_out(name);
@@ -134,11 +144,11 @@ NodeBlock TextRanges::next_nodes(std::uint64_t line) {
   return {n_nodes_, n, line + 1, line + 1 + n};
 }
 
-void TextRanges::read_nodes(std::uint64_t line) {
+std::uint64_t TextRanges::read_nodes(std::uint64_t line) {
   if (version_ == Version::k2) {
     n_nodes_ = count(line, "nodes");
     node_blocks_.push_back({0, n_nodes_, line + 1, line + 1});
-    return;
+    return line + 1 + n_nodes_;
   }
   const auto [n_blocks, n] = totals(line);
   std::uint64_t at = line + 1;
@@ -148,6 +158,7 @@ void TextRanges::read_nodes(std::uint64_t line) {
     at = node_blocks_.back().points + node_blocks_.back().n;
   }
   require_all(n_nodes_, n, "nodes");
+  return at;
 }
 
 ElementBlock TextRanges::next_elements(std::uint64_t line, const Entities& entities) {
@@ -165,11 +176,11 @@ ElementBlock TextRanges::next_elements(std::uint64_t line, const Entities& entit
   return block;
 }
 
-void TextRanges::read_elements(std::uint64_t line) {
+std::uint64_t TextRanges::read_elements(std::uint64_t line) {
   if (version_ == Version::k2) {
     n_elements_ = count(line, "elements");
     element_blocks_.push_back({{}, 0, n_elements_, line + 1});
-    return;
+    return line + 1 + n_elements_;
   }
   const Entities entities(entities_);
   const auto [n_blocks, n] = totals(line);
@@ -181,6 +192,7 @@ void TextRanges::read_elements(std::uint64_t line) {
     if (block.n > 0) element_blocks_.push_back(block);
   }
   require_all(n_elements_, n, "elements");
+  return at;
 }
 
 template <class Block, class Use>

@@ -53,6 +53,11 @@ TEST(GmshShare, Gmsh2FilesThatCannotBeReadInRangesSayWhy) {
   EXPECT_THAT(found(good + kGmshPoints.substr(kGmshPoints.find("$Nodes"))), HasSubstr("a second section of"));
   EXPECT_THAT(found(good + "$ParametricNodes\n$EndParametricNodes\n"), HasSubstr("$ParametricNodes"));
   EXPECT_THAT(found(elements("9\n" + cell)), HasSubstr("9 elements are announced"));
+  EXPECT_THAT(found(kGmshPoints + "$Elements 2\n" + cell + "2" + cell.substr(1) + "$EndElements\n"),
+              HasSubstr("each entry on a line of its own"))
+      << "whole readers take it";
+  EXPECT_THAT(found(elements("1\n" + cell + cell)),
+              HasSubstr("section $Elements has another number of lines"));
   EXPECT_THAT(found(elements("1\n1 4 2 0 1 1 2 3 9\n")), HasSubstr("there is no node 9"));
   EXPECT_THAT(found(elements("1\n1 4 2 0 1 1 2 3 3\n")), HasSubstr("has node 3 twice"));
   EXPECT_THAT(found(elements("1\n1 5 2 0 1 1 2 3 4 1 2 3 4\n")), HasSubstr("hexahedra"));
