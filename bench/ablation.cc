@@ -162,14 +162,6 @@ void keep_back(Strategy& s, double factor) {
   });
 }
 
-/// The share of the cells up to which vertices are put in for those that miss a target.
-void dig_for_few(Strategy& s, double factor) {
-  for_each(s, [&](PolishEffort& polish) {
-    if (polish.dig_share == kOneInFew)
-      polish.dig_share = factor > 0 ? scaled(kOneInFew, 1 / factor, Kind::kPlain) : kNoLimit;
-  });
-}
-
 std::vector<Row> make_rows() {
   using P = PassEffort;
   using U = UntangleEffort;
@@ -189,7 +181,6 @@ std::vector<Row> make_rows() {
       common("poor", {number("", &FirstPolish::target), number("", &H::below)}),
       common("good", {number("", &R::below, {0.67, 1.33}), number("", &C::up_to)}),
       common("few", {number("", &H::dig_share, kOffToo),
-                     {"", [](Strategy& s, double factor) { dig_for_few(s, factor); }, {}},
                      number("", &R::fewer, {}, kBelow),
                      {"", [](Strategy& s, double factor) { keep_back(s, factor); }, {}},
                      number("", &CoarsenEffort::still, {}, kBelow),
@@ -234,6 +225,7 @@ std::vector<Row> make_rows() {
       number("polish.least_fewer", &O::least_fewer),
       number("polish.fan_of", &O::fan_of),
       number("polish.few_to_dig", &O::few_to_dig, kOffToo),
+      number("polish.dig_share", &O::dig_share),
       number("polish.seeds_of_vertex", &O::seeds_of_vertex),
       number("polish.dig_again_tenths", &O::dig_again_tenths, {0.8, 1.1}),
       {"targets.list",

@@ -185,7 +185,7 @@ struct PolishEffort {
   /// Poor cells up to which vertices are inserted for them, and clusters searched: `few_to_dig`, or one cell
   /// in `dig_share`.
   std::size_t few_to_dig = 50;
-  std::size_t dig_share = kOneInFew;
+  std::size_t dig_share = 48;
   /// Insertion for more than PassEffort::few_seeds cells ends after a round in which fewer than one in so
   /// many got a vertex.
   std::size_t seeds_of_vertex = kNoLimit;
