@@ -261,7 +261,10 @@ std::vector<Row> make_rows() {
        },
        {0.5, 1.5}},
       stage("patches", [](Strategy& s) { s.patch.enabled = false; }),
-      stage("patches.last", [](Strategy& s) { s.last_cells.patches.resize(1); }),
+      stage("patches.last",
+            [](Strategy& s) {
+              if (s.last_cells.patches.size() > 1) s.last_cells.patches.resize(1);
+            }),
       number("patches.layers", &A::layers, {0.67, 1.33}),
       number("patches.patches", &A::patches),
       number("patches.rows", &A::rows, {0, 0.5}),

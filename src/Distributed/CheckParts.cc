@@ -165,24 +165,25 @@ class PartCheck {
       for (VertexHandle u : part_.cell(c).v)
         if (u != v) edges.emplace_back(u, c);
     std::sort(edges.begin(), edges.end());
+    std::vector<CellHandle> cells;  // of one edge
     for (std::size_t i = 0, n = 1; i < edges.size(); i += n) {
       for (n = 1; i + n < edges.size() && edges[i + n].first == edges[i].first;) ++n;
-      if (!body(edges[i].first, n_fans(v, std::span(edges).subspan(i, n)))) return;
+      cells.clear();
+      for (std::size_t k = i; k < i + n; ++k) cells.push_back(edges[k].second);
+      if (!body(edges[i].first, n_fans(v, edges[i].first, cells))) return;
     }
   }
-  /// `cells`: all of one edge of v, each with its other end.
-  std::size_t n_fans(VertexHandle v, std::span<const std::pair<VertexHandle, CellHandle>> cells) const {
-    std::vector<CellHandle> left;
-    for (const auto& one : cells) left.push_back(one.second);
+  /// `cells`: all of the edge; none of them is left there.
+  std::size_t n_fans(VertexHandle a, VertexHandle b, std::vector<CellHandle>& cells) const {
     std::size_t n = 0;
-    for (; !left.empty(); ++n) {
-      const CellHandle first = left.back();
-      left.pop_back();
-      leave_out_fan(v, cells[0].first, first, left);
+    for (; !cells.empty(); ++n) {
+      const CellHandle first = cells.back();
+      cells.pop_back();
+      leave_out_fan(a, b, first, cells);
     }
     return n;
   }
-  /// Cells round the edge that connect to c.
+  /// Those of `cells`, all round the edge, that connect to c.
   void leave_out_fan(VertexHandle a, VertexHandle b, CellHandle c, std::vector<CellHandle>& cells) const {
     const Cell& cell = part_.cell(c);
     std::array<std::size_t, 2> off{};  // the corners that are not on the edge
