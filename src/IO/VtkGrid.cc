@@ -332,6 +332,20 @@ void GridConverter::drop_middle_nodes() {
                         counted(n_before - mesh_.points.size(), "middle node") + " dropped");
 }
 
+/// Labels that are all 0, where a field would be taken for labels without them; else nothing. Not in front of a
+/// field of the very same name.
+std::vector<std::int32_t> zeros_before(const std::vector<Field>& fields, std::string_view array,
+                                       std::span<const std::string_view> names, std::size_t n) {
+  const auto is_whole = [](double v) { return v == std::trunc(v); };
+  bool taken = false;
+  for (const Field& field : fields) {
+    if (field.name == array) return {};
+    taken = taken || (field.components == 1 && std::ranges::find(names, lower(field.name)) != names.end() &&
+                      std::ranges::all_of(field.values, is_whole));
+  }
+  return std::vector<std::int32_t>(taken ? n : 0);
+}
+
 }  // namespace
 
 MeshData to_mesh(VtkGrid&& grid, const CornerFailure& fail) {
@@ -373,7 +387,7 @@ std::vector<std::int32_t> vtk_regions(const MeshData& mesh) {
   if (mesh.regions.empty() &&
       std::none_of(mesh.triangle_labels.begin(), mesh.triangle_labels.end(), is_set) &&
       std::none_of(mesh.edge_labels.begin(), mesh.edge_labels.end(), is_set)) {
-    return {};
+    return zeros_before(mesh.cell_fields, kVtkRegionArray, kVtkCellLabelNames, n_vtk_cells(mesh));
   }
   std::vector<std::int32_t> all(mesh.regions.begin(), mesh.regions.end());
   all.resize(mesh.cells.size());
@@ -384,11 +398,33 @@ std::vector<std::int32_t> vtk_regions(const MeshData& mesh) {
   return all;
 }
 
+std::vector<std::int32_t> vtk_vertex_labels(const MeshData& mesh) {
+  if (mesh.vertex_labels.empty())
+    return zeros_before(mesh.point_fields, kVtkLabelArray, kVtkPointLabelNames, mesh.points.size());
+  return {mesh.vertex_labels.begin(), mesh.vertex_labels.end()};
+}
+
 std::vector<std::int32_t> vtk_fixed(const MeshData& mesh) {
-  if (mesh.fixed_vertices.empty()) return {};
+  if (mesh.fixed_vertices.empty())
+    return zeros_before(mesh.point_fields, kVtkFixedArray, {{kVtkFixedArray}}, mesh.points.size());
   std::vector<std::int32_t> fixed(mesh.points.size());
   for (const Index vertex : mesh.fixed_vertices) fixed[vertex] = 1;
   return fixed;
+}
+
+std::vector<std::string> notes_on_names(const MeshData& mesh) {
+  std::vector<std::string> notes;
+  const auto look = [&](const std::vector<Field>& fields, const char* kind, std::string_view name,
+                        const char* meaning) {
+    for (const Field& field : fields)
+      if (field.name == name)
+        notes.push_back(fmt::format("{} field '{}' is written under a name that is read as {}", kind,
+                                    field.name, meaning));
+  };
+  look(mesh.cell_fields, "cell", kVtkRegionArray, "labels");
+  look(mesh.point_fields, "point", kVtkLabelArray, "labels");
+  look(mesh.point_fields, "point", kVtkFixedArray, "fixed vertices");
+  return notes;
 }
 
 IntegerWidth integer_width(const Field& field) {

@@ -63,10 +63,15 @@ void read_names(std::string_view text, MeshData& mesh);
 
 /// Cells of all dimensions: tetrahedra, then triangles, then edges, as the writers order them.
 std::size_t n_vtk_cells(const MeshData& mesh);
-/// Label of each of these; empty when the mesh has no label at all.
+/// Label of each of these; empty when the mesh has no label at all. Then zeros, here and below, if a field has
+/// another name that is read as labels, so that it stays a field.
 std::vector<std::int32_t> vtk_regions(const MeshData& mesh);
+/// Label of each point; empty when none has one.
+std::vector<std::int32_t> vtk_vertex_labels(const MeshData& mesh);
 /// 1 for each fixed vertex, 0 for the others; empty when none is fixed.
 std::vector<std::int32_t> vtk_fixed(const MeshData& mesh);
+/// A line for each field under the very name of one of these arrays.
+std::vector<std::string> notes_on_names(const MeshData& mesh);
 
 /// How the values of an integer field can be written: as 32-bit or 64-bit integers, or, when some are none,
 /// as doubles.

@@ -65,7 +65,7 @@ class LegacyWriter {
   OutputFile out_;
   bool binary_;
   bool new_layout_;
-  Notes notes_;
+  Notes notes_ = notes_on_names(mesh_);
 };
 
 template <class T>
@@ -104,9 +104,10 @@ Notes LegacyWriter::write() {
     write_fields(mesh_.cell_fields, n_vtk_cells(mesh_));
   }
   const std::vector<std::int32_t> fixed = vtk_fixed(mesh_);
-  if (!mesh_.vertex_labels.empty() || !fixed.empty() || !mesh_.point_fields.empty()) {
+  const std::vector<std::int32_t> labels = vtk_vertex_labels(mesh_);
+  if (!labels.empty() || !fixed.empty() || !mesh_.point_fields.empty()) {
     put_line("POINT_DATA " + std::to_string(mesh_.points.size()));
-    write_labels(kVtkLabelArray, {mesh_.vertex_labels.begin(), mesh_.vertex_labels.end()});
+    write_labels(kVtkLabelArray, labels);
     write_labels(kVtkFixedArray, fixed);
     write_fields(mesh_.point_fields, mesh_.points.size());
   }

@@ -197,9 +197,8 @@ OutArray VtuWriter::field_array(const Field& field, std::size_t n_items) {
 
 std::vector<OutArray> VtuWriter::point_arrays() {
   std::vector<OutArray> arrays;
-  if (!mesh_.vertex_labels.empty())
-    arrays.push_back(array<std::int32_t>(std::string(kVtkLabelArray), 1,
-                                         bytes_of(std::span<const int>(mesh_.vertex_labels))));
+  if (const auto labels = vtk_vertex_labels(mesh_); !labels.empty())
+    arrays.push_back(array<std::int32_t>(std::string(kVtkLabelArray), 1, own(labels)));
   if (const auto fixed = vtk_fixed(mesh_); !fixed.empty())
     arrays.push_back(array<std::int32_t>(std::string(kVtkFixedArray), 1, own(fixed)));
   for (const Field& field : mesh_.point_fields) arrays.push_back(field_array(field, mesh_.points.size()));
@@ -336,7 +335,7 @@ Notes VtuWriter::write() {
   put_appended();
   out_.text("</VTKFile>\n");
   out_.commit();
-  Notes notes;
+  Notes notes = notes_on_names(mesh_);
   for (const auto* const fields : {&mesh_.point_fields, &mesh_.cell_fields})
     for (const Field& field : *fields)
       if (std::any_of(field.name.begin(), field.name.end(), is_control))

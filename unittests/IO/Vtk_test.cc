@@ -44,6 +44,27 @@ TEST_P(VtkVariants, RandomBitPatternsComeBack) {
   expect_same(read_mesh(folder / "a.vtk"), mesh);
 }
 
+TEST_P(VtkVariants, FieldsWithNamesOfLabelsStayFields) {
+  const TemporaryFolder folder;
+  MeshData mesh = samples::two_cells();
+  mesh.cell_fields = {{"Material", 1, false, {3, 4}}, {"cell_tags", 1, false, {0, 2}}};
+  mesh.point_fields = {{"labels", 1, false, {1, 2, 3, 4, 5}}, {"Fixed", 1, false, {0, 1, 0, 1, 1}}};
+  EXPECT_EQ(write_mesh(folder / "a.vtk", mesh, GetParam().options), std::vector<std::string>{});
+  expect_same(read_mesh(folder / "a.vtk"), mesh);
+}
+
+TEST_P(VtkVariants, AFieldOfTheNameOfTheArrayOfLabelsIsNoted) {
+  const TemporaryFolder folder;
+  MeshData mesh = samples::two_cells();
+  mesh.cell_fields = {{"region", 1, false, {1, 2}}};
+  mesh.point_fields = {{"fixed", 1, false, {0, 1, 0, 1, 1}}};
+  EXPECT_EQ(write_mesh(folder / "a.vtk", mesh, GetParam().options),
+            (std::vector<std::string>{
+                "cell field 'region' is written under a name that is read as labels",
+                "point field 'fixed' is written under a name that is read as fixed vertices"}));
+  EXPECT_EQ(read_mesh(folder / "a.vtk").regions, (std::vector<int>{1, 2}));
+}
+
 TEST_P(VtkVariants, AMeshOfNothingButCellsComesBack) {
   const TemporaryFolder folder;
   MeshData mesh = samples::two_cells();

@@ -37,6 +37,15 @@ TEST_P(VtuVariants, RandomBitPatternsComeBack) {
   expect_same(read_mesh(folder / "a.vtu"), mesh);
 }
 
+TEST_P(VtuVariants, FieldsWithNamesOfLabelsStayFields) {
+  const TemporaryFolder folder;
+  MeshData mesh = samples::two_cells();
+  mesh.cell_fields = {{"Material", 1, false, {3, 4}}};
+  mesh.point_fields = {{"labels", 1, false, {1, 2, 3, 4, 5}}, {"Fixed", 1, false, {0, 1, 0, 1, 1}}};
+  EXPECT_EQ(write_mesh(folder / "a.vtu", mesh, {false, GetParam()}), std::vector<std::string>{});
+  expect_same(read_mesh(folder / "a.vtu"), mesh);
+}
+
 TEST_P(VtuVariants, AMeshOfNothingButCellsComesBack) {
   const TemporaryFolder folder;
   MeshData mesh = samples::two_cells();
