@@ -60,14 +60,17 @@ void add_bound_options(Command command, ImproveLine& line) {
   command.group("Bounds");
   command.flag("--no-insert", line.no_insert, "No new vertices");
   command
-      .option("--min-cells", line.improve.min_cells,
-              "No vertex is removed below N cells; 0: 81 % of the input's, without a bound for 'max'")
+      .option(
+          "--min-cells", line.improve.min_cells,
+          "No vertex is removed below N cells; 0: 81 % of the input's, without a bound where the surface may "
+          "change")
       .type_name("N")
       .shows_default()
       .check(whole_number());
   command
       .option("--max-cells", line.improve.max_cells,
-              "No new vertices beyond N cells; 0: 119 % of the input's, 150 % where the surface may change")
+              "No new vertices beyond N cells; 0: 119 % of the input's, 150 % with --surface free, or flat "
+              "without a goal")
       .type_name("N")
       .shows_default()
       .check(whole_number());
@@ -80,7 +83,7 @@ void add_bound_options(Command command, ImproveLine& line) {
 void add_method_options(Command command, ImproveLine& line) {
   command.group("Advanced");
   add_ops_option(command, line.ops);
-  command.option("--iterations", line.improve.iterations, "At most N bulk iterations; 0 is no limit")
+  command.option("--iterations", line.improve.iterations, "At most N iterations of each stage; 0 is no limit")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<int>::max()))
       .shows_default();
@@ -257,6 +260,9 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   const auto idle = [&](bool given, const char* option, const char* without) {
     if (given) notes.push_back(fmt::format("{} counts only with {}", option, without));
   };
+  const auto left_out = [&](bool given, const char* option, const char* by) {
+    if (given) notes.push_back(fmt::format("{} does nothing with {}", option, by));
+  };
   const bool frozen = on_tetrahedra && (line.surface.empty() || line.surface == "frozen");
   const bool free = line.surface == "free" || (line.surface.empty() && !on_tetrahedra);
   idle(!free && line.hausdorff >= 0, "--hausdorff", "--surface free");
@@ -270,6 +276,20 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   idle(on_cpu && line.improve.hybrid, "--hybrid", "--device");
   idle(on_cpu && line.improve.device_tuning.work_group > 0, "--work-group", "--device");
   idle(on_cpu && line.improve.device_tuning.profile, "--profile", "--device");
+  if (!line.compat.empty()) {  // a published pipeline, as it is
+    left_out(!frozen, "--surface", "--compat");
+    left_out(line.improve.coarsen, "--coarsen", "--compat");
+    left_out(line.improve.bulk_nodes, "--bulk-nodes", "--compat");
+    left_out(line.improve.polish_only, "--polish-only", "--compat");
+    left_out(!line.metric.empty(), "--metric", "--compat");
+    left_out(!line.rounds.empty(), "--rounds", "--compat");
+    left_out(!line.smoother.empty(), "--smoother", "--compat");
+    if (!line.min_dihedral.empty())
+      notes.push_back("--min-dihedral is not worked for with --compat: it is only looked at in the end");
+  } else if (line.improve.polish_only) {
+    left_out(line.improve.bulk_nodes, "--bulk-nodes", "--polish-only");
+    left_out(!line.metric.empty(), "--metric", "--polish-only");
+  }
   return notes;
 }
 

@@ -149,7 +149,7 @@ Json to_json(const PassReport& pass) {
 Json limits_json(const Result& result) {
   constexpr std::size_t kMostCells = 100;
   Json counts;
-  const auto n = count_limits(result.stuck);
+  const auto n = count_reasons(result.stuck);
   for (std::size_t i = 0; i < n.size(); ++i) counts[kStuckReasonNames[i]] = n[i];
   Json cells = Json::array();
   for (std::size_t i = 0; i < std::min(result.stuck.size(), kMostCells); ++i) {

@@ -94,7 +94,7 @@ void print_limits(const Result& result) {
     fmt::print("{} vertices have more than {} cells: they are moved, but not taken out\n",
                grouped(result.n_large_stars), Star::kCapacity);
   if (result.stuck.empty()) return;
-  const auto counts = count_limits(result.stuck);
+  const auto counts = count_reasons(result.stuck);
   std::string text;
   for (std::size_t i = 0; i < counts.size(); ++i)
     if (counts[i] > 0)

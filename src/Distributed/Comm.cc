@@ -44,9 +44,10 @@ class Patience {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+constexpr std::size_t kMostToCount = std::numeric_limits<int>::max();
+
 int to_count(std::size_t n) {
-  if (n > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw ResourceLimit("a message between ranks has more than 2 GiB: use more ranks");
+  if (n > kMostToCount) throw InternalError("more than MPI can count");
   return static_cast<int>(n);
 }
 
@@ -86,6 +87,12 @@ void Comm::combine(void* in, void* in_out, int* n, MPI_Datatype*) {
     for (std::size_t k = 0; k < kMostSums; ++k) b.sums[k] += a.sums[k];
     std::memcpy(all, &b, sizeof(Question));
   }
+}
+
+/// Before a call in which others take part: who has more than one message holds leaves it to none to wait.
+void Comm::require_short(std::size_t n) const {
+  if (n > std::min(kMostToCount, most_bytes_))
+    throw ResourceLimit("a message between ranks has more than 2 GiB: use more ranks");
 }
 
 /// Returns the phase until now.
@@ -140,8 +147,11 @@ RankFailed Comm::fail(int code, const std::string& message) {
 Comm::Exchanged Comm::exchange(std::vector<Packer>& to, std::uint64_t value) {
   Question question;
   question.sums[0] = value;
-  for (std::size_t r = 0; r < n_ranks(); ++r)
-    if (static_cast<int>(r) != rank_ && !to[r].empty()) ++question.sums[1];
+  for (std::size_t r = 0; r < n_ranks(); ++r) {
+    if (static_cast<int>(r) == rank_ || to[r].empty()) continue;
+    require_short(to[r].bytes().size());
+    ++question.sums[1];
+  }
   agree(question);
   ++counts().exchanges;
   Exchanged result;
@@ -174,7 +184,7 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
     require(MPI_Issend(bytes.data(), to_count(bytes.size()), MPI_BYTE, r, tag_, comm_, &sends.back()));
   }
   MPI_Request barrier = MPI_REQUEST_NULL;
-  bool in_barrier = false;
+  bool in_barrier = false, has_room = true;
   const Patience patience;
   for (int done = 0; !done;) {
     int is_there = 0;
@@ -183,9 +193,17 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
     if (is_there) {
       int n = 0;
       require(MPI_Get_count(&status, MPI_BYTE, &n));
-      Message message{status.MPI_SOURCE, std::vector<std::byte>(static_cast<std::size_t>(n))};
+      Message message{status.MPI_SOURCE, {}};
+      try {
+        message.bytes.resize(static_cast<std::size_t>(n));
+      } catch (
+          const std::bad_alloc&) {  // it cannot be refused: this rank makes room, and fails once all is sent
+        has_room = false;
+        came = {};
+        message.bytes.resize(static_cast<std::size_t>(n));
+      }
       require(MPI_Recv(message.bytes.data(), n, MPI_BYTE, status.MPI_SOURCE, tag_, comm_, MPI_STATUS_IGNORE));
-      came.push_back(std::move(message));
+      if (has_room) came.push_back(std::move(message));
       continue;
     }
     if (in_barrier) {
@@ -203,28 +221,42 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
     else
       patience.pause();
   }
+  if (!has_room) throw ResourceLimit("no memory for what other ranks send");
   std::sort(came.begin(), came.end(), [](const Message& a, const Message& b) { return a.from < b.from; });
   return came;
 }
 
 std::vector<std::byte> Comm::all_gather_bytes(std::span<const std::byte> mine) {
+  constexpr int kNoRoom = -1;
+  std::vector<int> counts(n_ranks()), begins(n_ranks());
+  require_short(mine.size());
   Question question;
   question.sums[0] = mine.size();
   agree(question);
-  ++counts().collectives;
-  counts().collective_bytes += mine.size();
+  ++this->counts().collectives;
+  this->counts().collective_bytes += mine.size();
   if (question.sums[0] == 0) return {};
-  const int n = to_count(mine.size());
-  std::vector<int> counts(n_ranks()), begins(n_ranks());
+  require_short(question.sums[0]);  // of all ranks, which all throw
+  int n = to_count(mine.size());
+  std::vector<std::byte> all;
+  try {
+    all.resize(question.sums[0]);
+  } catch (const std::bad_alloc&) {
+    n = kNoRoom;
+  }
   MPI_Request request = MPI_REQUEST_NULL;
   require(MPI_Iallgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, comm_, &request));
   wait(request);
+  if (n == kNoRoom) throw ResourceLimit("no memory for what the ranks tell each other");
+  if (std::find(counts.begin(), counts.end(), kNoRoom) != counts.end()) {
+    agree();  // with a rank that has failed
+    throw InternalError("a rank without room has not failed");
+  }
   std::size_t sum = 0;
   for (std::size_t r = 0; r < n_ranks(); ++r) {
     begins[r] = to_count(sum);
     sum += static_cast<std::size_t>(counts[r]);
   }
-  std::vector<std::byte> all(static_cast<std::size_t>(to_count(sum)));
   require(MPI_Iallgatherv(mine.data(), n, MPI_BYTE, all.data(), counts.data(), begins.data(), MPI_BYTE, comm_,
                           &request));
   wait(request);
@@ -278,7 +310,13 @@ Block Comm::hand_out(const std::function<Block(int)>& make) {
     before = std::move(block);
     send_block(r, before, requests);
   }
-  Block mine = make(0);
+  Block mine;
+  try {
+    mine = make(0);
+  } catch (...) {  // the others have theirs, and hear of it at the next call
+    wait_for_all();
+    throw;
+  }
   wait_for_all();
   return mine;
 }

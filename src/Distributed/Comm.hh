@@ -136,6 +136,8 @@ class Comm {
   /// For tests of that: the call number `n`, from 1, of this rank throws ResourceLimit.
   void fail_at_call(std::uint64_t n) { fail_at_ = n; }
   std::uint64_t n_calls() const { return n_calls_; }
+  /// For tests: a message of more bytes is refused by this rank, as one of more than 2 GiB is.
+  void refuse_beyond(std::size_t n) { most_bytes_ = n; }
 
   /// The time of this rank from now on, until the end of the object, is that of the phase.
   class InPhase {
@@ -172,6 +174,7 @@ class Comm {
     agree(question);
   }
   static void require(int result);
+  void require_short(std::size_t n) const;
   void wait(MPI_Request& request);
   std::vector<Message> send_and_receive(std::vector<Packer>& to);
   void send_block(int to, const Block& block, std::vector<MPI_Request>& requests);
@@ -187,6 +190,7 @@ class Comm {
   int rank_ = 0, size_ = 1;
   int tag_ = 0;
   std::uint64_t n_calls_ = 0, fail_at_ = 0;
+  std::size_t most_bytes_ = std::numeric_limits<std::size_t>::max();
   PerPhase<Traffic> traffic_{};
   Phase phase_ = Phase::kAlone, counted_ = Phase::kAlone;  // counted: the last but waiting
   Clock::time_point since_ = Clock::now();

@@ -355,8 +355,16 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
   mesh_.free_slots().insert(mesh_.free_slots().end(), back.rbegin(), back.rend());
   for (std::uint64_t gone : dropped_) entries_[gone].state = State::kLost;
   dropped_.clear();
-  for (std::size_t i = given_up.size(); i-- > 0;)
-    winners.erase(winners.begin() + static_cast<std::ptrdiff_t>(given_up[i]));
+  std::size_t n_kept = 0;
+  for (std::size_t w = 0, next = 0; w < winners.size(); ++w) {
+    if (next < given_up.size() && given_up[next] == w) {
+      ++next;
+    } else {
+      if (n_kept != w) winners[n_kept] = std::move(winners[w]);
+      ++n_kept;
+    }
+  }
+  winners.erase(winners.begin() + static_cast<std::ptrdiff_t>(n_kept), winners.end());
   return n_given_up;
 }
 

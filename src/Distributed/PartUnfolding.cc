@@ -132,6 +132,11 @@ double PartUnfolding::relax(double over) {
   return sum_in_order(parts_.comm(), ways, parts_.n_vertices());
 }
 
+/// Every rank has where the vertices were that it holds, its own or not.
+void PartUnfolding::put_back() {
+  for (std::size_t i = 0; i < vertices_.size(); ++i) parts_.part().set_point(vertices_[i], before_[i]);
+}
+
 void PartUnfolding::sweep() {
   TetMesh& part = parts_.part();
   for (const auto& group : groups_) {

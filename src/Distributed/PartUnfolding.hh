@@ -36,6 +36,7 @@ class PartUnfolding : public Unfolding {
   std::size_t take(int layers) override;
   Tangle tangle() override;
   double relax(double over) override;
+  void put_back() override;
   void sweep() override;
   std::size_t keep_what_helps() override;
 

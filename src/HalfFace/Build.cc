@@ -108,7 +108,7 @@ class MeshBuilder {
   }
 
   TetMesh run(BuildReport* report, NonManifold non_manifold, Turning turning) {
-    if (input_.size() > HalfFaceHandle::kInvalid / 12)
+    if (input_.size() > TetMesh::kMostCells)
       throw ResourceLimit(std::to_string(input_.size()) +
                           " cells are too many for 32-bit indices; build with HFR_INDEX64=ON");
     check_points();

@@ -89,8 +89,7 @@ CellHandle TetMesh::add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, 
     mates[k] = m;
   }
   const CellHandle c(cells_.size());
-  if (c.idx() >= HalfFaceHandle::kInvalid / 12)
-    throw ResourceLimit("add_cell: no index is left for another cell");
+  if (c.idx() >= kMostCells) throw ResourceLimit("add_cell: no index is left for another cell");
   grow_cells(cells_.size() + 1);
   cells_[c.idx()] = created;
   for (std::size_t k = 0; k < 4; ++k) {

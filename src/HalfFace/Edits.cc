@@ -171,7 +171,7 @@ void TetMesh::split_labels(const Cell& parent, std::span<const VertexHandle> sim
 
 VertexHandle TetMesh::split(std::span<const CellHandle> parents, std::span<const VertexHandle> simplex,
                             Vec3 at) {
-  if (cells_.size() + parents.size() * (simplex.size() - 1) >= HalfFaceHandle::kInvalid / 12)
+  if (cells_.size() + parents.size() * (simplex.size() - 1) >= kMostCells)
     throw ResourceLimit("split: no index is left for another cell");
   const VertexHandle nearest =
       *std::min_element(simplex.begin(), simplex.end(), [&](VertexHandle a, VertexHandle b) {

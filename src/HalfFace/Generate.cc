@@ -22,7 +22,7 @@ using Tet = std::array<Index, 4>;
 
 /// Cells of a shape must leave room for 12 half-edge indices a cell.
 void require_countable(double n_cells) {
-  if (n_cells > static_cast<double>(VertexHandle::kInvalid / 12))
+  if (n_cells > static_cast<double>(TetMesh::kMostCells))
     throw ResourceLimit("a mesh of " + std::to_string(static_cast<long long>(n_cells)) +
                         " cells is too large for the indices of this build; ask for fewer");
 }

@@ -2,6 +2,9 @@
 #include "HalfFace/TetMesh.hh"
 
 #include <algorithm>
+#include <string>
+
+#include "HalfFace/Errors.hh"
 
 namespace hfr {
 namespace {
@@ -80,6 +83,9 @@ VertexHandle TetMesh::add_vertex(Vec3 p) {
 }
 
 void TetMesh::resize_cells(std::size_t n) {
+  if (n > kMostCells)
+    throw ResourceLimit("a mesh of " + std::to_string(n) +
+                        " cells is too large for the indices of this build");
   hand_index_state_ = kVoid;
   grow_cells(n);
 }

@@ -64,10 +64,14 @@ struct RingBothHalfFaces;
 class TetMesh : public PropertyAccess<TetMesh> {
  public:
   // --- sizes; handles run from 0 to n-1, deleted ones included until collect_garbage() ---
+  /// More would leave no index for the 12 half-edges of each. What asks for more throws ResourceLimit.
+  static constexpr std::size_t kMostCells = HalfFaceHandle::kInvalid / 12;
   std::size_t n_vertices() const { return points_.size(); }
   std::size_t n_cells() const { return cells_.size(); }
   std::size_t n_logical_vertices() const { return points_.size() - n_deleted_vertices_; }
   std::size_t n_logical_cells() const { return cells_.size() - free_cells_.size(); }
+  /// Whether a vertex or cell has been deleted since collect_garbage().
+  bool needs_garbage_collection() const { return n_deleted_vertices_ > 0 || !free_cells_.empty(); }
   // What follows is there as long as a cell has it, so all of it is logical.
   std::size_t n_edges() const;  ///< by counting: O(n)
   std::size_t n_faces() const;  ///< by counting: O(n)

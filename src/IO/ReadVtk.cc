@@ -97,6 +97,7 @@ class LegacyReader {
   template <class T>
   void read_values(ValueType type, std::size_t n, T* out);
   void skip_strings(std::size_t n);
+  bool is_next_line(std::string_view line);
   void skip_metadata();
 
   void read_header();
@@ -225,6 +226,15 @@ void LegacyReader::skip_strings(std::size_t n) {
     if (length > rest.size() - length_size) fail("a string is longer than the rest of the file");
     scan_.seek(scan_.offset() + length_size + length);
   }
+}
+
+/// Whether that word comes next and is all of its line: arrays may have such a name.
+bool LegacyReader::is_next_line(std::string_view line) {
+  scan_.peek_word();
+  const std::size_t at = scan_.offset();
+  const bool is_it = lower(scan_.rest_of_line()) == line;
+  scan_.seek(at);
+  return is_it;
 }
 
 /// Information on the array before it, up to an empty line.
@@ -449,10 +459,11 @@ void LegacyReader::read_field() {
   word("a name");
   const std::size_t n_arrays = count("a number of arrays");
   for (std::size_t i = 0; i < n_arrays; ++i) {
-    while (lower(scan_.peek_word()) == "metadata") skip_metadata();
+    while (is_next_line("metadata")) skip_metadata();
+    const bool is_missing = is_next_line("null_array");
     Field field;
     field.name = unescaped(word("a name"));
-    if (field.name == "NULL_ARRAY") continue;
+    if (is_missing) continue;
     const std::size_t components = count("a number of components");
     const std::size_t n_tuples = count("a number of entries");
     const ValueType type = value_type();

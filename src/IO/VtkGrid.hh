@@ -63,8 +63,8 @@ void read_names(std::string_view text, MeshData& mesh);
 
 /// Cells of all dimensions: tetrahedra, then triangles, then edges, as the writers order them.
 std::size_t n_vtk_cells(const MeshData& mesh);
-/// Label of each of these; empty when the mesh has no label at all. Then zeros, here and below, if a field has
-/// another name that is read as labels, so that it stays a field.
+/// Label of each of these; empty when the mesh has no label at all. Then zeros, here and below, if a field
+/// has another name that is read as labels, so that it stays a field.
 std::vector<std::int32_t> vtk_regions(const MeshData& mesh);
 /// Label of each point; empty when none has one.
 std::vector<std::int32_t> vtk_vertex_labels(const MeshData& mesh);

@@ -109,4 +109,21 @@ std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy
   return folded;
 }
 
+bool is_folded_at(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy) {
+  const auto is_folded = [&](std::size_t i) {
+    const VertexHandle v = vertices[i];
+    std::vector<HalfFaceHandle> faces;
+    for (CellHandle c : mesh.vertex_cells(v))
+      for (HalfFaceHandle h : mesh.cell_halffaces(c))
+        if (mesh.is_boundary(h) && mesh.cell(c).v[static_cast<std::size_t>(corner_of(h))] != v)
+          faces.push_back(h);
+    for (std::size_t k = 0; k < faces.size(); ++k)
+      for (std::size_t j = 0; j < k; ++j)
+        if (fold(mesh, v, faces[j], faces[k])) return true;
+    return false;
+  };
+  return !par::compact<std::size_t>(policy.for_items_of(kVertexNanoseconds), vertices.size(), is_folded)
+              .empty();
+}
+
 }  // namespace hfr

@@ -3,6 +3,7 @@
 #define HFR_QUALITY_FOLDED_FACES_HH
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "hfremesh/HalfFace/TetMesh.hh"
@@ -16,6 +17,9 @@ namespace hfr {
 /// vertex are not looked for. `at`: only those that do so at a vertex with at(vertex); all where it is empty.
 std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy = {},
                                          const std::function<bool(VertexHandle)>& at = {});
+
+/// Whether a boundary face at one of these vertices lies on or goes through another one there.
+bool is_folded_at(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy = {});
 
 }  // namespace hfr
 

@@ -48,12 +48,13 @@ std::size_t Checkpoint::n_cells(const TetMesh& mesh) const {
   return parts_ ? parts_->n_cells() : mesh.n_logical_cells();
 }
 
-void Checkpoint::keep(TetMesh& mesh, bool valid, std::size_t n_changes) {
+void Checkpoint::keep(TetMesh& mesh, bool valid, Revision revision) {
   if (valid && !input_.is_valid()) return;
   if (kept_) {
-    const std::size_t n_since = std::max(n_changes, kept_after_) - std::min(n_changes, kept_after_);
+    const auto [fewer_changes, more_changes] = std::minmax(revision.n_changes, kept_revision_.n_changes);
+    const std::size_t n_since = more_changes - fewer_changes;
     const bool little = n_since < n_cells(mesh) / kChangesShare;
-    if (n_changes == kept_after_ || (valid && little)) return;
+    if (revision == kept_revision_ || (valid && little)) return;
     const Standing now = standing(mesh);
     if (!is_no_worse(now, input_) || !is_better(now, kept_standing_)) return;
     const bool fewer = now.n_inverted + now.n_flat < kept_standing_.n_inverted + kept_standing_.n_flat;
@@ -61,10 +62,10 @@ void Checkpoint::keep(TetMesh& mesh, bool valid, std::size_t n_changes) {
     require_sound(mesh);
     kept_standing_ = now;
   } else {
-    kept_standing_ = n_changes == 0 ? input_ : standing(mesh);
+    kept_standing_ = revision == Revision() ? input_ : standing(mesh);
   }
   kept_ = copy_of(mesh, parts_);
-  kept_after_ = n_changes;
+  kept_revision_ = revision;
 }
 
 void Checkpoint::put_back(TetMesh& mesh) {

@@ -8,6 +8,7 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
+#include "Remesh/RunControl.hh"
 #include "Remesh/Standing.hh"
 #include "Remesh/Survey.hh"
 
@@ -43,16 +44,17 @@ class Checkpoint {
 
   const Standing& input() const { return input_; }
   bool has_copy() const { return bool(kept_); }
-  /// The mesh as it was after so many operators, where that is what is kept; it is not to be changed.
-  MeshCopy copy_after(std::size_t n_changes) const { return n_changes == kept_after_ ? kept_ : MeshCopy(); }
+  /// This mesh of the run, where it is what is kept; it is not to be changed.
+  MeshCopy copy_of_revision(Revision revision) const {
+    return revision == kept_revision_ ? kept_ : MeshCopy();
+  }
   /// Whether the run may end with this mesh.
   bool allows(const TetMesh& mesh) const { return is_no_worse(standing(mesh), input_); }
 
-  /// Before a stage that may leave a mesh like this one worse: `valid` without inverted or flat cells, and
-  /// `n_changes` operators committed so far. Does nothing for a valid mesh that comes from an invalid one,
-  /// because no stage makes valid cells invalid. Throws InternalError, with the mesh as it was kept, where a
-  /// rule has been broken.
-  void keep(TetMesh& mesh, bool valid, std::size_t n_changes);
+  /// Before a stage that may leave a mesh like this one worse: `valid` without inverted or flat cells. Does
+  /// nothing for a valid mesh that comes from an invalid one, because no stage makes valid cells invalid.
+  /// Throws InternalError, with the mesh as it was kept, where a rule has been broken.
+  void keep(TetMesh& mesh, bool valid, Revision revision);
 
   /// At the end of a run, before garbage is collected: where the mesh has become worse than the input, puts
   /// back what was kept; true when it did. Where the smallest angle alone is worse, mend() is called before.
@@ -62,10 +64,10 @@ class Checkpoint {
   /// The same after an exception, when the mesh may be in any state.
   void settle_after_failure(TetMesh& mesh) noexcept;
 
-  /// Operators that were committed in what is or was kept.
-  std::size_t changes_kept() const { return kept_after_; }
+  /// What is or was kept.
+  Revision kept_revision() const { return kept_revision_; }
   /// Whether the mesh of before the first change has been put back.
-  bool is_input() const { return restored_ && kept_after_ == 0; }
+  bool is_input() const { return restored_ && kept_revision_ == Revision(); }
 
  private:
   Standing standing(const TetMesh& mesh) const;
@@ -81,7 +83,7 @@ class Checkpoint {
   Standing input_;
   MeshCopy kept_;  // a Snapshot may have it, too
   Standing kept_standing_;
-  std::size_t kept_after_ = 0;  // changes
+  Revision kept_revision_;
   bool restored_ = false;
 };
 

@@ -42,6 +42,12 @@ void require_fixed_parts(const TetMesh& mesh, const SurfaceOptions& options) {
                 "fix patch:" + std::to_string(patch) + ": no face has this label");
 }
 
+void rename_fixed(SurfaceOptions& options, std::span<const VertexHandle> new_of) {
+  for_each_fixed(options, [&](VertexHandle& v) {
+    if (v.idx() < new_of.size()) v = new_of[v.idx()];
+  });
+}
+
 namespace {
 
 /// Fixes x, and keeps what it was named by if that is new.

@@ -25,8 +25,8 @@ bool attempt(const Run& run, double degrees, std::span<const TargetAngle> target
   return !run.control.stopped() && smallest(run) > missed_at && polish(run, strategy.polish, degrees);
 }
 
-}  // namespace
-
+/// Where the bounds on cells were in the way: works on the cells that miss the goal within those that were
+/// asked for alone. True when what was done stays.
 bool attempt_beyond(const Run& run, const GoalEffort& goal) {
   if (!run.findings.met_cell_bound || run.control.stopped()) return false;
   run.findings.forget_cell_bound();
@@ -34,6 +34,8 @@ bool attempt_beyond(const Run& run, const GoalEffort& goal) {
   return attempt(run.within(run.strategy.bounds_asked), goal.degrees, run.strategy.targets.targets) ||
          trial.settle();
 }
+
+}  // namespace
 
 void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best) {
   const std::span<const TargetAngle> all = run.strategy.targets.targets;

@@ -14,10 +14,6 @@ namespace hfr {
 /// Guarantees: what polish() does; cells that raise nothing are taken back (Trial).
 bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched);
 
-/// Where the bounds on cells were in the way: works on the cells that miss the goal within those that were
-/// asked for alone. True when what was done stays.
-bool attempt_beyond(const Run& run, const GoalEffort& goal);
-
 /// Works for one target after the other up to the goal: with all cells, and vertices where they are missing,
 /// where many miss it. Ends with the first target that is missed. `best` is told of what each has left.
 void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best);

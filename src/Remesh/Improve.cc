@@ -37,8 +37,9 @@ struct Parts {
 };
 
 /// True when every cell is known to meet the goal. `order`: where each vertex and cell went, if the cells
-/// were reordered.
-bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& surface_report) {
+/// were reordered. `has_begun`: set before the first operator.
+bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
+         SurfaceReport& surface_report) {
   const auto& [options, strategy, control, findings, device, checkpoint, memory] = parts;
   const par::Policy policy = strategy.pass.policy;
   const bool valid = checkpoint.input().is_valid();
@@ -61,6 +62,7 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, SurfaceReport& su
   findings.is_folded = *memory.is_folded;
   run.surface = surface.get();
   run.ranks = memory.ranks;
+  has_begun = true;
   const Ending ending = run_to_the_end(run);
   memory.knows_stars = ending.stays;
   if (surface.get()) memory.is_folded.reset();
@@ -105,17 +107,8 @@ void add_statistics(const TetMesh& mesh, const ImproveOptions& options, const St
     result.n_large_stars += size > Star::kCapacity ? 1 : 0;
 }
 
-}  // namespace
-
-Result improve(TetMesh& mesh, const ImproveOptions& options) {
-  RunMemory memory;
-  return improve(mesh, options, memory);
-}
-
-Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) {
-  validate(options);
-  require_fixed_parts(mesh, options.surface);
-  require_sound_coordinates(mesh, options.policy);
+/// Of a mesh without deleted cells and vertices, which has what the options name.
+Result improve_dense(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) {
   Result result;
   if (options.statistics) result.before = statistics(mesh, options.policy);
   RunControl control(options.time_limit, options.cancel, options.progress);
@@ -138,13 +131,15 @@ Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) 
   GarbageMap order;
   bool known_to_meet = nothing_to_do;
   FixedParts fixed(mesh, options.surface);
+  bool has_begun = false;
   try {
     if (!nothing_to_do)
       known_to_meet = run(mesh, {options, strategy, control, findings, device, checkpoint, memory}, order,
-                          result.surface);
+                          has_begun, result.surface);
   } catch (...) {  // of a callback, most likely
     checkpoint.settle_after_failure(mesh);
-    fixed.release(mesh, tidy(mesh, options, !checkpoint.is_input(), order).vertices);
+    const bool changed = has_begun && !checkpoint.is_input();
+    fixed.release(mesh, tidy(mesh, options, changed, order).vertices);
     throw;
   }
   result.passes = std::move(control.passes());
@@ -163,6 +158,26 @@ Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) 
   result.stop = reason_to_stop(control, options, result.goal_reached);
   result.seconds = control.seconds();
   if (options.statistics) add_statistics(mesh, options, strategy, findings, result);
+  return result;
+}
+
+}  // namespace
+
+Result improve(TetMesh& mesh, const ImproveOptions& options) {
+  RunMemory memory;
+  return improve(mesh, options, memory);
+}
+
+Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) {
+  validate(options);
+  require_fixed_parts(mesh, options.surface);
+  require_sound_coordinates(mesh, options.policy);
+  if (!mesh.needs_garbage_collection()) return improve_dense(mesh, options, memory);
+  const GarbageMap garbage = mesh.collect_garbage({.policy = options.policy});
+  ImproveOptions renamed = options;
+  rename_fixed(renamed.surface, garbage.vertices);
+  Result result = improve_dense(mesh, renamed, memory);
+  if (options.maps) result.maps = with_old_handles(garbage, result.maps);
   return result;
 }
 

@@ -47,12 +47,18 @@ class TriangleRun {
 
  private:
   bool stopped() {
-    if (options_.cancel && options_.cancel()) result_.stop = Stop::kCancelled;
-    if (seconds() > options_.time_limit) result_.stop = Stop::kTimeLimit;
+    if (result_.stop != Stop::kNoProgress) return true;
+    if (options_.cancel && options_.cancel())
+      result_.stop = Stop::kCancelled;
+    else if (seconds() > options_.time_limit)
+      result_.stop = Stop::kTimeLimit;
     return result_.stop != Stop::kNoProgress;
   }
   std::size_t pass(const char* stage, const char* op, int iteration, std::size_t (TriangleSweep::*work)()) {
-    if (stopped()) return 0;
+    return stopped() ? 0 : pass_in_any_case(stage, op, iteration, work);
+  }
+  std::size_t pass_in_any_case(const char* stage, const char* op, int iteration,
+                               std::size_t (TriangleSweep::*work)()) {
     PassReport report;
     const double before = seconds();
     report.stage = stage;
@@ -91,12 +97,13 @@ class TriangleRun {
       n_poor = now;
     }
   }
+  /// Also of a run that was stopped.
   void restore_volume() {
     if (surface_.options().mode != SurfaceMode::kFree) return;
     sweep_.focus(effort_.volume_focus * sweep_.worst());
     for (int i = 1; i <= effort_.volume.passes && std::abs(surface_.volume_gain()) > effort_.volume.enough;
          ++i)
-      if (pass("volume", "surface volume", i, &TriangleSweep::offset) == 0) break;
+      if (pass_in_any_case("volume", "surface volume", i, &TriangleSweep::offset) == 0) break;
   }
 
   const TriangleOptions& options_;

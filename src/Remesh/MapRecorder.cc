@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/MapRecorder.hh"
 
+#include <type_traits>
+
 #include "HalfFace/TupleMap.hh"
 
 namespace hfr {
@@ -68,6 +70,28 @@ MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, p
     maps.old_cells[c.idx()] = CellHandle(i);
   });
   return maps;
+}
+
+MeshMaps with_old_handles(const GarbageMap& garbage, const MeshMaps& maps) {
+  const auto of_old = [](const auto& to, const auto& new_of) {
+    std::remove_cvref_t<decltype(new_of)> result(to.size());
+    for (std::size_t i = 0; i < to.size(); ++i)
+      if (to[i].is_valid()) result[i] = new_of[to[i].idx()];
+    return result;
+  };
+  const auto to_old = [](const auto& to, auto list, std::size_t n) {
+    std::remove_cvref_t<decltype(to)> from(n);
+    for (std::size_t i = 0; i < to.size(); ++i)
+      if (to[i].is_valid()) from[to[i].idx()] = typename std::remove_cvref_t<decltype(to)>::value_type(i);
+    for (auto& h : list)
+      if (h.is_valid()) h = from[h.idx()];
+    return list;
+  };
+  return {.vertices = of_old(garbage.vertices, maps.vertices),
+          .cells = of_old(garbage.cells, maps.cells),
+          .old_vertices = to_old(garbage.vertices, maps.old_vertices, maps.vertices.size()),
+          .old_cells = to_old(garbage.cells, maps.old_cells, maps.cells.size()),
+          .sources = to_old(garbage.vertices, maps.sources, maps.vertices.size())};
 }
 
 }  // namespace hfr

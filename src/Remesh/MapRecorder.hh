@@ -41,6 +41,9 @@ class MapRecorder {
   std::optional<CellProperty<Index>> origin_;
 };
 
+/// `maps` of a run, by the handles that the old mesh had before `garbage` was collected.
+MeshMaps with_old_handles(const GarbageMap& garbage, const MeshMaps& maps);
+
 }  // namespace hfr
 
 #endif

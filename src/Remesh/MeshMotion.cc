@@ -11,7 +11,7 @@
 namespace hfr {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, Eigen::Index>;  // 144 entries a cell
 using Vector = Eigen::VectorXd;
 constexpr double kTolerance = 1e-8;
 
@@ -63,7 +63,7 @@ class System {
   std::size_t n_;
   std::vector<Eigen::Index> row_;  // of the first component; -1: known
   std::vector<VertexHandle> vertices_;
-  std::vector<Eigen::Triplet<double>> entries_;
+  std::vector<Eigen::Triplet<double, Eigen::Index>> entries_;
   Vector rhs_;
 };
 

@@ -10,14 +10,14 @@
 #include "Remesh/Survey.hh"
 
 namespace hfr {
-bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEffort>& effort,
+
+void improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEffort>& effort,
                             double degrees) {
-  if (!effort) return false;
+  if (!effort) return;
   const double decision = dihedral_decision(degrees);
   for (const NeighbourhoodEffort::Try& attempt : effort->tries) {
     const std::vector<CellHandle> left = cells_below(run.mesh, degrees, run.policy());
-    if (left.empty()) return true;
-    if (left.size() > effort->few || run.control.stopped()) return false;
+    if (left.empty() || left.size() > effort->few || run.control.stopped()) return;
     const auto around = vertices_within(run.mesh, left, attempt.layers);
     PassRunner<MinSine2> runner(run, MinSine2{}, "neighbourhoods");
     const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, kLargestGoal)), around};
@@ -31,7 +31,6 @@ bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
     runner.look_again();
     iterate_below(runner, run.strategy.polish, decision, effort->few);
   }
-  return cells_below(run.mesh, degrees, run.policy()).empty();
 }
 
 }  // namespace hfr

@@ -7,10 +7,10 @@
 namespace hfr {
 
 /// Works on the surroundings of the cells below `degrees` as if the angle were larger, and then on these
-/// cells again. True when none are left. Does nothing where `effort` is empty. Expects: no more than
+/// cells again. Does nothing where `effort` is empty. Expects: no more than
 /// NeighbourhoodEffort::few cells below; where there are more, it does nothing. Guarantees: the smallest sine
 /// of the dihedral angles does not fall. Ends: after all its tries, when no cell is below, or with the run.
-bool improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEffort>& effort, double degrees);
+void improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEffort>& effort, double degrees);
 
 }  // namespace hfr
 

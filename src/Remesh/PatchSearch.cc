@@ -36,6 +36,7 @@ struct Outcome {
   std::optional<TetMesh> mesh;
   double worst = 0;
   bool held_back = false;  // there was one that had too many cells, or too few
+  bool is_folded = false;  // its surface lies on or goes through itself now
 };
 
 /// Cells that a patch may come to have.
@@ -160,6 +161,7 @@ bool begin(const Try& attempt, const Run& run, const PatchTrial& rules, double g
 struct Attempt {
   double worst = 0;
   bool has_room = true;
+  bool is_folded = false;
   std::optional<TetMesh> mesh;
 };
 
@@ -208,6 +210,7 @@ class PatchTries {
       }
       helped = tries_[t].kind;
       best.worst = one.worst;
+      best.is_folded = one.is_folded;
       best.mesh = std::move(one.mesh);
     }
     return best;
@@ -254,6 +257,7 @@ class PatchTries {
     polish(lone.run(part.get()), strategy_.polish, worked_for_);
     one.worst = survey(mesh, strategy_.pass.policy).worst;
     one.has_room = room_.holds(mesh);
+    one.is_folded = lone.findings().is_folded;
     if (one.worst > std::max(worst_, least_)) one.mesh = std::move(mesh);
     return one;
   }
@@ -312,7 +316,7 @@ struct PutBack {
 };
 /// Puts back what has got better, as far as the bounds on cells let it and no edge or face comes twice.
 PutBack put_back(const Run& run, std::span<const Patch> patches, std::span<const Outcome> outcomes) {
-  const bool may_overlap = run.findings.is_folded || !run.work.pinched.empty();
+  const bool may_overlap = run.findings.is_folded || !run.work.pinched.empty() || run.surface;
   PutBack done;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     if (outcomes[i].held_back) run.findings.note_cell_bound(run.bounds);
@@ -324,6 +328,7 @@ PutBack put_back(const Run& run, std::span<const Patch> patches, std::span<const
     }
     if (may_overlap && !patches[i].fits(run.mesh, *outcomes[i].mesh)) continue;
     patches[i].put_back(run.mesh, *outcomes[i].mesh);
+    run.findings.is_folded = run.findings.is_folded || outcomes[i].is_folded;
     ++done.n_changed;
     done.worst_rose = done.worst_rose || i == 0;
   }

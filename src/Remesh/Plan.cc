@@ -120,8 +120,10 @@ void add_targets(Lines& lines, const Strategy& strategy) {
   lines.add("targets", say("degrees: ", listed(strategy.targets.targets)));
   lines.add("targets", say("where more than ", percent(strategy.targets.targets.back().largest_share),
                            " of the cells are below, only if the one before has left less than ",
-                           percent(strategy.targets.enough_left), " of those below it; beyond ",
-                           strategy.targets.in_turn_beyond, " only if the one before was reached"));
+                           percent(strategy.targets.enough_left), " of those below it"));
+  if (strategy.targets.in_turn_beyond < strategy.targets.targets.back().degrees)
+    lines.add("targets",
+              say("beyond ", strategy.targets.in_turn_beyond, " only if the one before was reached"));
   const ThroughoutEffort& throughout = strategy.throughout;
   lines.add("targets",
             say("there an iteration has to mend 1 in ", throughout.polish.least_fewer,

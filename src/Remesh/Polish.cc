@@ -49,6 +49,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     if (n_poor > few || runner.pass(PassKind::kCluster, turn) == 0) break;
     idle = effort.idle - 1;
   }
+  runner.to_host();
   return n_poor == 0;
 }
 template bool iterate_below(PassRunner<MinSine2>&, const PolishEffort&, double, std::size_t);

@@ -8,14 +8,13 @@
 
 namespace hfr {
 
-RankPasses::RankPasses(PassState& state, const RankMetric& metric)
-    : state_(state), metric_(metric), n_exceptions_(std::uncaught_exceptions()) {
+RankPasses::RankPasses(PassState& state, const RankMetric& metric) : state_(state), metric_(metric) {
   state_.ranks_ = this;
   is_resident_ = state_.run_.is_part();
 }
 
-RankPasses::~RankPasses() noexcept(false) {
-  if (std::uncaught_exceptions() == n_exceptions_) bring_back();
+RankPasses::~RankPasses() {
+  HFR_ASSERT(!is_resident_ || state_.run_.is_part() || std::uncaught_exceptions() > 0);
 }
 
 bool RankPasses::takes(PassKind kind, const Turn& turn) {

@@ -12,14 +12,14 @@
 namespace hfr {
 
 /// The passes of a stage on several ranks. The mesh stays there from one pass to the next, and comes back
-/// when a pass that runs here asks for it, or at the end of the stage: each hand-over is a line "gather" in
+/// when a pass that runs here or the end of the stage asks for it: each hand-over is a line "gather" in
 /// the report. Only stages whose passes have a focus and, unless the ranks keep the mesh, no invalid cell:
 /// docs/distributed.md says which.
 class RankPasses {
  public:
   /// `metric`: that of the passes. Nothing is done unless the run has ranks.
   RankPasses(PassState& state, const RankMetric& metric);
-  ~RankPasses() noexcept(false);
+  ~RankPasses();
   RankPasses(const RankPasses&) = delete;
   RankPasses& operator=(const RankPasses&) = delete;
 
@@ -44,7 +44,6 @@ class RankPasses {
   RankMetric metric_;
   bool is_resident_ = false;
   std::vector<std::uint64_t> waiting_;  // numbers of cells, for their turn in insert()
-  int n_exceptions_;                    // when this was made
 };
 
 }  // namespace hfr

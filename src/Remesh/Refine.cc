@@ -20,8 +20,9 @@ void insert_where_poor(const Run& run, const RefineEffort& effort) {
     const std::size_t n_left = runner.n_below(focus.below);
     const bool helps = static_cast<double>(n_left) < effort.fewer * static_cast<double>(n_poor);
     n_poor = n_left;
-    if (!helps && runner.insert(turn, effort.gain) * effort.one_in <= n_poor) return;
+    if (!helps && runner.insert(turn, effort.gain) * effort.one_in <= n_poor) break;
   }
+  runner.to_host();
 }
 
 bool refine(const Run& run, const RefineEffort& effort) {

@@ -12,6 +12,7 @@
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/CellWatch.hh"
 #include "Remesh/Coordinates.hh"
+#include "Remesh/FixedParts.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/MeshMotion.hh"
 #include "Remesh/MovedVertices.hh"
@@ -23,16 +24,6 @@ namespace {
 
 /// The property by which what is left of a displacement gets over a repair.
 constexpr const char* kRest = "hfr: rest of the displacement";
-
-/// What the options hold by its vertices keeps them under their new handles: nothing that is fixed goes.
-void rename_fixed(SurfaceOptions& options, const std::vector<VertexHandle>& new_of) {
-  const auto rename = [&](VertexHandle& v) {
-    if (v.idx() < new_of.size()) v = new_of[v.idx()];
-  };
-  for (VertexHandle& v : options.fixed_vertices) rename(v);
-  for (auto& edge : options.fixed_edges) std::for_each(edge.begin(), edge.end(), rename);
-  for (auto& face : options.fixed_faces) std::for_each(face.begin(), face.end(), rename);
-}
 
 double mean_edge(const TetMesh& mesh) {
   double sum = 0;
@@ -122,6 +113,7 @@ class Remesher::State {
   void copy_mesh();
   RepairResult repair_mesh();
   void follow_edits(const Edits& edits, bool was_cut_short);
+  Before before_now() const;
   bool repair_in_step(std::span<const FieldTransfer> fields, StepResult& result);
   void run_step(std::span<const Vec3> displacement, StepResult& result);
   void undo();
@@ -157,8 +149,8 @@ class Remesher::State {
 
 void Remesher::State::reset() {
   pending_.reset();
-  if (mesh_.n_logical_cells() != mesh_.n_cells() || mesh_.n_logical_vertices() != mesh_.n_vertices())
-    mesh_.collect_garbage();
+  if (mesh_.needs_garbage_collection())
+    rename_fixed(options_.improve.surface, mesh_.collect_garbage().vertices);
   require_sound_coordinates(mesh_, policy_);
   steps_ = 0;
   if (options_.triggers.motion > 0) {
@@ -228,6 +220,7 @@ std::span<const Vec3> Remesher::State::followed(std::span<const Vec3> displaceme
     for (VertexHandle v : mesh_.halfface_vertices(h)) known_[v.idx()] = 1;
   for (VertexHandle v : mesh_.vertices())
     if (mesh_.is_fixed(v)) known_[v.idx()] = 1;
+  for_each_fixed(options_.improve.surface, [&](VertexHandle v) { known_[v.idx()] = 1; });
   follow_.assign(displacement.begin(), displacement.end());
   follow(mesh_, known_, options_.motion == Motion::kElastic, follow_);
   moved_.find(follow_, policy_);
@@ -314,7 +307,7 @@ MoveResult Remesher::State::move(std::span<const Vec3> displacement) {
   require_displacement(displacement);
   transfer();
   const MoveResult result = take(followed(displacement), options_.on_inversion);
-  ++steps_;
+  if (result.refused.empty()) ++steps_;
   return result;
 }
 
@@ -332,26 +325,25 @@ void Remesher::State::copy_mesh() {
   }
 }
 
-/// Leaves the mesh as it was where improve() throws.
+/// Leaves the mesh as it was where it throws; what is kept for its cells and vertices is for undo().
 RepairResult Remesher::State::repair_mesh() {
   copy_mesh();
   memory_.before = before_.get();
   memory_.found = watch_.survey();
-  Result run;
   try {
-    run = improve(mesh_, options_.improve, memory_);
+    Result run = improve(mesh_, options_.improve, memory_);
+    RepairResult result;
+    result.stop = run.stop;
+    result.goal_reached = run.goal_reached;
+    result.edits = wants_parents_ ? make_edits(before_, mesh_, std::move(run.maps), policy_)
+                                  : make_edits(*before_, mesh_, std::move(run.maps), policy_);
+    follow_edits(result.edits, run.stop == Stop::kTimeLimit || run.stop == Stop::kCancelled);
+    return result;
   } catch (...) {
     forget_mesh();
     mesh_.restore(*before_);
     throw;
   }
-  RepairResult result;
-  result.stop = run.stop;
-  result.goal_reached = run.goal_reached;
-  result.edits = wants_parents_ ? make_edits(before_, mesh_, std::move(run.maps), policy_)
-                                : make_edits(*before_, mesh_, std::move(run.maps), policy_);
-  follow_edits(result.edits, run.stop == Stop::kTimeLimit || run.stop == Stop::kCancelled);
-  return result;
 }
 
 /// Brings what is kept for each cell and vertex over a repair.
@@ -372,9 +364,18 @@ void Remesher::State::follow_edits(const Edits& edits, bool was_cut_short) {
 
 RepairResult Remesher::State::repair() {
   transfer();
-  RepairResult result = repair_mesh();
-  pending_ = result.edits;
-  return result;
+  has_moved_ = false;
+  steps_before_ = steps_;
+  undo_ = before_now();
+  try {
+    RepairResult result = repair_mesh();
+    undo_.reset();
+    pending_ = result.edits;
+    return result;
+  } catch (...) {
+    undo();
+    throw;
+  }
 }
 
 std::vector<FieldReport> Remesher::State::transfer() {
@@ -386,19 +387,22 @@ std::vector<FieldReport> Remesher::State::transfer() {
 
 // --- a step ---
 
+/// But for the mesh, which the first repair copies.
+Remesher::State::Before Remesher::State::before_now() const {
+  return {.mesh = nullptr,
+          .moved = moved_,
+          .cells = watch_.memory(),
+          .travelled = travelled_,
+          .travelled_before = travelled_before_,
+          .vertex_ids = vertex_ids_,
+          .cell_ids = cell_ids_,
+          .surface = options_.improve.surface};
+}
+
 /// Repairs, and carries `fields` over. False where the run was cut short.
 bool Remesher::State::repair_in_step(std::span<const FieldTransfer> fields, StepResult& result) {
   if (result.repairs.empty()) result.cause = needs_repair();
-  if (!undo_) {
-    undo_ = Before{.mesh = nullptr,
-                   .moved = moved_,
-                   .cells = watch_.memory(),
-                   .travelled = travelled_,
-                   .travelled_before = travelled_before_,
-                   .vertex_ids = vertex_ids_,
-                   .cell_ids = cell_ids_,
-                   .surface = options_.improve.surface};
-  }
+  if (!undo_) undo_ = before_now();
   RepairResult repair = repair_mesh();
   if (!undo_->mesh) undo_->mesh = before_;
   if (!repair.edits.empty()) {
@@ -442,9 +446,9 @@ void Remesher::State::undo() {
   if (undo_ && undo_->mesh) {
     forget_mesh();
     mesh_.restore(*undo_->mesh);
-    mesh_.properties().vertices.remove(kRest);
   }
   if (undo_) {
+    mesh_.properties().vertices.remove(kRest);
     moved_ = std::move(undo_->moved);
     watch_.restore(std::move(undo_->cells));
     travelled_ = std::move(undo_->travelled);

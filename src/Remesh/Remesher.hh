@@ -44,7 +44,7 @@ struct RepairTriggers {
 /// What a move does that would invert cells.
 enum class OnInversion {
   kRepair,    ///< the whole of it, and the repair has to mend what it can
-  kSubsteps,  ///< as much of it as inverts nothing, a repair, and again; see Remesher::Options::max_substeps
+  kSubsteps,  ///< as much of it as inverts nothing, a repair, and again; see RemesherOptions::max_substeps
   kRefuse,    ///< nothing: the mesh stays, and the cells are named
 };
 

@@ -108,8 +108,8 @@ struct StuckCell {
   VertexHandle a, b;
 };
 
-/// How many cells each limit keeps, in the order of Limit.
-std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells);
+/// How many cells each reason keeps, in the order of StuckReason.
+std::array<std::size_t, kStuckReasonNames.size()> count_reasons(const std::vector<StuckCell>& cells);
 
 /// The bound on the number of cells, where it was what stopped a run: of the cells below Result::stuck_below,
 /// a new vertex would raise some. Empty where it was not.

@@ -80,7 +80,7 @@ struct Run {
   }
   /// Before something that may leave the mesh worse; see Checkpoint::keep().
   void keep(bool valid) const {
-    if (checkpoint) checkpoint->keep(mesh, valid, control.n_changes());
+    if (checkpoint) checkpoint->keep(mesh, valid, control.revision());
   }
 };
 

@@ -15,6 +15,15 @@
 
 namespace hfr {
 
+/// Which of the meshes of a run it is. What has become of one that was put back is another, also after as
+/// many operators.
+struct Revision {
+  std::size_t n_changes = 0;  ///< operators that are committed in it
+  std::size_t number = 0;     ///< 0: the input
+
+  bool operator==(const Revision&) const = default;
+};
+
 /// Clock, cancel and report of one run; asked between rounds, so that a stop leaves a valid mesh.
 class RunControl {
  public:
@@ -40,19 +49,21 @@ class RunControl {
   std::optional<Stop> reason() const { return reason_; }
 
   void add(PassReport pass) {
-    n_changes_ += pass.winners;
+    if (pass.winners > 0) revision_ = {revision_.n_changes + pass.winners, ++last_number_};
     passes_.push_back(std::move(pass));
   }
+  /// Of the mesh as it is.
+  Revision revision() const { return revision_; }
   /// Operators that are committed in the mesh, but for those that were undone.
-  std::size_t n_changes() const { return n_changes_; }
-  /// The mesh is what it was after n_changes operators: a line "undo" with what survey() has found there.
-  void add_undo(std::size_t n_changes, std::size_t n_invalid, double worst) {
+  std::size_t n_changes() const { return revision_.n_changes; }
+  /// The mesh is this one of before again: a line "undo" with what survey() has found there.
+  void add_undo(Revision revision, std::size_t n_invalid, double worst) {
     PassReport pass;
     pass.stage = pass.op = "undo";
     pass.n_inverted = n_invalid;
     pass.worst = worst;
     add(std::move(pass));
-    n_changes_ = n_changes;
+    revision_ = revision;
   }
   std::vector<PassReport>& passes() { return passes_; }
 
@@ -74,7 +85,8 @@ class RunControl {
   std::function<void(const Progress&)> progress_;
   std::optional<Stop> reason_;
   double fraction_ = 0;
-  std::size_t n_changes_ = 0;
+  Revision revision_;
+  std::size_t last_number_ = 0;  // that was given
   std::vector<PassReport> passes_;
 };
 

@@ -7,8 +7,8 @@
 
 namespace hfr {
 
-Snapshot::Snapshot(const Run& run) : surface_(run.surface), n_changes_(run.control.n_changes()) {
-  if (run.checkpoint) mesh_ = run.checkpoint->copy_after(n_changes_);
+Snapshot::Snapshot(const Run& run) : surface_(run.surface), revision_(run.control.revision()) {
+  if (run.checkpoint) mesh_ = run.checkpoint->copy_of_revision(revision_);
   if (!mesh_) mesh_ = copy_of(run.mesh, run.parts());
 }
 
@@ -17,7 +17,7 @@ void Snapshot::put_back(const Run& run) {
   surface_.put_back(run.surface);
   if (!run.is_part()) run.work.attach(run.mesh, run.policy());
   const Survey found = run.survey();
-  run.control.add_undo(n_changes_, found.n_invalid, found.worst);
+  run.control.add_undo(revision_, found.n_invalid, found.worst);
 }
 
 }  // namespace hfr

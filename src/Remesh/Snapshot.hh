@@ -2,7 +2,6 @@
 #ifndef HFR_REMESH_SNAPSHOT_HH
 #define HFR_REMESH_SNAPSHOT_HH
 
-#include <cstddef>
 #include <memory>
 
 #include "HalfFace/TetMesh.hh"
@@ -24,7 +23,7 @@ class Snapshot {
  private:
   MeshCopy mesh_;  // the checkpoint may have it, too
   SurfaceCopy surface_;
-  std::size_t n_changes_;
+  Revision revision_;
 };
 
 }  // namespace hfr

@@ -156,6 +156,8 @@ TargetEffort target_effort(const Asked& asked) {
     if (degrees < goal) effort.targets.push_back(target);
   }
   if (asked.has_goal()) effort.targets.push_back({goal, largest_share(asked, goal)});
+  // What holds a few cells there is a surface that gave way elsewhere: it says nothing of the others.
+  if (asked.is_free()) effort.in_turn_beyond = kLargestGoal;
   return effort;
 }
 

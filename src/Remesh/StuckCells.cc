@@ -60,13 +60,13 @@ void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
       const double ceiling = wedge_ceiling(mesh, a, b, wedge);
       if (!(ceiling < degrees - kRounding)) continue;
       const bool surface = mesh.is_boundary(wedge.first) && mesh.is_boundary(wedge.last);
-      const StuckReason limit = surface ? StuckReason::kSurfaceCeiling : StuckReason::kInputFeature;
-      const bool first = !is_proof(stuck.reason) || limit < stuck.reason ||
-                         (limit == stuck.reason &&
+      const StuckReason reason = surface ? StuckReason::kSurfaceCeiling : StuckReason::kInputFeature;
+      const bool first = !is_proof(stuck.reason) || reason < stuck.reason ||
+                         (reason == stuck.reason &&
                           (ceiling < stuck.ceiling ||
                            (ceiling == stuck.ceiling && std::pair(a, b) < std::pair(stuck.a, stuck.b))));
       if (!first) continue;
-      stuck.reason = limit;
+      stuck.reason = reason;
       stuck.ceiling = ceiling;
       stuck.a = a;
       stuck.b = b;
@@ -144,7 +144,7 @@ CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck,
   return met;
 }
 
-std::array<std::size_t, kStuckReasonNames.size()> count_limits(const std::vector<StuckCell>& cells) {
+std::array<std::size_t, kStuckReasonNames.size()> count_reasons(const std::vector<StuckCell>& cells) {
   std::array<std::size_t, kStuckReasonNames.size()> counts{};
   for (const StuckCell& stuck : cells) ++counts[static_cast<std::size_t>(stuck.reason)];
   return counts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef HFR_REMESH_LIMITS_HH
-#define HFR_REMESH_LIMITS_HH
+#ifndef HFR_REMESH_STUCK_CELLS_HH
+#define HFR_REMESH_STUCK_CELLS_HH
 
 #include <span>
 #include <vector>

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "Operators/Metrics.hh"
+#include "Quality/FoldedFaces.hh"
 #include "Remesh/PassState.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/SmoothPass.hh"
@@ -112,6 +113,7 @@ std::size_t SurfacePasses<Metric>::split(const Turn& turn) {
     surface.write_labels(run.mesh);
   }
   state_.count(turn.focus);
+  if (counts.winners > 0) look_for_folds(looked_[kSplits]);
   state_.report("surface split", turn, counts, run.control.seconds() - start);
   return counts.winners;
 }
@@ -256,6 +258,7 @@ template <class Metric>
 std::size_t SurfacePasses<Metric>::iterate(const Turn& turn) {
   const Run& run = state_.run();
   const Ops ops = run.strategy.pass.ops;
+  const std::uint32_t since = run.work.clock;
   std::size_t changes = 0;
   const auto look = [&](Looked kind, auto&& pass) {
     if (run.control.stopped()) return;
@@ -267,8 +270,20 @@ std::size_t SurfacePasses<Metric>::iterate(const Turn& turn) {
   if (turn.removes_vertices && has(ops, Ops::kNode))
     look(kCollapses, [&](const Worklist& list) { return collapses(turn, list); });
   if (has(ops, Ops::kSmooth)) look(kMoves, [&](const Worklist& list) { return moves(turn, list); });
+  if (changes > 0) look_for_folds(since);
   state_.count(turn.focus);
   return changes;
+}
+
+template <class Metric>
+void SurfacePasses<Metric>::look_for_folds(std::uint32_t since) {
+  const Run& run = state_.run();
+  if (run.findings.is_folded) return;
+  const auto has_changed = [&](std::size_t v) {
+    return run.work.frozen[v] && run.work.changed[v] > since && !run.mesh.is_deleted(VertexHandle(v));
+  };
+  const auto changed = par::compact<VertexHandle>(run.policy(), run.mesh.n_vertices(), has_changed);
+  run.findings.is_folded = is_folded_at(run.mesh, changed, run.policy());
 }
 
 template <class Metric>
@@ -283,6 +298,7 @@ void SurfacePasses<Metric>::restore_volume(const VolumeEffort& effort) {
     const RoundCounts counts = hfr::smooth_pass(run.mesh, run.work, SurfaceOffset{&surface, state_.worst()},
                                                 metric_, vertices, run.policy());
     surface.on_move(run.mesh, vertices);
+    look_for_folds(run.work.clock - 1);
     state_.count(Focus{});
     state_.report("surface volume", {.iteration = i}, counts, run.control.seconds() - start);
     if (counts.winners == 0) break;

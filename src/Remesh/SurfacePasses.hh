@@ -51,6 +51,9 @@ class SurfacePasses {
   template <class Allow>
   std::vector<EdgeHandle> edges(const Worklist& list, bool inside, Allow&& allow) const;
 
+  /// A surface that has changed may lie on or go through itself. `since`: clock of before the change.
+  void look_for_folds(std::uint32_t since);
+
   PassState& state_;
   Metric metric_;
   std::array<std::uint32_t, kLooked> looked_{};  // clock at the last look of each

@@ -26,7 +26,7 @@ bool is_poor_throughout(const Run& run, double below) {
 /// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
 void raise_throughout(const Run& run, const ThroughoutEffort& effort, double degrees) {
   CellBounds bounds = run.bounds;
-  bounds.max = bounds.max * effort.of_hundred / 100;
+  if (bounds.max > 0) bounds.max = std::max<std::size_t>(bounds.max * effort.of_hundred / 100, 1);
   const Run part = run.within(bounds);
   Trial trial(part, degrees);
   polish(part, effort.polish, degrees);

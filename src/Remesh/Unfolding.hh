@@ -41,6 +41,8 @@ class Unfolding {
   /// Each vertex towards the mean of its neighbours, of each as often as they share a cell, by `over` times
   /// the way. Returns the sum of the ways, in the order of the vertices.
   virtual double relax(double over) = 0;
+  /// All vertices back to where they were when they were taken.
+  virtual void put_back() = 0;
   /// Each vertex to where unfold() sends it.
   virtual void sweep() = 0;
   /// Puts the vertices of patches that have not gained back to where they were when they were taken. Returns

@@ -83,6 +83,11 @@ class MeshUnfolding : public Unfolding {
     return all;
   }
 
+  void put_back() override {
+    for (std::size_t i = 0; i < vertices_.size(); ++i)
+      if (!stars_.link(i).empty()) mesh_.set_point(vertices_[i], before_[i]);
+  }
+
   void sweep() override {
     for (const auto& group : groups_) {
       par::for_each(policy_.for_items_of(kUnfoldNanoseconds), group.size(), [&](std::size_t k) {
@@ -186,19 +191,31 @@ void relax(Unfolding& unfolding, const UntangleEffort& effort, int layers, RunCo
   }
 }
 
-/// Moves what is within so many layers; where that is more than one, vertices may be far from their places,
-/// and begin between their neighbours. Returns what was left in the end, before what does not help was put
-/// back.
-Tangle unfold_within(Unfolding& unfolding, const UntangleEffort& effort, int layers, std::size_t n_invalid,
-                     RunControl& control, RoundCounts& counts) {
+/// Whether hardly any of the invalid cells are left: what is moved is too much for them.
+bool are_few(std::size_t n_invalid, std::size_t of) { return n_invalid <= of / kOneInFew; }
+
+/// Moves what is within so many layers. Where that is more than one, vertices may be far from their places,
+/// and begin between their neighbours if that leaves less of the inverted cells; not where they have been
+/// moved before (`again`). Returns what was left in the end, before what does not help was put back.
+Tangle unfold_within(Unfolding& unfolding, const UntangleEffort& effort, int layers, bool again,
+                     std::size_t n_invalid, RunControl& control, RoundCounts& counts) {
   counts.seeds = unfolding.take(layers);
   if (counts.seeds == 0) return {n_invalid, std::numeric_limits<double>::infinity()};
   // Wider ones go on while that brings anything: what comes from the boundary passes a layer with each.
   const int n_sweeps = layers > 1 ? effort.iterations * (layers + 1) : effort.first_sweeps;
-  if (layers > 1) relax(unfolding, effort, layers, control);
   Tangle now = unfolding.tangle(), least;
+  if (layers > 1 && !again) {
+    const Tangle before = now;
+    relax(unfolding, effort, layers, control);
+    now = unfolding.tangle();
+    if (!(now.overlap < before.overlap)) {
+      unfolding.put_back();
+      now = before;
+    }
+  }
   int idle = 0;
-  for (int s = 0; s < n_sweeps && now.n_invalid > 0 && idle < effort.patience && !control.stopped(); ++s) {
+  for (int s = 0; s < n_sweeps && !are_few(now.n_invalid, n_invalid) && idle < effort.patience; ++s) {
+    if (control.stopped()) break;
     unfolding.sweep();
     ++counts.rounds;
     now = unfolding.tangle();
@@ -210,7 +227,8 @@ Tangle unfold_within(Unfolding& unfolding, const UntangleEffort& effort, int lay
   return now;
 }
 
-/// Wider and wider until nothing is invalid, or that brings nothing. Returns the number of invalid cells.
+/// Wider and wider until nothing is invalid, or that brings nothing; where hardly any are left, what lies
+/// round these again. Returns the number of invalid cells.
 std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int iteration) {
   RunControl& control = run.control;
   const std::unique_ptr<Unfolding> unfolding =
@@ -218,17 +236,21 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
   std::size_t n_invalid = unfolding->look();
   run.keep(n_invalid == 0);
   Tangle least;
+  bool again = false;
   int idle = 0;
-  for (int layers = 1; n_invalid > 0 && idle < effort.idle && !control.stopped(); layers += layers + 1) {
+  for (int layers = 1; n_invalid > 0 && idle < effort.idle && !control.stopped();
+       layers += again ? 0 : layers + 1) {
     const std::size_t n_reached = unfolding->n_within(layers);
-    if (layers > 1 && n_reached == unfolding->n_within(layers / 2)) break;  // the mesh ends here
+    if (layers > 1 && !again && n_reached == unfolding->n_within(layers / 2)) break;  // the mesh ends here
     // Many invalid cells beside one another may hang on what lies as far away as they have come.
     const bool are_many = n_reached < kOneInFew * n_invalid;
     const double start = control.seconds();
     RoundCounts counts;
-    const Tangle left = unfold_within(*unfolding, effort, layers, n_invalid, control, counts);
+    const std::size_t n_before = n_invalid;
+    const Tangle left = unfold_within(*unfolding, effort, layers, again, n_invalid, control, counts);
     if (counts.winners > 0) ++run.work.clock;
     n_invalid = unfolding->look();
+    again = are_few(n_invalid, n_before);
     PassReport pass;
     pass.stage = "untangle";
     pass.op = "unfold";
@@ -241,7 +263,7 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
     pass.seconds = pass.seconds_evaluate = control.seconds() - start;
     control.add(std::move(pass));
     control.tell("untangle", iteration, n_invalid, [&] { return smallest_dihedral(run.mesh, run.policy()); });
-    const bool has_brought = layers == 1 || left.is_less_than(least);
+    const bool has_brought = layers == 1 || again || left.is_less_than(least);
     if (has_brought) least = left;
     idle = has_brought || are_many ? 0 : idle + 1;
   }

@@ -22,7 +22,7 @@ bool settle(const Run& run, bool known_to_meet) {
   };
   if (!checkpoint.settle(run.mesh, known_to_meet, mend)) return true;
   const Survey found = run.survey();
-  run.control.add_undo(checkpoint.changes_kept(), found.n_invalid, found.worst);
+  run.control.add_undo(checkpoint.kept_revision(), found.n_invalid, found.worst);
   return false;
 }
 

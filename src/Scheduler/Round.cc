@@ -398,9 +398,18 @@ class RoundCore::State {
     return {slots_.data() + winners_[w].first_slot, plan_of(winners_[w]).n_created};
   }
 
+  /// Before anything is written: that there is an index for each cell that may be made.
+  void require_room() const {
+    std::size_t n = mesh_.n_cells();
+    for (const Winner& winner : winners_) n += plan_of(winner).n_created;
+    if (n <= TetMesh::kMostCells) return;
+    throw ResourceLimit("the mesh would have too many cells for the indices of this build");
+  }
+
   /// Removed cells' slots first, then the free list from its back, then new ones; freed slots go to its back.
   /// All in rank order, so slots do not depend on threads.
   void assign_slots() {
+    require_room();
     slots_.clear();
     std::vector<CellHandle>& free = writer_.free_cells();
     freed_.clear();

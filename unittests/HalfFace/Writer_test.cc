@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "HalfFace/Check.hh"
+#include "HalfFace/Errors.hh"
 #include "HalfFace/Generate.hh"
 
 namespace hfr {
@@ -42,6 +43,14 @@ TEST(Writer, TwoMatesThatAreLetGoAreBoundaryAndJoinedAgainTheMeshIsWhole) {
   EXPECT_FALSE(check(mesh));
   writer.set_mate(h, m);
   EXPECT_TRUE(check(mesh));
+}
+
+TEST(Writer, MoreCellsThanThereAreIndicesForAreRefused) {
+  const generate::Arrays arrays = generate::box({2, 2, 2});
+  TetMesh mesh = build(arrays.points, arrays.cells);
+  const std::size_t n = mesh.n_cells();
+  EXPECT_THROW(TetMesh::Writer(mesh).resize_cells(TetMesh::kMostCells + 1), ResourceLimit);
+  EXPECT_EQ(mesh.n_cells(), n);
 }
 
 TEST(Writer, AddingByHandSeesWhatWasWrittenInBetween) {

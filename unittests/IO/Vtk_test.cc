@@ -53,6 +53,15 @@ TEST_P(VtkVariants, FieldsWithNamesOfLabelsStayFields) {
   expect_same(read_mesh(folder / "a.vtk"), mesh);
 }
 
+TEST_P(VtkVariants, FieldsWithNamesOfKeywordsComeBack) {
+  const TemporaryFolder folder;
+  MeshData mesh = samples::two_cells();
+  for (const char* name : {"METADATA", "metadata", "NULL_ARRAY", "CELL_DATA", "LOOKUP_TABLE"})
+    mesh.cell_fields.push_back({name, 1, false, {0.5, 4}});
+  EXPECT_EQ(write_mesh(folder / "a.vtk", mesh, GetParam().options), std::vector<std::string>{});
+  expect_same(read_mesh(folder / "a.vtk"), mesh);
+}
+
 TEST_P(VtkVariants, AFieldOfTheNameOfTheArrayOfLabelsIsNoted) {
   const TemporaryFolder folder;
   MeshData mesh = samples::two_cells();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "HalfFace/Generate.hh"
 
 namespace hfr::test {
@@ -54,6 +56,11 @@ TEST(FoldedFaces, TurnedTrianglesOfAFlatSideAreFound) {
     EXPECT_EQ(folded.empty(), turned == 0) << s;
     EXPECT_GE(folded.size(), turned);
     with_folds += turned > 0 ? 1 : 0;
+    for (VertexHandle v : mesh.vertices()) {
+      const std::array<VertexHandle, 1> one = {v};
+      const auto at_v = [&](VertexHandle u) { return u == v; };
+      ASSERT_EQ(is_folded_at(mesh, one), !folded_faces(mesh, {}, at_v).empty()) << "vertex " << v.idx();
+    }
     for (HalfFaceHandle h : folded) EXPECT_TRUE(mesh.is_boundary(h));
   }
   EXPECT_GT(with_folds, 10);

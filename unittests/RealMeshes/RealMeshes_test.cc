@@ -193,6 +193,23 @@ TEST(RealMeshesGoal, ThatIsSaidToBeReachedOnACurvedSurfaceIs) {
   EXPECT_LT(std::abs(result.surface.volume_change), 1e-3);
 }
 
+/// A surface that may move comes to go through itself there, after which cells may have a face twice.
+TEST(RealMeshesSurface, ThatComesToGoThroughItselfIsNoFault) {
+  const fs::path path = fs::path(HFR_TEST_MESHES) / "gaia_frog_reg" / "frog_reg.mesh";
+  if (!fs::exists(path)) GTEST_SKIP() << "there is no " << path.string() << "; real meshes are not shipped";
+  TetMesh mesh = io::assemble(io::read_mesh(path));
+  ImproveOptions options;
+  options.surface.mode = SurfaceMode::kFree;
+  options.surface.hausdorff = 0.006261749224338197;
+  try {
+    improve(mesh, options);  // throws InternalError where a rule was broken
+  } catch (const InvalidInput& error) {
+    GTEST_SKIP() << error.what();  // a build without OpenMesh
+  }
+  const CheckResult found = check(mesh, {.last = Rule::kDuplicateEdge});
+  EXPECT_TRUE(found) << found.message;
+}
+
 // A little less than what the default run reaches with the surface frozen: it must not fall back.
 constexpr RealMesh kMeshes[] = {{"cavity/cavity20k.mesh", 18.5},
                                 {"cavity/cavity607k_tetgen.mesh", 20},

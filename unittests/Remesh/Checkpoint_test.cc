@@ -74,14 +74,14 @@ TEST(Checkpoint, WhatMetItsGoalStaysWhereSomethingBetterThanTheInputWasKept) {
   TetMesh mesh = small_cavity(4);
   const std::size_t n_at_first = standing(mesh).n_inverted;
   Checkpoint checkpoint(mesh, survey(mesh, {}), {});
-  checkpoint.keep(mesh, false, 0);
+  checkpoint.keep(mesh, false, {});
   ImproveOptions options = serial();
   options.min_dihedral = 1e-3;
   options.iterations = 1;
   options.ops = Ops::kEdge;
   improve(mesh, options);
   ASSERT_LT(standing(mesh).n_inverted, n_at_first);
-  checkpoint.keep(mesh, false, 1000);
+  checkpoint.keep(mesh, false, {1000, 1});
   options = serial();
   options.min_dihedral = 1e-3;
   ASSERT_TRUE(improve(mesh, options).goal_reached);
@@ -97,7 +97,7 @@ TEST(Checkpoint, PutsBackWhatWasKeptWithTheHandlesOfPropertiesStillGood) {
   const std::uint64_t hash = io::mesh_hash(mesh);
   Checkpoint checkpoint(mesh, survey(mesh, {}), {});
   EXPECT_FALSE(checkpoint.settle(mesh, false, [] {})) << "nothing was announced";
-  checkpoint.keep(mesh, true, 0);
+  checkpoint.keep(mesh, true, {});
   mesh.set_point(V(13), mesh.point(V(13)) + Vec3{0.3, 0.2, 0});  // the only one inside
   mark[V(13)] = 6;
   bool has_mended = false;
@@ -115,12 +115,12 @@ TEST(Checkpoint, KeepsTheBetterOfTwoStates) {
   const Vec3 place = mesh.point(V(13));
   mesh.set_point(V(13), place + Vec3{0.2, 0.15, 0});
   Checkpoint checkpoint(mesh, survey(mesh, {}), {});
-  checkpoint.keep(mesh, true, 0);
+  checkpoint.keep(mesh, true, {});
   mesh.set_point(V(13), place);
   const double best = smallest_dihedral(mesh, {});
-  checkpoint.keep(mesh, true, 40);
+  checkpoint.keep(mesh, true, {40, 1});
   mesh.set_point(V(13), place + Vec3{0.1, 0.1, 0});
-  checkpoint.keep(mesh, true, 80);  // no worse than the input, but than what is kept
+  checkpoint.keep(mesh, true, {80, 2});  // no worse than the input, but than what is kept
   mesh.set_point(V(13), place + Vec3{0.3, 0.3, 0});
   EXPECT_TRUE(checkpoint.settle(mesh, false, [] {}));
   EXPECT_EQ(smallest_dihedral(mesh, {}), best);
@@ -131,7 +131,7 @@ TEST(Checkpoint, BrokenRuleIsAnInternalErrorAndLeavesWhatWasKept) {
   TetMesh mesh = jittered(2, 0.1, 1);
   const std::uint64_t hash = io::mesh_hash(mesh);
   Checkpoint checkpoint(mesh, survey(mesh, {}), {});
-  checkpoint.keep(mesh, true, 0);
+  checkpoint.keep(mesh, true, {});
   TetMesh::Writer(mesh).cell(C(5)).v[1] = mesh.cell(C(5)).v[0];
   EXPECT_THROW(checkpoint.settle(mesh, false, [] {}), InternalError);
   EXPECT_EQ(io::mesh_hash(mesh), hash);

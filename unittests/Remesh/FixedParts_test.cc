@@ -117,5 +117,26 @@ TEST(FixedParts, WhatIsInsideStaysInEveryMode) {
   }
 }
 
+// Handles in the options are those of before: a mesh with gaps is closed up first.
+TEST(FixedParts, OfAMeshWithDeletedVerticesTheOnesThatAreNamedStay) {
+  TetMesh mesh = shaken_box();
+  std::vector<V> inside;
+  for (V v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inside.push_back(v);
+  mesh.delete_vertex(V(0));
+  ImproveOptions options;
+  options.maps = true;
+  options.surface.fixed_vertices = {inside[10], inside[40], inside[90]};
+  std::map<V, Vec3> where;
+  for (V v : options.surface.fixed_vertices) where[v] = mesh.point(v);
+  const Result result = improve(mesh, options);
+  ASSERT_TRUE(result.changed);
+  for (const auto& [v, point] : where) {
+    ASSERT_TRUE(result.maps.vertices[v.idx()].is_valid());
+    EXPECT_EQ(mesh.point(result.maps.vertices[v.idx()]), point);
+  }
+  EXPECT_EQ(std::ranges::count_if(mesh.vertices(), [&](V v) { return mesh.is_fixed(v); }), 0);
+}
+
 }  // namespace
 }  // namespace hfr

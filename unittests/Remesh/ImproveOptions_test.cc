@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "HalfFace/Reorder.hh"
 #include "IO/Hash.hh"
 #include "Remesh/Meshes.hh"
 
@@ -36,6 +37,23 @@ TEST(ImproveOptions, BadOptionsAreRefusedWithOneClearLineAndTheMeshUntouched) {
   for (const int threads : {0, -3})
     expect_refused([&](ImproveOptions& o) { o.policy.threads = threads; }, "threads");
 }
+
+#ifdef HFR_HAS_SURFACE
+// Such a mesh is put into another order for a run, before its surface is looked at.
+TEST(ImproveOptions, BadOptionsOfTheSurfaceLeaveTheOrderOfScatteredCells) {
+  const generate::Arrays arrays = generate::jittered_box({20, 20, 20}, 0.2, 3);
+  std::vector<std::array<Index, 4>> cells(arrays.cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i * 23017 % cells.size()] = arrays.cells[i];
+  TetMesh mesh = build(arrays.points, cells);
+  ASSERT_TRUE(is_scattered(mesh));
+  const std::uint64_t hash = io::mesh_hash(mesh);
+  ImproveOptions options = serial();
+  options.surface.mode = SurfaceMode::kFree;
+  options.surface.hausdorff = -1;
+  EXPECT_THROW(improve(mesh, options), InvalidInput);
+  EXPECT_EQ(io::mesh_hash(mesh), hash);
+}
+#endif
 
 TEST(ImproveOptions, IterationLimitHolds) {
   for (const bool with_goal : {false, true}) {

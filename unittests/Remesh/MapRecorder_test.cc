@@ -162,16 +162,21 @@ TEST(MeshMaps, MeshThatStaysIsMappedToItself) {
 }
 
 TEST(MeshMaps, HandlesThatWereDeletedBeforeTheRunMapToNothing) {
-  TetMesh mesh = jittered(5, 0.3, 2);
-  mesh.delete_vertex(V(0));
-  const TetMesh before = mesh;
-  ImproveOptions options = serial();
-  options.maps = true;
-  options.iterations = 1;
-  const Result result = improve(mesh, options);
-  ASSERT_TRUE(result.changed);
-  EXPECT_FALSE(result.maps.vertices[0].is_valid());
-  expect_maps(before, mesh, result.maps);
+  for (const double goal : {30.0, 1e-3}) {  // one that takes work, and one that is met
+    TetMesh mesh = jittered(5, 0.3, 2);
+    mesh.delete_vertex(V(0));
+    mesh.delete_cell(C(40));
+    const TetMesh before = mesh;
+    ImproveOptions options = serial();
+    options.maps = true;
+    options.min_dihedral = goal;
+    const Result result = improve(mesh, options);
+    ASSERT_EQ(result.changed, goal == 30);
+    EXPECT_FALSE(mesh.needs_garbage_collection());
+    EXPECT_FALSE(result.maps.vertices[0].is_valid());
+    EXPECT_FALSE(result.maps.cells[40].is_valid());
+    EXPECT_GT(expect_maps(before, mesh, result.maps), goal == 30 ? 0 : before.n_logical_cells() - 1);
+  }
 }
 
 }  // namespace

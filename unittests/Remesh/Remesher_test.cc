@@ -489,6 +489,46 @@ TEST(Remesher, ExceptionOfACallbackLeavesMeshAndFieldsAsBeforeTheStep) {
   }
 }
 
+// An indicator is asked when a repair has been made, too.
+TEST(Remesher, ExceptionAfterARepairLeavesMeshAndFieldsAsBefore) {
+  for (const bool in_a_step : {true, false}) {
+    TetMesh mesh = box(8);
+    auto t = mesh.request_vertex_property<double>("T");
+    for (VertexHandle v : mesh.vertices()) t[v] = mesh.point(v).x;
+    bool armed = false;
+    std::vector<std::array<VertexHandle, 4>> cells = cells_of(mesh);
+    RemesherOptions options = options_for(20);
+    options.on_inversion = OnInversion::kSubsteps;
+    options.ids = true;
+    options.fields = {{.name = "T"}};
+    options.triggers.indicator = [&](const TetMesh& m, CellHandle) {
+      if (armed && cells_of(m) != cells) throw std::runtime_error("enough");
+      return false;
+    };
+    Remesher remesher(mesh, options);
+    if (!in_a_step) remesher.move(turn(mesh, 40));  // as far as nothing is inverted
+    const std::vector<Vec3> points(mesh.points().begin(), mesh.points().end());
+    const std::vector<double> values(t.values().begin(), t.values().end());
+    const std::vector<std::string> names = mesh.properties().vertices.names();
+    const std::vector<std::uint64_t> ids(remesher.vertex_ids().begin(), remesher.vertex_ids().end());
+    armed = true;
+    if (in_a_step) {
+      EXPECT_THROW(remesher.step(turn(mesh, 40)), std::runtime_error);
+    } else {
+      EXPECT_THROW(remesher.repair(), std::runtime_error);
+    }
+    armed = false;
+    EXPECT_EQ(cells_of(mesh), cells);
+    EXPECT_TRUE(std::equal(points.begin(), points.end(), mesh.points().begin(), mesh.points().end()));
+    EXPECT_TRUE(std::equal(values.begin(), values.end(), t.values().begin(), t.values().end()));
+    EXPECT_TRUE(
+        std::equal(ids.begin(), ids.end(), remesher.vertex_ids().begin(), remesher.vertex_ids().end()));
+    EXPECT_EQ(mesh.properties().vertices.names(), names);
+    EXPECT_EQ(check(mesh), Ok);
+    EXPECT_EQ(remesher.step(turn(mesh, 6)).n_inverted, 0U);
+  }
+}
+
 TEST(Remesher, StepThatThrowsCountsForNoTrigger) {
   for (const bool in_the_look : {false, true}) {
     TetMesh mesh = box(8);
@@ -517,6 +557,43 @@ TEST(Remesher, StepThatThrowsCountsForNoTrigger) {
     EXPECT_NEAR(second.min_dihedral, before, 1);
     EXPECT_EQ(remesher.step(turn(mesh, 0.1)).cause, RepairCause::kSteps);
   }
+}
+
+TEST(Remesher, FixedInnerVerticesGoWhereTheyAreTold) {
+  TetMesh mesh = box(6, 0);
+  RemesherOptions options = options_for();
+  options.motion = Motion::kLaplace;
+  VertexHandle inner;
+  for (VertexHandle v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inner = v;
+  options.improve.surface.fixed_vertices = {inner};
+  mesh.delete_vertex(V(0));  // its handle is another one from here on
+  const Vec3 from = mesh.point(inner);
+  Remesher remesher(mesh, options);
+  const VertexHandle now(inner.idx() - 1);
+  ASSERT_EQ(mesh.point(now), from);
+  std::vector<Vec3> d(mesh.n_vertices());
+  d[now.idx()] = {0.02, 0.01, 0};
+  remesher.step(d);
+  EXPECT_EQ(mesh.point(now), from + d[now.idx()]);
+}
+
+TEST(Remesher, RefusedMoveIsNoStep) {
+  TetMesh mesh = box(4, 0);
+  RemesherOptions options = options_for();
+  options.on_inversion = OnInversion::kRefuse;
+  options.triggers.every = 1;
+  Remesher remesher(mesh, options);
+  std::vector<Vec3> d(mesh.n_vertices());
+  VertexHandle inner;
+  for (VertexHandle v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inner = v;
+  d[inner.idx()] = {0.5, 0, 0};
+  ASSERT_FALSE(remesher.move(d).refused.empty());
+  EXPECT_EQ(remesher.needs_repair(), RepairCause::kNone);
+  d[inner.idx()] = {0.001, 0, 0};
+  ASSERT_TRUE(remesher.move(d).refused.empty());
+  EXPECT_EQ(remesher.needs_repair(), RepairCause::kSteps);
 }
 
 #ifdef HFR_HAS_SURFACE

@@ -48,14 +48,22 @@ TEST(RunControl, UndoTakesBackWhatWasCounted) {
   PassReport pass;
   pass.winners = 3;
   control.add(pass);
-  const std::size_t before = control.n_changes();
+  const Revision before = control.revision(), first = RunControl().revision();
+  EXPECT_FALSE(before == first);
   control.add(pass);
+  const Revision after = control.revision();
   EXPECT_EQ(control.n_changes(), 6U);
   control.add_undo(before, 2, -0.5);
   EXPECT_EQ(control.n_changes(), 3U);
   ASSERT_EQ(control.passes().size(), 3U);
   EXPECT_EQ(control.passes().back().op, "undo");
   EXPECT_EQ(control.passes().back().n_inverted, 2U);
+  EXPECT_EQ(control.revision(), before);
+  control.add({});
+  EXPECT_EQ(control.revision(), before) << "nothing was changed";
+  control.add(pass);
+  EXPECT_EQ(control.n_changes(), after.n_changes);
+  EXPECT_FALSE(control.revision() == after) << "another mesh after as many operators";
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace hfr::test {
 namespace {
 
 std::size_t n_of(const std::vector<StuckCell>& cells, StuckReason limit) {
-  return count_limits(cells)[static_cast<std::size_t>(limit)];
+  return count_reasons(cells)[static_cast<std::size_t>(limit)];
 }
 
 /// A roof: two cells on a wedge of the given degrees at the edge (0, 1).
@@ -47,7 +47,7 @@ TEST(StuckCells, EveryCellBelowTheAngleIsListedOnce) {
   EXPECT_TRUE(std::is_sorted(stuck.begin(), stuck.end(),
                              [](const StuckCell& a, const StuckCell& b) { return a.cell < b.cell; }));
   std::size_t sum = 0;
-  for (std::size_t count : count_limits(stuck)) sum += count;
+  for (std::size_t count : count_reasons(stuck)) sum += count;
   EXPECT_EQ(sum, n);
 }
 

@@ -296,7 +296,7 @@ TEST(SurfaceRuns, CellAtANarrowSharpEdgeIsBlamedOnIt) {
     options.min_dihedral = 15;
     const Result result = improve(mesh, options);
     EXPECT_FALSE(result.goal_reached);
-    const auto counts = count_limits(result.stuck);
+    const auto counts = count_reasons(result.stuck);
     // In free mode the faces may tilt, so that is no proof.
     if (mode == SurfaceMode::kFlat) {
       EXPECT_GE(counts[static_cast<std::size_t>(StuckReason::kSurfaceFeature)], 1U);

@@ -105,7 +105,11 @@ TEST(Options, ThoseThatCountForNothingAreNamed) {
   const std::vector<std::pair<std::string, std::string>> idle = {
       {"--hausdorff 0.1", "--hausdorff counts only with --surface free"},
       {"--feature-angle 30", "--feature-angle counts only with --surface free"},
-      {"--hybrid", "--hybrid counts only with --device"}};
+      {"--hybrid", "--hybrid counts only with --device"},
+      {"--compat jpdc2013 --surface free", "--surface does nothing with --compat"},
+      {"--compat jpdc2013 --smoother taubin", "--smoother does nothing with --compat"},
+      {"--compat jpdc2013 --min-dihedral 5", "--min-dihedral is not worked for with --compat"},
+      {"--polish-only --min-dihedral 5 --metric volume-length", "--metric does nothing with --polish-only"}};
   for (const auto& [option, note] : idle) {
     const Outcome outcome = tool.run("in.mesh -o out.mesh " + option);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
