@@ -332,8 +332,8 @@ void GridConverter::drop_middle_nodes() {
                         counted(n_before - mesh_.points.size(), "middle node") + " dropped");
 }
 
-/// Labels that are all 0, where a field would be taken for labels without them; else nothing. Not in front of a
-/// field of the very same name.
+/// Labels that are all 0, where a field would be taken for labels without them; else nothing. Not in front of
+/// a field of the very same name.
 std::vector<std::int32_t> zeros_before(const std::vector<Field>& fields, std::string_view array,
                                        std::span<const std::string_view> names, std::size_t n) {
   const auto is_whole = [](double v) { return v == std::trunc(v); };
