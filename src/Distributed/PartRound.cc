@@ -356,13 +356,13 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
   for (std::uint64_t gone : dropped_) entries_[gone].state = State::kLost;
   dropped_.clear();
   std::size_t n_kept = 0;
-  for (std::size_t w = 0, next = 0; w < winners.size(); ++w) {
-    if (next < given_up.size() && given_up[next] == w) {
+  for (std::size_t i = 0, next = 0; i < winners.size(); ++i) {
+    if (next < given_up.size() && given_up[next] == i) {
       ++next;
-    } else {
-      if (n_kept != w) winners[n_kept] = std::move(winners[w]);
-      ++n_kept;
+      continue;
     }
+    if (n_kept != i) winners[n_kept] = std::move(winners[i]);
+    ++n_kept;
   }
   winners.erase(winners.begin() + static_cast<std::ptrdiff_t>(n_kept), winners.end());
   return n_given_up;
