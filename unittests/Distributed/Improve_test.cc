@@ -153,7 +153,7 @@ TEST(MpiImprove, ARankThatFailsAnywhereEndsAll) {
   EXPECT_GT(n_calls, 30U);
   for (const int bad : {0, comm.size() - 1})
     for (std::uint64_t call = 1; call <= n_calls; ++call)
-      if (call < 12 || call % (n_calls / 5) == 0 || call + 24 > n_calls) run(bad, call);
+      if (call < 12 || call % (n_calls / 5) == 0 || call + 6 > n_calls) run(bad, call);
 }
 
 }  // namespace
