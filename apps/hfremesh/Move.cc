@@ -251,6 +251,31 @@ std::vector<std::string> files_of(const std::string& pattern) {
   return files;
 }
 
+/// The file of a step beside the collection.
+std::string output_name(const std::filesystem::path& collection, std::size_t i) {
+  return fmt::format("{}_{:04d}.vtu", collection.stem().string(), i);
+}
+
+/// Before anything is read: no file of the series is written over.
+void require_apart(const std::filesystem::path& collection, const std::vector<std::string>& inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::filesystem::path output = collection.parent_path() / output_name(collection, i);
+    std::error_code error;
+    for (const std::string& input : inputs)
+      if (std::filesystem::equivalent(input, output, error))
+        throw Failure(ExitCode::kUsage,
+                      fmt::format("-o {}: {} of the series would be written over; choose another name",
+                                  in_quotes(collection.string()), input));
+  }
+}
+
+/// What is said of a series: what ended it, then inverted cells, then angles; of the first step that has it.
+bool counts_before(ExitCode now, ExitCode so_far) {
+  constexpr std::array kOrder = {ExitCode::kCancelled, ExitCode::kLimit, ExitCode::kInvalidCells,
+                                 ExitCode::kGoalMissed, ExitCode::kDone};
+  return std::ranges::find(kOrder, now) < std::ranges::find(kOrder, so_far);
+}
+
 std::string step_name(std::size_t i) { return fmt::format("hfremesh: displacement {}", i); }
 
 /// Gives the vertices a field for the displacement of each step: the difference of the files' points. They
@@ -268,12 +293,28 @@ void attach_motion(TetMesh& mesh, const std::vector<std::string>& files, const C
   }
 }
 
+/// For an attribute of XML.
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '"')
+      result += "&quot;";
+    else
+      result += c;
+  }
+  return result;
+}
+
 /// A collection that ParaView opens as an animation.
 void write_collection(const std::string& path, const std::vector<std::string>& files) {
   io::OutputFile file(path);
   file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
   for (std::size_t i = 0; i < files.size(); ++i)
-    file.text(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", i, files[i]));
+    file.text(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", i, escaped(files[i])));
   file.text("  </Collection>\n</VTKFile>\n");
   file.commit();
 }
@@ -285,6 +326,7 @@ ExitCode move_series(const MoveLine& line, const CommonOptions& common, Json& re
                   "-o " + in_quotes(line.output) + ": a series is written as .pvd, with a .vtu a step");
   require_writable(line.output);
   const std::vector<std::string> files = files_of(line.series);
+  require_apart(collection, files);
   LoadedMesh loaded = load(files[0], common);
   TetMesh& mesh = loaded.mesh;
   RemesherOptions options;
@@ -297,7 +339,7 @@ ExitCode move_series(const MoveLine& line, const CommonOptions& common, Json& re
   const auto write_step = [&](std::size_t i) {
     TetMesh shown = mesh;
     for (std::size_t k = 1; k < files.size(); ++k) shown.properties().vertices.remove(step_name(k));
-    const std::string name = fmt::format("{}_{:04d}.vtu", collection.stem().string(), i);
+    const std::string name = output_name(collection, i);
     const std::string path = (collection.parent_path() / name).string();
     for (std::string& note : save(path, io::disassemble(shown, common.policy()), line.write))
       if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
@@ -310,14 +352,15 @@ ExitCode move_series(const MoveLine& line, const CommonOptions& common, Json& re
   const Stopwatch moving;
   Ending ending;
   for (std::size_t i = 1; i < files.size(); ++i) {
+    if (signals.cancelled()) {  // also where no step repairs, which would ask
+      ending = {ExitCode::kCancelled, fmt::format("cancelled before step {}", i)};
+      break;
+    }
     const StepResult step = remesher.step(displacement_of(mesh, step_name(i)));
     report["steps"].push_back(step_json(step, mesh));
     if (common.prints_table()) print_step(files[i], step, mesh);
     const Ending now = ending_of(step, line);
-    if (ending.code == ExitCode::kDone || now.code == ExitCode::kInvalidCells) {
-      ending = now;
-      if (now.code != ExitCode::kDone) ending.why = fmt::format("step {}: {}", i, now.why);
-    }
+    if (counts_before(now.code, ending.code)) ending = {now.code, fmt::format("step {}: {}", i, now.why)};
     if (!step.refused.empty() || step.undone || step.stop == Stop::kCancelled) break;
     write_step(i);
   }

@@ -91,7 +91,7 @@ void print_passes(const std::vector<PassReport>& passes) {
 
 void print_limits(const Result& result) {
   if (result.n_large_stars > 0)
-    fmt::print("{} vertices have more than {} cells: they are moved, but not taken out\n",
+    print("{} vertices have more than {} cells: they are moved, but not taken out\n",
                grouped(result.n_large_stars), Star::kCapacity);
   if (result.stuck.empty()) return;
   const auto counts = count_reasons(result.stuck);

@@ -3,6 +3,8 @@
 #define HFR_BINDINGS_C_ARRAYS_HH
 
 #include <array>
+#include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -47,13 +49,29 @@ template <std::size_t N>
 std::vector<std::array<Index, N>> indices_of(const hfr_array* array, const std::string& name, int columns,
                                              int base, std::size_t n);
 
+/// As a number of an array; throws where that cannot hold it.
+template <class To, class From>
+To held(From x, const std::string& name) {
+  if constexpr (std::integral<To>) {
+    bool fits = false;
+    if constexpr (std::integral<From>)
+      fits = std::in_range<To>(x);
+    else
+      fits =
+          x == std::trunc(x) && x >= -0x1p63 && x < 0x1p63 && std::in_range<To>(static_cast<std::int64_t>(x));
+    HFR_REQUIRE(
+        fits, name + ": there are values that these integers cannot hold; get them in wider ones or doubles");
+  }
+  return static_cast<To>(x);
+}
+
 /// Writes value(i, j) into the array, which must be rows x columns.
 template <class Value>
 void fill(const hfr_array* array, const std::string& name, std::size_t rows, int columns, Value&& value) {
   require_array(array, name, static_cast<std::int64_t>(rows), columns);
   for_each(*array, [&](std::int64_t i, std::int64_t j, auto& out) {
-    out = static_cast<std::remove_reference_t<decltype(out)>>(
-        value(static_cast<std::size_t>(i), static_cast<std::size_t>(j)));
+    out = held<std::remove_reference_t<decltype(out)>>(
+        value(static_cast<std::size_t>(i), static_cast<std::size_t>(j)), name);
   });
 }
 

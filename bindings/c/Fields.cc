@@ -45,9 +45,9 @@ void read_values(const Property& property, const std::string& name, const hfr_ar
   for_each(into, [&](std::int64_t i, std::int64_t j, auto& value) {
     const auto& kept = property[H(i)];
     if constexpr (requires { kept.resize(0); })
-      HFR_REQUIRE(std::cmp_less(j, kept.size()),
+      HFR_REQUIRE(std::cmp_equal(kept.size(), into.columns),
                   name + " has " + std::to_string(kept.size()) + " components");
-    value = static_cast<std::remove_reference_t<decltype(value)>>(io::components_of(kept)[j]);
+    value = held<std::remove_reference_t<decltype(value)>>(io::components_of(kept)[j], name);
   });
 }
 

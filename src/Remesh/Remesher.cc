@@ -380,9 +380,9 @@ RepairResult Remesher::State::repair() {
 
 std::vector<FieldReport> Remesher::State::transfer() {
   if (!pending_) return {};
-  const Edits edits = std::move(*pending_);
-  pending_.reset();
-  return transfer_fields(*before_, mesh_, edits, options_.fields, policy_);
+  std::vector<FieldReport> reports = transfer_fields(*before_, mesh_, *pending_, options_.fields, policy_);
+  pending_.reset();  // not where one was thrown: it is done again then, from the old mesh
+  return reports;
 }
 
 // --- a step ---

@@ -124,11 +124,13 @@ Conserved conserve(const Cavities& cavities, std::span<const double> old_values,
         weight += w;
       }
       double value = weight > 0 ? sum / weight : fallback[i];
-      if (!cavity.old_cells.empty()) value = std::clamp(value, low, high);
+      if (low <= high) value = std::clamp(value, low, high);
       out.values[i] = value;
       missing -= cavities.new_volume(i) * density(new_density, i) * value;
     }
-    if (cavity.old_cells.empty()) {  // beyond the old mesh, with nobody to share with
+    // Beyond the old mesh, with nobody to share with; or what cells hold is no number, which stays where they
+    // were.
+    if (cavity.old_cells.empty() || !std::isfinite(missing)) {
       out.lost += missing;
       continue;
     }

@@ -16,12 +16,13 @@ namespace hfr {
 /// A vertex that is new or has moved, and where it lies in the mesh as it was: the value of a linear field
 /// there is the sum of weights[k] times the value at vertex k of old_cell.
 struct PlacedVertex {
-  VertexHandle vertex;              ///< of the mesh as it is
-  VertexHandle old_vertex;          ///< invalid: created
-  Vec3 point;                       ///< where it is
-  CellHandle old_cell;              ///< of the mesh as it was; invalid where no cell with a volume is near
-  std::array<double, 4> weights{};  ///< they add up to 1; a negative one only where `inside` is false
-  bool inside = true;               ///< false: it lies beyond the mesh as it was, and old_cell is the nearest
+  VertexHandle vertex;      ///< of the mesh as it is
+  VertexHandle old_vertex;  ///< invalid: created
+  Vec3 point;               ///< where it is
+  CellHandle old_cell;      ///< of the mesh as it was; invalid where no cell with a volume is near
+  /// They add up to 1. One below the -1e-10 that rounding leaves only where `inside` is false.
+  std::array<double, 4> weights{};
+  bool inside = true;  ///< false: it lies beyond the mesh as it was, and old_cell is the nearest
 };
 
 /// What a new cell has in common with an old one, as a share of the new one's volume. Negative for an old

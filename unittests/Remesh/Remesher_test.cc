@@ -529,6 +529,28 @@ TEST(Remesher, ExceptionAfterARepairLeavesMeshAndFieldsAsBefore) {
   }
 }
 
+TEST(Remesher, TransferThatHasFailedIsDoneAgain) {
+  TetMesh mesh = box(8);
+  auto mark = mesh.request_cell_property<double>("mark", 1.0);
+  bool armed = true;
+  RemesherOptions options = options_for(20);
+  options.on_inversion = OnInversion::kSubsteps;
+  options.fields = {{.name = "mark",
+                     .how = Transfer::kCallback,
+                     .callback = [&](const TetMesh&, TetMesh& now, const Edits&) {
+                       if (armed) throw std::runtime_error("enough");
+                       now.get_cell_property<double>("mark")->fill(2.0);
+                     }}};
+  Remesher remesher(mesh, options);
+  remesher.move(turn(mesh, 40));
+  ASSERT_FALSE(remesher.repair().edits.empty());
+  EXPECT_THROW(remesher.transfer(), std::runtime_error);
+  armed = false;
+  EXPECT_EQ(remesher.transfer().size(), 1U);
+  EXPECT_EQ(mark[C(0)], 2.0);
+  EXPECT_TRUE(remesher.transfer().empty());
+}
+
 TEST(Remesher, StepThatThrowsCountsForNoTrigger) {
   for (const bool in_the_look : {false, true}) {
     TetMesh mesh = box(8);

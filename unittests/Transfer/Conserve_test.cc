@@ -62,6 +62,28 @@ TEST(Conserve, SumOfEachCavityStaysAndNoValueLeavesItsRange) {
   }
 }
 
+TEST(Conserve, WhatIsNoNumberStaysWhereItWas) {
+  const TwoMeshes two(6, 0.15, 1);
+  const Cavities cavities(two.old, two.now, two.edits(), {});
+  std::vector<double> old(cavities.old_cells().size(), 2), nothing(cavities.new_cells().size(), 0);
+  old[old.size() / 2] = std::numeric_limits<double>::quiet_NaN();
+  const Conserved conserved = conserve(cavities, old, {}, {}, nothing);
+  std::size_t n_lost = 0;
+  for (std::size_t i = 0; i < conserved.values.size(); ++i) {
+    const auto& parts = cavities.overlaps().of(static_cast<Index>(i));
+    const bool has_it = std::ranges::any_of(
+        parts, [&](const Overlap& part) { return part.old_cell == cavities.old_cells()[old.size() / 2]; });
+    EXPECT_EQ(std::isnan(conserved.values[i]), has_it);
+    n_lost += has_it ? 1 : 0;
+    if (!has_it) {
+      EXPECT_EQ(conserved.values[i], 2);
+    }
+  }
+  EXPECT_GT(n_lost, 0U);
+  const std::vector<double> none(old.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const double v : conserve(cavities, none, {}, {}, nothing).values) EXPECT_TRUE(std::isnan(v));
+}
+
 TEST(Conserve, ConstantStaysOneToTheBit) {
   const TwoMeshes two(6, 0.15, 4);
   const Cavities cavities(two.old, two.now, two.edits(), {});

@@ -84,6 +84,16 @@ TEST(Move, RefusedMoveNamesTheCellsAndWritesNothing) {
   EXPECT_THAT(tool.files(), ElementsAre("in.vtu"));
 }
 
+TEST(Move, FilesOfTheSeriesAreNotWrittenOver) {
+  Tool tool;
+  for (int i = 0; i < 3; ++i) io::write(tool.path("in_000" + std::to_string(i) + ".vtu"), box(0.6));
+  const std::string before = tool.content("in_0001.vtu");
+  const Outcome outcome = tool.run("move --series in_%04d.vtu -o in.pvd");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("in_0000.vtu of the series would be written over; choose another name"));
+  EXPECT_EQ(tool.content("in_0001.vtu"), before);
+}
+
 TEST(Move, SeriesBecomesACollectionWithAMeshAStep) {
   Tool tool;
   TetMesh mesh = box(0.6);
