@@ -159,9 +159,9 @@ ExitCode run(const ImproveLine& line, const CommonOptions& common, Json& report)
   io::MeshData data = read_data(line.input, common);
   const double seconds_read = reading.seconds();
   const bool is_surface = data.cells.empty() && !data.triangles.empty();
-  if (is_surface && (!line.quality_array.empty() || line.presentation.any()))
-    throw Failure(ExitCode::kUsage,
-                  "--quality-array, --png and --report are for tetrahedra, and " + line.input + " has none");
+  if (is_surface && (!line.quality_array.empty() || !line.ids.empty() || line.presentation.any()))
+    throw Failure(ExitCode::kUsage, "--quality-array, --ids, --png and --report are for tetrahedra, and " +
+                                        line.input + " has none");
   if (is_surface && line.plan)
     throw Failure(ExitCode::kUsage, "--plan is for tetrahedra, and " + line.input + " has none");
   if (is_surface)

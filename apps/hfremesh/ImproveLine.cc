@@ -276,6 +276,15 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   idle(on_cpu && line.improve.hybrid, "--hybrid", "--device");
   idle(on_cpu && line.improve.device_tuning.work_group > 0, "--work-group", "--device");
   idle(on_cpu && line.improve.device_tuning.profile, "--profile", "--device");
+  if (!on_tetrahedra) {
+    constexpr const char* kSurface = "a surface without cells";
+    left_out(line.no_insert, "--no-insert", kSurface);
+    left_out(line.improve.min_cells > 0, "--min-cells", kSurface);
+    left_out(line.improve.max_cells > 0, "--max-cells", kSurface);
+    left_out(line.improve.coarsen, "--coarsen", kSurface);
+    left_out(line.improve.iterations > 0, "--iterations", kSurface);
+    left_out(!on_cpu, "--device", kSurface);
+  }
   if (!line.compat.empty()) {  // a published pipeline, as it is
     left_out(!frozen, "--surface", "--compat");
     left_out(line.improve.coarsen, "--coarsen", "--compat");

@@ -92,7 +92,7 @@ void print_passes(const std::vector<PassReport>& passes) {
 void print_limits(const Result& result) {
   if (result.n_large_stars > 0)
     print("{} vertices have more than {} cells: they are moved, but not taken out\n",
-               grouped(result.n_large_stars), Star::kCapacity);
+          grouped(result.n_large_stars), Star::kCapacity);
   if (result.stuck.empty()) return;
   const auto counts = count_reasons(result.stuck);
   std::string text;

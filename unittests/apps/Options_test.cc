@@ -118,6 +118,19 @@ TEST(Options, ThoseThatCountForNothingAreNamed) {
   EXPECT_THAT(tool.run("in.mesh -o out.mesh --fix vertex:13").err, Not(HasSubstr("counts only")));
 }
 
+#ifdef HFR_HAS_SURFACE
+TEST(Options, ThoseOfCellsAreNamedOrRefusedForASurface) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 3 3 3 -o in.stl").code, 0);
+  EXPECT_THAT(tool.run("in.stl -o out.stl --max-cells 5").err,
+              HasSubstr("--max-cells does nothing with a surface without cells"));
+  const Outcome refused = tool.run("in.stl -o again.stl --ids ids.txt");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("--ids"));
+  EXPECT_FALSE(std::filesystem::exists(tool.path("again.stl")));
+}
+#endif
+
 TEST(Limits, ThreadsThatCannotBeMadeAreDoneWithout) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "sanitizers need more address space than the limit leaves";
