@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "Commands.hh"
 #include "Console.hh"
@@ -256,16 +257,16 @@ std::string output_name(const std::filesystem::path& collection, std::size_t i) 
   return fmt::format("{}_{:04d}.vtu", collection.stem().string(), i);
 }
 
-/// Before anything is read: no file of the series is written over.
-void require_apart(const std::filesystem::path& collection, const std::vector<std::string>& inputs) {
+/// Before anything is read: no file of the series is written over, by whatever name.
+void require_outputs_apart(const std::filesystem::path& collection, const std::vector<std::string>& inputs) {
+  std::set<std::filesystem::path> known;
+  for (const std::string& input : inputs) known.insert(std::filesystem::canonical(input));
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::filesystem::path output = collection.parent_path() / output_name(collection, i);
-    std::error_code error;
-    for (const std::string& input : inputs)
-      if (std::filesystem::equivalent(input, output, error))
-        throw Failure(ExitCode::kUsage,
-                      fmt::format("-o {}: {} of the series would be written over; choose another name",
-                                  in_quotes(collection.string()), input));
+    if (known.contains(std::filesystem::weakly_canonical(output)))
+      throw Failure(ExitCode::kUsage,
+                    fmt::format("-o {}: {} of the series would be written over; choose another name",
+                                in_quotes(collection.string()), output.string()));
   }
 }
 
@@ -326,7 +327,7 @@ ExitCode move_series(const MoveLine& line, const CommonOptions& common, Json& re
                   "-o " + in_quotes(line.output) + ": a series is written as .pvd, with a .vtu a step");
   require_writable(line.output);
   const std::vector<std::string> files = files_of(line.series);
-  require_apart(collection, files);
+  require_outputs_apart(collection, files);
   LoadedMesh loaded = load(files[0], common);
   TetMesh& mesh = loaded.mesh;
   RemesherOptions options;
