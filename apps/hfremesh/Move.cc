@@ -294,28 +294,13 @@ void attach_motion(TetMesh& mesh, const std::vector<std::string>& files, const C
   }
 }
 
-/// For an attribute of XML.
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
-
 /// A collection that ParaView opens as an animation.
 void write_collection(const std::string& path, const std::vector<std::string>& files) {
   io::OutputFile file(path);
   file.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n");
   for (std::size_t i = 0; i < files.size(); ++i)
-    file.text(fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", i, escaped(files[i])));
+    file.text(
+        fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", i, io::xml_escaped(files[i])));
   file.text("  </Collection>\n</VTKFile>\n");
   file.commit();
 }

@@ -86,21 +86,6 @@ std::string piece_name(const std::filesystem::path& path, int rank) {
   return stem + "/" + stem + "_" + std::to_string(rank) + ".vtu";
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '"')
-      result += "&quot;";
-    else
-      result += c;
-  }
-  return result;
-}
-
 void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels& labels) {
   io::OutputFile out(path);
   const auto declare = [&](const char* type, std::string_view name) {
@@ -121,7 +106,7 @@ void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels
   out.text(
       "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n");
   for (int r = 0; r < n_ranks; ++r)
-    out.text("<Piece Source=\"").text(escaped(piece_name(path, r))).text("\"/>\n");
+    out.text("<Piece Source=\"").text(io::xml_escaped(piece_name(path, r))).text("\"/>\n");
   out.text("</PUnstructuredGrid>\n</VTKFile>\n");
   out.commit();
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "hfremesh/IO/ByteSink.hh"
@@ -15,6 +16,9 @@ namespace hfr::io {
 /// `path` with its symbolic links followed, to a file that need not be there yet. Throws IoError where links
 /// lead round in a circle.
 std::filesystem::path link_target(const std::filesystem::path& path);
+
+/// The text as the value of an attribute of XML. Control characters, which that has not, become blanks.
+std::string xml_escaped(std::string_view text);
 
 /// Removes the temporary files of all OutputFiles that are open. For a signal handler that ends the process:
 /// async-signal-safe, and to be called in the thread that writes, so that no file is about to be made.

@@ -28,29 +28,6 @@ Variant variant_of(const std::string& name) {
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
 
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += is_control(c) ? ' ' : c;
-    }
-  }
-  return result.empty() ? "unnamed" : result;
-}
-
 template <class T>
 constexpr NumberType number_type() {
   if constexpr (std::is_same_v<T, double>) return NumberType::kFloat64;
@@ -261,7 +238,10 @@ void VtuWriter::put_text(const OutArray& array) {
 
 void VtuWriter::put(const OutArray& array) {
   const std::uint64_t n_bytes = array.n_bytes();
-  out_.text("<DataArray type=\"").text(type_name(array.type)).text("\" Name=\"").text(escaped(array.name));
+  out_.text("<DataArray type=\"")
+      .text(type_name(array.type))
+      .text("\" Name=\"")
+      .text(array.name.empty() ? "unnamed" : xml_escaped(array.name));
   out_.text("\" NumberOfComponents=\"").number(static_cast<std::int64_t>(array.components));
   if (array.in_field_data) out_.text("\" NumberOfTuples=\"").number(static_cast<std::int64_t>(n_bytes));
   if (variant_ == Variant::kAscii) {

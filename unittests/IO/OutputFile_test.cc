@@ -33,6 +33,10 @@ std::string message_of(Call call) {
   return "no error";
 }
 
+TEST(XmlEscaped, MarkupAndControlCharactersAreNoneAnyMore) {
+  EXPECT_EQ(xml_escaped("a<b> & \"c\"\n\xc3\xa4"), "a&lt;b&gt; &amp; &quot;c&quot; \xc3\xa4");
+}
+
 TEST(OutputFile, CommitReplacesTheTargetAndLeavesNoTemporaryFile) {
   const TemporaryFolder folder;
   samples::write_bytes(folder / "a.txt", "old");
