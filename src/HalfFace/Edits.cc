@@ -130,7 +130,7 @@ void join(TupleMap<N, int>& map, const std::vector<std::array<VertexHandle, N>>&
     if (at == map.size()) continue;
     const auto now = renamed(map.entries()[at].vertices, v, w);
     if (has(item, w) || map.find(now))
-      map.erase(item);
+      map.erase_unordered(item);
     else
       map.rekey(item, now);
   }
@@ -228,7 +228,20 @@ VertexHandle TetMesh::split_edge(EdgeHandle e, std::optional<Vec3> at) {
               "split_edge: edge " + std::to_string(e.idx()) + " does not exist");
   std::vector<CellHandle> parents;
   for (CellHandle c : edge_cells(e)) parents.push_back(c);
-  return split(parents, edge_vertices(e), at ? *at : barycenter(*this, e));
+  const auto edge = edge_vertices(e);
+  const auto value_of = [&](const auto& map) {
+    const auto* found = map.find(edge);
+    return found ? std::optional(*found) : std::nullopt;
+  };
+  const auto label = value_of(labels_.edges);
+  const auto lock = value_of(locks_.edges);
+  const VertexHandle middle = split(parents, edge, at ? *at : barycenter(*this, e));
+  // Cells that are no part of this fan may have the whole edge still.
+  if ((label || lock) && any_cell_has(edge)) {
+    if (label) labels_.edges.set(edge, *label);
+    if (lock) locks_.edges.set(edge, *lock);
+  }
+  return middle;
 }
 
 VertexHandle TetMesh::split_face(FaceHandle f, std::optional<Vec3> at) {
@@ -263,10 +276,20 @@ void TetMesh::join_labels(const Star& star, VertexHandle v, VertexHandle w) {
   const StarParts parts(*this, star, v);
   join(labels_.edges, parts.edges, v, w);
   join(labels_.faces, parts.faces, v, w);
-  for (const auto& edge : parts.edges)
-    if (!has(edge, w)) properties_.inherit(edge, renamed(edge, v, w));
-  for (const auto& face : parts.faces)
-    if (!has(face, w)) properties_.inherit(face, renamed(face, v, w));
+  if (!properties_.has_tuples()) return;
+  Star star_of_w;
+  gather_star(w, star_of_w);
+  const StarParts parts_of_w(*this, star_of_w, w);
+  // What w has keeps its value; for what it comes to have, there may be one of a thing that is gone.
+  const auto hand_over = [&](const auto& of_v, const auto& of_w) {
+    for (const auto& item : of_v) {
+      if (has(item, w)) continue;
+      const auto now = renamed(item, v, w);
+      if (!std::binary_search(of_w.begin(), of_w.end(), AnyOrder::key(now))) properties_.replace(item, now);
+    }
+  };
+  hand_over(parts.edges, parts_of_w.edges);
+  hand_over(parts.faces, parts_of_w.faces);
 }
 
 bool TetMesh::is_collapse_ok(HalfEdgeHandle e) {

@@ -114,7 +114,7 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
   });
   cells_ = std::move(cells);
   free_cells_.clear();
-  n_deleted_vertices_ = 0;
+  n_deleted_vertices_.n = 0;
   find_incident_cells(policy);
 }
 
@@ -141,7 +141,7 @@ GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
   close_gaps(map.cells, cell_gap, n_cells, cell_status_);
   close_gaps(map.cells, cell_gap, n_cells, cells_);
   free_cells_.clear();
-  n_deleted_vertices_ = 0;
+  n_deleted_vertices_.n = 0;
   find_incident_cells(options.policy);
   return map;
 }

@@ -23,8 +23,9 @@ using Tet = std::array<Index, 4>;
 /// Cells of a shape must leave room for 12 half-edge indices a cell.
 void require_countable(double n_cells) {
   if (n_cells > static_cast<double>(TetMesh::kMostCells))
-    throw ResourceLimit("a mesh of " + std::to_string(static_cast<long long>(n_cells)) +
-                        " cells is too large for the indices of this build; ask for fewer");
+    throw ResourceLimit(
+        "a mesh of " + (n_cells < 1e18 ? std::to_string(static_cast<long long>(n_cells)) : "10^18 and more") +
+        " cells is too large for the indices of this build; ask for fewer");
 }
 
 void require_box(Counts n, Vec3 low, Vec3 high) {

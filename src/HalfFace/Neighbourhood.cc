@@ -200,7 +200,10 @@ std::array<HalfFaceHandle, 3> TetMesh::boundary_halfface_halffaces(HalfFaceHandl
 bool TetMesh::is_incident(FaceHandle f, EdgeHandle e) const {
   const auto v = face_vertices(f);
   const auto ends = edge_vertices(e);
-  return std::count(v.begin(), v.end(), ends[0]) + std::count(v.begin(), v.end(), ends[1]) == 2;
+  const auto is_end = [&](VertexHandle w) { return w == ends[0] || w == ends[1]; };
+  if (std::count_if(v.begin(), v.end(), is_end) != 2) return false;
+  const auto edges = face_edges(f);  // another fan has another edge of the same ends
+  return std::find(edges.begin(), edges.end(), e) != edges.end();
 }
 
 std::array<VertexHandle, 3> TetMesh::halfface_vertices(HalfFaceHandle h, VertexHandle from) const {
@@ -429,7 +432,12 @@ bool VertexVertices::scan_has(std::size_t place) const {
   const int corner = mesh_->cell(c).corner(v_);
   const auto other = place % 4;
   if (corner == 4 || static_cast<std::size_t>(corner) == other) return false;
-  return mesh_->exists(EdgeHandle(6 * c.idx() + kEdgeOfCorners[static_cast<std::size_t>(corner)][other]));
+  const EdgeHandle e(6 * c.idx() + kEdgeOfCorners[static_cast<std::size_t>(corner)][other]);
+  if (!mesh_->exists(e)) return false;
+  // Of several fans of an edge, the one with the smallest cell names the neighbour.
+  const auto around = mesh_->vertex_cells(mesh_->cell(c).v[other]);
+  return std::none_of(around.begin(), around.end(),
+                      [&](CellHandle d) { return d < c && mesh_->cell(d).has(v_); });
 }
 
 }  // namespace hfr

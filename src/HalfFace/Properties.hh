@@ -138,6 +138,8 @@ class TupleStored : public StoredProperty {
   /// The thing of vertices `to` gets the value of the thing of `from`, either way round, unless it has one;
   /// both have as many vertices as a key.
   virtual void inherit(const VertexHandle* from, const VertexHandle* to) = 0;
+  /// The same whatever it has, which is of a thing that is not there any more.
+  virtual void replace(const VertexHandle* from, const VertexHandle* to) = 0;
 };
 
 template <std::size_t N, class T, class Order>
@@ -166,19 +168,35 @@ class Tuples final : public TupleStored {
                            [](const auto&) { return true; });
   }
   void inherit(const VertexHandle* from, const VertexHandle* to) override {
-    std::array<VertexHandle, N> there, here;
-    std::copy_n(from, N, there.begin());
-    std::copy_n(to, N, here.begin());
-    for (int way = 0; way < (Order::kDirected ? 2 : 1); ++way) {
+    for_ways(from, to, [&](const auto& there, const auto& here) {
       const T* found = values.find(there);
       if (found && !values.find(here)) values.set(here, T(*found));
-      std::reverse(there.begin(), there.end());
-      std::reverse(here.begin(), here.end());
-    }
+    });
+  }
+  void replace(const VertexHandle* from, const VertexHandle* to) override {
+    for_ways(from, to, [&](const auto& there, const auto& here) {
+      if (const T* found = values.find(there))
+        values.set(here, T(*found));
+      else
+        values.erase_unordered(here);
+    });
   }
 
   TupleMap<N, T, Order> values;
   T preset;
+
+ private:
+  template <class Visit>
+  static void for_ways(const VertexHandle* from, const VertexHandle* to, Visit&& visit) {
+    std::array<VertexHandle, N> there, here;
+    std::copy_n(from, N, there.begin());
+    std::copy_n(to, N, here.begin());
+    for (int way = 0; way < (Order::kDirected ? 2 : 1); ++way) {
+      visit(there, here);
+      std::reverse(there.begin(), there.end());
+      std::reverse(here.begin(), here.end());
+    }
+  }
 };
 
 /// One value for the mesh.
@@ -232,9 +250,10 @@ class PropertyList {
     for (const auto& p : list_) sum += p->memory_bytes();
     return sum;
   }
-  /// The mesh forgets it; handles that were given out keep the values but follow the mesh no more.
+  /// The mesh forgets it; handles that were given out keep the values but follow the mesh no more. Those
+  /// without a name cannot be asked for, and stay.
   bool remove(std::string_view name) {
-    return std::erase_if(list_, [&](const auto& p) { return p->name() == name; }) > 0;
+    return !name.empty() && std::erase_if(list_, [&](const auto& p) { return p->name() == name; }) > 0;
   }
   /// Forgets those without a name that nobody else holds any more.
   void drop_unheld() {
@@ -463,6 +482,19 @@ class PropertySet {
   void inherit(const std::array<VertexHandle, 3>& from, const std::array<VertexHandle, 3>& to) {
     for (const TupleList* list : {&faces, &halffaces})
       for (const auto& p : *list) p->inherit(from.data(), to.data());
+  }
+  /// See TupleStored::replace().
+  void replace(const std::array<VertexHandle, 2>& from, const std::array<VertexHandle, 2>& to) {
+    for (const TupleList* list : {&edges, &halfedges})
+      for (const auto& p : *list) p->replace(from.data(), to.data());
+  }
+  void replace(const std::array<VertexHandle, 3>& from, const std::array<VertexHandle, 3>& to) {
+    for (const TupleList* list : {&faces, &halffaces})
+      for (const auto& p : *list) p->replace(from.data(), to.data());
+  }
+  /// Whether there are any of edges, half-edges, faces or half-faces.
+  bool has_tuples() const {
+    return !edges.empty() || !halfedges.empty() || !faces.empty() || !halffaces.empty();
   }
   /// Follows a renumbering, while `of` is still the mesh as it was.
   void renumber(const TetMesh& of, const std::vector<VertexHandle>& new_vertex, std::size_t n_vertices,

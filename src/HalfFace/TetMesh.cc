@@ -103,7 +103,7 @@ void TetMesh::mark_deleted(VertexHandle v) {
   if (is_deleted(v)) return;
   vertex_status_[v.idx()] |= kDeleted;
   incident_cell_[v.idx()].reset();
-  ++n_deleted_vertices_;
+  ++n_deleted_vertices_.n;
 }
 
 bool TetMesh::gather_star(VertexHandle v, Star& star) const {

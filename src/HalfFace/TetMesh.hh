@@ -68,10 +68,10 @@ class TetMesh : public PropertyAccess<TetMesh> {
   static constexpr std::size_t kMostCells = HalfFaceHandle::kInvalid / 12;
   std::size_t n_vertices() const { return points_.size(); }
   std::size_t n_cells() const { return cells_.size(); }
-  std::size_t n_logical_vertices() const { return points_.size() - n_deleted_vertices_; }
+  std::size_t n_logical_vertices() const { return points_.size() - n_deleted_vertices_.n; }
   std::size_t n_logical_cells() const { return cells_.size() - free_cells_.size(); }
   /// Whether a vertex or cell has been deleted since collect_garbage().
-  bool needs_garbage_collection() const { return n_deleted_vertices_ > 0 || !free_cells_.empty(); }
+  bool needs_garbage_collection() const { return n_deleted_vertices_.n > 0 || !free_cells_.empty(); }
   // What follows is there as long as a cell has it, so all of it is logical.
   std::size_t n_edges() const;  ///< by counting: O(n)
   std::size_t n_faces() const;  ///< by counting: O(n)
@@ -124,7 +124,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
   StarRange<policy::StarHalfEdges<true>> outgoing_halfedges(VertexHandle v) const;
   StarRange<policy::StarHalfEdges<false>> incoming_halfedges(VertexHandle v) const;
   VertexVertices vertex_vertices(VertexHandle v) const;
-  std::size_t valence(VertexHandle v) const;  ///< number of edges
+  std::size_t valence(VertexHandle v) const;  ///< number of vertices that it shares an edge with
 
   // --- round an edge, counter-clockwise; a fan starts at the boundary. One cell record a step ---
   RingRange<policy::RingCells> edge_cells(EdgeHandle e) const;
@@ -400,7 +400,9 @@ class TetMesh : public PropertyAccess<TetMesh> {
   VertexHandle add_vertex(Vec3 p);
   /// Appends a cell, linked with its neighbours. The first call after building or other writing makes a table
   /// of all faces: O(n). Throws InvalidInput, leaving the mesh as it was, when a vertex does not exist or
-  /// comes twice, a face has two cells, a cell has these vertices, or the order contradicts a neighbour.
+  /// comes twice, a face has two cells, a cell has these vertices, or the order contradicts a neighbour. Only
+  /// faces are looked at: whether an edge has cells beside those that go all the way round it
+  /// (Rule::kDuplicateEdge) is for check() to find.
   CellHandle add_cell(VertexHandle v0, VertexHandle v1, VertexHandle v2, VertexHandle v3);
   /// Deleted things keep their handles until collect_garbage(); labels of edges and faces that vanish go at
   /// once. O(1), but for
@@ -503,7 +505,19 @@ class TetMesh : public PropertyAccess<TetMesh> {
   std::vector<Vec3> points_;
   std::vector<CellHandle> incident_cell_;
   std::vector<std::uint8_t> vertex_status_;
-  std::size_t n_deleted_vertices_ = 0;
+  /// 0 in a mesh that was moved from, as the arrays are.
+  struct Count {
+    std::size_t n = 0;
+    Count() = default;
+    ~Count() = default;
+    Count(const Count&) = default;
+    Count& operator=(const Count&) = default;
+    Count(Count&& other) noexcept : n(std::exchange(other.n, 0)) {}
+    Count& operator=(Count&& other) noexcept {
+      n = std::exchange(other.n, 0);
+      return *this;
+    }
+  } n_deleted_vertices_;
   Labels labels_;
   Locks locks_;
   PropertySet properties_;

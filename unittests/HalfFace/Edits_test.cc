@@ -3,6 +3,7 @@
 // compared with the same done to arrays.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "HalfFace/Check.hh"
@@ -153,6 +154,70 @@ TEST(Splits, KeepLabelsLocksRegionsAndProperties) {
   box.expect_right();
 }
 
+TEST(Splits, OfOneFanLeaveTheLabelToTheOthers) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  TetMesh mesh = build(points, std::vector<test::Corners>{{0, 1, 2, 3}, {0, 1, 4, 5}});
+  const std::array edge = {VertexHandle(0), VertexHandle(1)};
+  mesh.labels().edges.set(edge, 4);
+  mesh.set_fixed(mesh.find_edge(edge[0], edge[1]));
+  const VertexHandle m = mesh.split_edge(mesh.find_edge(edge[0], edge[1]));
+  ASSERT_EQ(mesh.n_logical_cells(), 3U);
+  // Which of the cells is cut goes by the incident cell of the ends.
+  const CellHandle whole(mesh.cell(CellHandle(0)).has(edge[0]) && mesh.cell(CellHandle(0)).has(edge[1]) ? 0
+                                                                                                        : 1);
+  const EdgeHandle other = mesh.edge_in_cell(
+      whole, static_cast<int>(
+                 kEdgeOfCorners[mesh.cell(whole).own_corner(edge[0])][mesh.cell(whole).own_corner(edge[1])]));
+  ASSERT_TRUE(mesh.exists(other));
+  EXPECT_TRUE(mesh.is_fixed(other));
+  ASSERT_TRUE(mesh.labels().edges.find(edge));
+  for (VertexHandle end : edge) {
+    EXPECT_EQ(*mesh.labels().edges.find({end, m}), 4);
+    EXPECT_TRUE(mesh.is_fixed(mesh.find_edge(end, m)));
+  }
+  // No fan is left with the whole edge once it is cut as well.
+  mesh.split_edge(other);
+  EXPECT_FALSE(mesh.labels().edges.find(edge));
+}
+
+/// Two wedges with a whole fan each round one axle, of so many cells together.
+TetMesh two_fans(int n) {
+  std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}};
+  std::vector<test::Corners> cells;
+  for (const double start : {0.1, 3.2}) {
+    const auto first = static_cast<Index>(points.size());
+    for (int i = 0; i <= n / 2; ++i)
+      points.push_back({std::cos(start + 2.8 * i / (n / 2)), std::sin(start + 2.8 * i / (n / 2)), 0.5});
+    for (int i = 0; i < n / 2; ++i)
+      cells.push_back({0, 1, first + static_cast<Index>(i), first + static_cast<Index>(i) + 1});
+  }
+  return build(points, cells);
+}
+
+TEST(Fans, OfOneEdgeAreOneNeighbourAndTwoEdges) {
+  for (const int n : {8, 600}) {  // few enough for a star, and too many
+    const TetMesh mesh = two_fans(n);
+    const VertexHandle hub(0), end(1);
+    std::size_t n_end = 0, n_all = 0;
+    for (VertexHandle w : mesh.vertex_vertices(hub)) {
+      n_end += w == end ? 1U : 0U;
+      ++n_all;
+    }
+    if (n > 256) {
+      EXPECT_EQ(n_end, 1U) << n;
+      EXPECT_EQ(n_all, mesh.n_vertices() - 1) << n;
+    }
+    EXPECT_EQ(mesh.valence(hub), n_all) << n;
+    const EdgeHandle one(6 * 0 + kEdgeOfCorners[0][1]),
+        two(6 * static_cast<Index>(n / 2) + kEdgeOfCorners[0][1]);
+    ASSERT_TRUE(mesh.exists(one) && mesh.exists(two));
+    for (FaceHandle f : mesh.edge_faces(one)) {
+      EXPECT_TRUE(mesh.is_incident(f, one));
+      EXPECT_FALSE(mesh.is_incident(f, two)) << "a face of the other fan";
+    }
+  }
+}
+
 TEST(Splits, NewVertexHasTheDataOfTheNearest) {
   TetMesh mesh = test::single_cell();
   auto heat = mesh.request_vertex_property<int>("heat", 0);
@@ -182,6 +247,33 @@ TEST(Collapse, OfASplitEdgeGivesTheMeshBack) {
     EXPECT_EQ(tets(mesh), tets(before));
     EXPECT_EQ(mesh.n_logical_vertices(), before.n_vertices());
   }
+}
+
+TEST(Collapse, WhatEdgesComeToHaveIsTheirsAndNotThatOfOneThatIsGone) {
+  TetMesh mesh = test::kuhn_box(1);
+  auto p = mesh.request_edge_property<int>("p", -1);
+  const EdgeHandle e = *mesh.edges().begin();
+  const auto [a, b] = mesh.edge_vertices(e);
+  p[std::array{a, b}] = 1;
+  const VertexHandle m = mesh.split_edge(e);
+  p[std::array{m, b}] = 2;
+  ASSERT_EQ(mesh.collapse_edge(mesh.find_halfedge(m, a)), a);
+  EXPECT_EQ((p[std::array{a, b}]), 2) << "the edge from the middle goes along";
+
+  // An edge at the end that has none of its own keeps the default.
+  mesh = test::kuhn_box(1);
+  auto q = mesh.request_edge_property<int>("q", -1);
+  const VertexHandle n = mesh.split_edge(*mesh.edges().begin());
+  for (VertexHandle x : mesh.vertex_vertices(n)) q[std::array{n, x}] = 5;
+  std::vector<std::array<VertexHandle, 2>> there, come;
+  for (VertexHandle x : mesh.vertex_vertices(a)) there.push_back({a, x});
+  for (VertexHandle x : mesh.vertex_vertices(n))
+    if (x != a && !mesh.find_edge(a, x).is_valid()) come.push_back({a, x});
+  ASSERT_EQ(mesh.collapse_edge(mesh.find_halfedge(n, a)), a);
+  ASSERT_FALSE(come.empty());
+  for (const auto& edge : come) EXPECT_EQ(q[edge], 5);
+  std::erase_if(there, [&](const auto& edge) { return edge[1] == n; });
+  for (const auto& edge : there) EXPECT_EQ(q[edge], -1);
 }
 
 /// The collapse done to arrays and built anew; nothing when build() or check() refuses it.

@@ -164,6 +164,11 @@ TEST(Property, WithoutANameFollowsTheMeshAndGoesWithItsLastHandle) {
     EXPECT_EQ(mark.size(), 4U);
     EXPECT_EQ(mark[VertexHandle(2)], 7);
     EXPECT_TRUE(mesh.properties().vertices.names().empty());
+    EXPECT_FALSE(mesh.properties().vertices.remove("")) << "nobody can ask for one of them";
+    mesh.add_vertex({1, 1, 2});
+    EXPECT_EQ(mark.size(), 5U);
+    mesh.delete_vertex(VertexHandle(4));
+    mesh.collect_garbage();
     TetMesh copy = mesh;
     EXPECT_FALSE(copy.properties().vertices.empty()) << "restore() brings the values back";
     copy.collect_garbage();
@@ -173,6 +178,19 @@ TEST(Property, WithoutANameFollowsTheMeshAndGoesWithItsLastHandle) {
   mesh.collect_garbage();
   EXPECT_TRUE(mesh.properties().vertices.empty());
   EXPECT_LE(mesh.properties().memory_bytes(), before);
+}
+
+TEST(Moved, MeshIsEmptyWhateverWasDeleted) {
+  TetMesh mesh = test::single_cell();
+  mesh.delete_vertex(mesh.add_vertex({1, 1, 1}));
+  ASSERT_TRUE(mesh.needs_garbage_collection());
+  TetMesh other = std::move(mesh);
+  EXPECT_EQ(mesh.n_logical_vertices(), 0U);  // NOLINT(bugprone-use-after-move)
+  EXPECT_FALSE(mesh.needs_garbage_collection());
+  EXPECT_EQ(other.n_logical_vertices(), 4U);
+  mesh = std::move(other);
+  EXPECT_EQ(mesh.n_logical_vertices(), 4U);
+  EXPECT_TRUE(mesh.needs_garbage_collection());
 }
 
 TEST(TupleMap, ErasedEntryGivesItsPlaceToTheLastOne) {
