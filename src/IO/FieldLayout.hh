@@ -2,6 +2,7 @@
 #ifndef HFR_IO_FIELD_LAYOUT_HH
 #define HFR_IO_FIELD_LAYOUT_HH
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -47,9 +48,27 @@ template <>
 struct Layout<std::vector<double>> {
   static constexpr int kComponents = 0;
   static constexpr bool kInteger = false;
-  static double get(const std::vector<double>& value, int k) { return value[static_cast<std::size_t>(k)]; }
-  static void set(std::vector<double>& value, int k, double x) { value[static_cast<std::size_t>(k)] = x; }
+  /// What an item lacks is 0.
+  static double get(const std::vector<double>& value, int k) {
+    return static_cast<std::size_t>(k) < value.size() ? value[static_cast<std::size_t>(k)] : 0.0;
+  }
+  static void set(std::vector<double>& value, int k, double x) {
+    if (static_cast<std::size_t>(k) >= value.size()) value.resize(static_cast<std::size_t>(k) + 1);
+    value[static_cast<std::size_t>(k)] = x;
+  }
 };
+
+/// Components of a property: of vectors as many as the longest has, since each may have a length of its own.
+template <class T>
+int n_components(const T& preset, const auto& values) {
+  if constexpr (Layout<T>::kComponents > 0) {
+    return Layout<T>::kComponents;
+  } else {
+    std::size_t most = preset.size();
+    for (const T& value : values) most = std::max(most, value.size());
+    return static_cast<int>(most);
+  }
+}
 
 /// Calls `f.template operator()<T>()` with the type T that a field of this shape is kept in.
 template <class F>

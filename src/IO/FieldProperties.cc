@@ -52,9 +52,7 @@ bool detach_as(const TetMesh& mesh, const detail::DenseStored& stored, std::vect
   Field field;
   field.name = stored.name();
   field.integer = Layout<T>::kInteger;
-  field.components = Layout<T>::kComponents;
-  if constexpr (std::same_as<T, std::vector<double>>)
-    field.components = static_cast<int>(property.preset.size());
+  field.components = n_components(property.preset, property.values);
   if (field.components == 0) return true;
   field.values.reserve(property.values.size() * static_cast<std::size_t>(field.components));
   for (std::size_t i = 0; i < property.values.size(); ++i) {

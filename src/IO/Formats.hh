@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "IO/InputFile.hh"
@@ -38,6 +39,9 @@ Notes write_vtu(const std::filesystem::path& path, const MeshData& mesh, const W
 MeshData read_surface(const InputFile& file);
 /// The boundary of the cells, outwards, or the triangles of the mesh where it has no cells.
 Notes write_surface(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& options);
+
+/// Another file of the same mesh: `path` itself where it has that extension, in capitals where `path`'s is.
+std::filesystem::path file_beside(const std::filesystem::path& path, std::string_view extension);
 
 }  // namespace hfr::io
 

@@ -8,21 +8,16 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/Linearise.hh"
+#include "IO/ReserveMore.hh"
 
 namespace hfr::io::gmsh {
 namespace {
 
-template <class T>
-void reserve_more(std::vector<T>& vector, std::size_t count) {
-  const std::size_t wanted = vector.size() + count;
-  if (wanted > vector.capacity()) vector.reserve(std::max(wanted, 2 * vector.capacity()));
-}
-
 template <std::size_t N>
 void reserve_more(Elements<N>& elements, std::size_t count) {
-  reserve_more(elements.nodes, count);
-  reserve_more(elements.groups, count);
-  reserve_more(elements.tags, count);
+  io::reserve_more(elements.nodes, count);
+  io::reserve_more(elements.groups, count);
+  io::reserve_more(elements.tags, count);
 }
 
 template <std::size_t N>
@@ -163,12 +158,11 @@ void Collector::end_elements(bool drop_copies_in_groups) {
       drop_copies(points_) + drop_copies(edges_) + drop_copies(triangles_) + drop_copies(cells_);
 }
 
-void Collector::restart(PendingField& entry, int components, int step) const {
-  const std::size_t items = entry.on_points ? mesh_.points.size() : cells_.nodes.size();
+void Collector::restart(PendingField& entry, int components, int step) {
   entry.step = step;
   entry.field.components = components;
-  entry.field.values.assign(items * static_cast<std::size_t>(components), 0.0);
-  entry.given.assign(items, false);
+  entry.field.values.clear();
+  entry.given.clear();
   entry.outside = 0;
 }
 
@@ -194,6 +188,11 @@ Index Collector::find_item(std::int64_t tag) const {
 
 void Collector::set_value(Index item, int component, double value) {
   PendingField& entry = pending();
+  if (entry.given.empty()) {  // a file may have any number of headers without values
+    const std::size_t items = entry.on_points ? mesh_.points.size() : cells_.nodes.size();
+    entry.field.values.assign(items * static_cast<std::size_t>(entry.field.components), 0.0);
+    entry.given.assign(items, false);
+  }
   if (component == 0) {
     if (entry.given[item]) entry.repeated = true;
     entry.given[item] = true;
@@ -252,7 +251,10 @@ void Collector::take_fields() {
       note(name + ": " + several(entry.outside, "value", "values") +
            " on elements other than tetrahedra left out");
     }
-    if (!entry.on_points && missing == entry.given.size() && entry.outside > 0) continue;
+    if (entry.given.empty()) {
+      if (entry.outside == 0) note(name + " has no values and is left out");
+      continue;
+    }
     if (missing > 0) {
       note(name + " has no value on " +
            several(missing, entry.on_points ? "point" : "cell", entry.on_points ? "points" : "cells") +

@@ -84,7 +84,7 @@ class Collector {
   };
 
   PendingField& pending() { return fields_[current_field_]; }
-  void restart(PendingField& entry, int components, int step) const;
+  static void restart(PendingField& entry, int components, int step);
   bool any_physical() const;
   template <std::size_t N>
   std::vector<int> labels(const Elements<N>& elements) const;

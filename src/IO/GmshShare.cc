@@ -156,11 +156,11 @@ void GmshShare::refuse_several_groups() const {
 }
 
 void GmshShare::note_several_groups() {
-  for (const Group& group : groups_)
-    if (group.in_several != 0)
-      notes_.push_back("entity " + std::to_string(group.elementary) + " of dimension " +
-                       std::to_string(group.dimension) +
-                       " is in several physical groups; the first is taken");
+  const auto n =
+      std::count_if(groups_.begin(), groups_.end(), [](const Group& g) { return g.in_several != 0; });
+  if (n > 0)
+    notes_.push_back(std::to_string(n) + (n == 1 ? " entity is" : " entities are") +
+                     " in several physical groups; the first is taken");
 }
 
 /// Physical groups, or entities where the whole file has no group; one entity with the tag that writers give

@@ -29,6 +29,7 @@ struct Section {
   std::uint64_t n = 0;
   std::uint64_t begin = 0;    ///< first line, or byte
   std::uint64_t n_lines = 0;  ///< of a text; 0 of bytes
+  std::uint64_t end = 0;      ///< of bytes: where the next one begins; 0 of a text
 };
 
 class TextSections {
@@ -104,7 +105,7 @@ class TextSections {
       fail(text_.marks()[mark].word + ": a keyword has to follow");
   }
   void add(std::size_t mark, const medit::Heading& heading) {
-    Section section{heading, text_.marks()[mark].word, 0, text_.marks()[mark].line, 0};
+    Section section{heading, text_.marks()[mark].word, 0, text_.marks()[mark].line, 0, 0};
     const std::uint64_t end = end_of(mark);
     if (heading.keyword != Keyword::kUnknown) {
       std::tie(section.n, section.begin) = count(mark, 0, std::numeric_limits<std::int64_t>::max());
@@ -178,9 +179,9 @@ class BinarySections {
             std::size_t integers, Use&& use) {
     const std::uint64_t size = entry_size(reals, integers);
     constexpr std::uint64_t kAtOnce = std::uint64_t{1} << 16;
-    if (end > 0 && (in_.size() - section.begin) / size < end)
+    if (end > 0 && (section.end - section.begin) / size < end)
       fail(medit::too_few_entries(section.name, static_cast<std::int64_t>(section.n),
-                                  (in_.size() - section.begin) / size));
+                                  (section.end - section.begin) / size));
     for (std::uint64_t i = begin; i < end; i += kAtOnce) {
       const std::uint64_t n = std::min(kAtOnce, end - i);
       const std::string text = bytes(section.begin + i * size, n * size);
@@ -226,13 +227,15 @@ class BinarySections {
     }
     Section section{
         heading, heading.name.empty() ? "section " + std::to_string(heading.code) : std::string(heading.name),
-        0, 0, 0};
+        0,       0,
+        0,       next != 0 ? next : in_.size()};
     const std::uint64_t n_count = version_ < 4 ? 4 : 8;
     if (!heading.name.empty()) {
       const std::string text = bytes(at + n_head, n_count);
       section.n =
           static_cast<std::uint64_t>(std::max<std::int64_t>(BinaryEntry(text, version_, swap_).integer(), 0));
       section.begin = at + n_head + n_count;
+      if (section.begin > section.end) fail("section " + section.name + " ends before its entries begin");
       if (section.n > in_.size())
         fail(medit::too_few_entries(section.name, static_cast<std::int64_t>(section.n), 0));
     }

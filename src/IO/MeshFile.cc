@@ -142,8 +142,18 @@ std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& pa
   const Format* const format = find_format(path, {});
   if (!format || path == kStandardInput || path == kStandardOutput) return files;
   for (const std::string_view extension : format->beside)
-    if (!extension.empty()) files.push_back(std::filesystem::path(path).replace_extension(extension));
+    if (!extension.empty()) files.push_back(file_beside(path, extension));
   return files;
+}
+
+std::filesystem::path file_beside(const std::filesystem::path& path, std::string_view extension) {
+  const std::string own = path.extension().string();
+  if (lower(own) == extension) return path;
+  std::string other(extension);
+  const auto is_small = [](unsigned char c) { return std::islower(c) != 0; };
+  if (own.size() > 1 && std::none_of(own.begin(), own.end(), is_small))
+    for (char& c : other) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return std::filesystem::path(path).replace_extension(other);
 }
 
 std::vector<std::string> readable_extensions() { return all_extensions(); }

@@ -18,7 +18,7 @@ inline constexpr const char* kStandardOutput = "/dev/stdout";
 
 /// How a file is to be written.
 struct WriteOptions {
-  bool binary = false;  ///< .msh .vtk .vtu: binary variant; .mesh is always ASCII, .meshb always binary
+  bool binary = false;  ///< .msh .vtk .stl .ply: binary variant; .vtu goes by variant alone
   std::string variant =
       {};  ///< format's own name for a version: msh "2.2" | "4.0" | "4.1"; vtk "4.2" | "5.1";
            ///< vtu "ascii" | "base64" | "appended" | "zlib"; the other formats have none

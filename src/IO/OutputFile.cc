@@ -134,7 +134,8 @@ void OutputFile::put(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(errno ? errno : EIO);
 }
 
-void OutputFile::commit() {
+void OutputFile::finish() {
+  if (!file_) return;
   flush();
   errno = 0;
   // A device or pipe cannot be synced, and need not be.
@@ -142,9 +143,21 @@ void OutputFile::commit() {
   std::FILE* const file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail(errno);
+}
+
+void OutputFile::commit() {
+  finish();
+  errno = 0;
   if (!temporary_.empty() && std::rename(temporary_.c_str(), replaced_.c_str()) != 0) fail(errno);
   committed_ = true;
   if (slot_ < kMostListed) temporary_names[slot_] = nullptr;
+}
+
+void commit_together(std::initializer_list<OutputFile*> files) {
+  for (OutputFile* file : files)
+    if (file) file->finish();
+  for (OutputFile* file : files)
+    if (file) file->commit();
 }
 
 std::string xml_escaped(std::string_view text) {

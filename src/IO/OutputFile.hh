@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -42,7 +43,9 @@ class OutputFile : public ByteSink {
   OutputFile& raw(const T& value) {
     return ByteSink::raw(value), *this;
   }
-  void commit();  ///< flush, fsync, rename
+  void commit();  ///< finish(), if that has not been done, and rename
+  /// Flush, fsync and close: all that may fail for want of room. Nothing can be written after it.
+  void finish();
   /// The file that is to become the target, for other processes that write to it behind what this one does.
   /// Empty where the target is written to directly.
   const std::filesystem::path& temporary() const { return temporary_; }
@@ -60,6 +63,9 @@ class OutputFile : public ByteSink {
   std::FILE* file_ = nullptr;
   bool committed_ = false;
 };
+
+/// Files of one mesh: renames them when all are whole, one after the other. Null ones are left out.
+void commit_together(std::initializer_list<OutputFile*> files);
 
 }  // namespace hfr::io
 

@@ -11,6 +11,7 @@
 #include "IO/MeditPart.hh"
 #include "IO/MeditSource.hh"
 #include "IO/ReadMeditSolution.hh"
+#include "IO/ReserveMore.hh"
 #include "IO/Validate.hh"
 
 namespace hfr::io {
@@ -81,8 +82,8 @@ class MeditReader {
 
   void read_vertices(const Heading& heading) {
     const std::size_t n = in_.count(heading.name, 1, 3);
-    mesh_.points.reserve(mesh_.points.size() + n);
-    mesh_.vertex_labels.reserve(mesh_.points.size() + n);
+    reserve_more(mesh_.points, n);
+    reserve_more(mesh_.vertex_labels, n);
     for (std::size_t i = 0; i < n; ++i) {
       expect_entry(heading, n, i);
       Vec3 p;
@@ -112,8 +113,8 @@ class MeditReader {
   void read_elements(std::vector<std::array<Index, N>>& elements, std::vector<int>& labels,
                      const Heading& heading) {
     const std::size_t n = in_.count(heading.name, N + kMidside + 1, 0);
-    elements.reserve(elements.size() + n);
-    labels.reserve(elements.size() + n);
+    reserve_more(elements, n);
+    reserve_more(labels, n);
     for (std::size_t i = 0; i < n; ++i) {
       expect_entry(heading, n, i);
       std::array<Index, N> element;

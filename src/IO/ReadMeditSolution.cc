@@ -3,7 +3,9 @@
 
 #include <system_error>
 
+#include "IO/Formats.hh"
 #include "IO/MeditSource.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io::medit {
 namespace {
@@ -73,10 +75,9 @@ void read_solution(const InputFile& file, MeshData& mesh) {
 }  // namespace
 
 void read_solution_beside(const InputFile& mesh_file, MeshData& mesh) {
-  const bool binary = mesh_file.path().extension() == ".meshb";
+  const bool binary = lower(mesh_file.path().extension().string()) == ".meshb";
   for (const char* const extension : {binary ? ".solb" : ".sol", binary ? ".sol" : ".solb"}) {
-    std::filesystem::path path = mesh_file.path();
-    path.replace_extension(extension);
+    const std::filesystem::path path = file_beside(mesh_file.path(), extension);
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) continue;
     const InputFile file(path);

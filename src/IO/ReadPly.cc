@@ -50,6 +50,7 @@ class PlyReader {
   NumberType number_type();
   void read_header();
   void read_property(Element& element);
+  std::size_t bytes_of_item(const Element& element) const;
   double value(NumberType type);
   std::size_t list_length(const Property& property);
   void read_vertices(const Element& element);
@@ -104,7 +105,9 @@ void PlyReader::read_header() {
     } else if (keyword == "element") {
       Element element;
       element.name = in_.word();
-      element.n = in_.count(0, "number of " + shown(element.name));
+      // Even without properties an item could be a line; that so many fit is looked at once the header ends.
+      element.n = static_cast<std::size_t>(in_.integer_in(0, static_cast<std::int64_t>(in_.text().size()),
+                                                          "number of " + shown(element.name)));
       elements_.push_back(std::move(element));
     } else if (keyword == "property") {
       if (elements_.empty()) in_.fail("a property stands before the first element");
@@ -117,6 +120,21 @@ void PlyReader::read_header() {
   }
   if (!have_format) in_.fail("the header has no format");
   in_.rest_of_line();
+  for (const Element& element : elements_) {
+    const std::size_t least = bytes_of_item(element), left = in_.text().size() - in_.offset();
+    // The last line of a text may have no end.
+    if (element.n > (left + (binary_ ? 0 : 1)) / std::max<std::size_t>(least, 1))
+      fail("number of " + shown(element.name) + " " + std::to_string(element.n) +
+           " is more than the rest of the file can hold");
+  }
+}
+
+/// At least; in text a number and what is behind it.
+std::size_t PlyReader::bytes_of_item(const Element& element) const {
+  std::size_t bytes = 0;
+  for (const Property& property : element.properties)
+    bytes += binary_ ? size_of(property.list_count.value_or(property.type)) : 2;
+  return bytes;
 }
 
 double PlyReader::value(NumberType type) {
@@ -210,8 +228,13 @@ MeshData PlyReader::read() {
       if (!have_vertices) fail("the faces stand before the vertices");
       read_faces(element);
     } else {
+      if (element.name == "tristrips" && element.n > 0)
+        fail("triangles in strips (element 'tristrips') are not read: convert them to element 'face'");
       for (std::size_t i = 0; i < element.n; ++i)
         for (const Property& property : element.properties) skip(property);
+      if (element.n > 0)
+        mesh_.notes.push_back("element " + shown(element.name) + " (" + std::to_string(element.n) +
+                              ") is not kept");
     }
   }
   return std::move(mesh_);

@@ -128,9 +128,15 @@ MeshData read_text_stl(const InputFile& file) {
   return soup.take();
 }
 
+bool begins_with_solid(std::string_view bytes) {
+  constexpr std::string_view kSolid = "solid";
+  bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+  return lower(bytes.substr(0, kSolid.size())) == kSolid;
+}
+
 MeshData read_stl(const InputFile& file) {
   const std::string_view bytes = file.bytes();
-  const bool solid = bytes.starts_with("solid");  // some binary files begin so too
+  const bool solid = begins_with_solid(bytes);  // some binary files begin so too
   if (bytes.size() < kStlHeader) {
     if (solid) return read_text_stl(file);
     throw InvalidInput(file.path().string() + ": at byte " + std::to_string(bytes.size()) +

@@ -18,8 +18,7 @@ namespace {
 
 /// A file of the set, or nothing when there is none.
 struct Part {
-  Part(const std::filesystem::path& any, const char* extension)
-      : path(std::filesystem::path(any).replace_extension(extension)) {
+  Part(const std::filesystem::path& any, const char* extension) : path(file_beside(any, extension)) {
     std::error_code ignored;
     if (!std::filesystem::exists(path, ignored)) return;
     file.emplace(path);
@@ -173,8 +172,10 @@ class TetgenReader {
   void read_elements(TextScanner& in, std::vector<std::array<Index, N>>& elements, std::vector<int>& labels) {
     constexpr std::int64_t kMidside = N == 3 ? 3 : 1;
     const std::size_t n = in.count(N + 1, N == 3 ? "number of faces" : "number of edges");
-    // The flag may be left out.
-    const bool has_markers = !in.rest_of_line().starts_with('0');
+    const std::string_view flag = in.rest_of_line();
+    // It may be left out: then the first line shows whether something stands behind the corners.
+    const bool has_markers =
+        flag.empty() ? columns(in) > 1 + static_cast<std::int64_t>(N) : !flag.starts_with('0');
     const std::int64_t extra = columns(in) - 1 - static_cast<std::int64_t>(N) - (has_markers ? 1 : 0);
     const bool second_order = N == 3 ? extra >= kMidside : extra >= kMidside && !midside_.empty();
     elements.reserve(n);

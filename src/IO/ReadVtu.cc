@@ -9,6 +9,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/Formats.hh"
+#include "IO/ReserveMore.hh"
 #include "IO/VtkGrid.hh"
 #include "IO/VtuData.hh"
 #include "IO/VtuXml.hh"
@@ -168,7 +169,7 @@ void VtuReader::read_piece(const XMLElement& piece) {
     if (components(element) != 3) fail(element, "points must have 3 components");
     if (n_points > std::numeric_limits<std::size_t>::max() / 3) fail(piece, "too many points");
     const std::vector<double> values = read_numbers<double>(element, 3 * n_points);
-    grid_.points.reserve(points_before + n_points);
+    reserve_more(grid_.points, n_points);
     for (std::size_t i = 0; i < n_points; ++i) {
       const Vec3 p = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
       if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
@@ -209,7 +210,7 @@ void VtuReader::append_cells(const XMLElement& section, std::size_t n_cells, std
   }
   const XMLElement& type_element = named_array(section, "types");
   const std::vector<std::int64_t> types = read_numbers<std::int64_t>(type_element, n_cells);
-  grid_.types.reserve(grid_.types.size() + n_cells);
+  reserve_more(grid_.types, n_cells);
   for (const std::int64_t type : types) {
     if (type < 0 || type > std::numeric_limits<std::uint8_t>::max())
       fail(type_element, "unknown VTK cell type " + std::to_string(type));
@@ -360,7 +361,8 @@ std::vector<T> VtuReader::read_block(const XMLElement& element, std::size_t n, b
                        shown(attribute(element, "Name")) + "': " + message);
   };
   if (n == 0 && data.empty()) return {};
-  const VtuBlock block = decode_block(data, !appended || appended_base64_, coding_, fail_here);
+  const VtuBlock block =
+      decode_block(data, !appended || appended_base64_, coding_, n * size_of(type), fail_here);
   const std::string_view bytes = block.bytes();
   if (bytes.size() % size_of(type) != 0 || bytes.size() / size_of(type) != n)
     fail_here("it has " + std::to_string(bytes.size()) + " bytes, but " + std::to_string(n) + " numbers of " +

@@ -298,7 +298,7 @@ void GridConverter::distribute_cell_fields() {
     const auto kept_nonzero =
         static_cast<std::size_t>(std::count_if(kept.begin(), kept.end(), [](double v) { return v != 0.0; }));
     field.values = std::move(kept);
-    if (kept_nonzero != nonzero && field.name != kVtkNumberArray) {
+    if (kept_nonzero != nonzero && (n != 1 || field.name != kVtkNumberArray)) {
       mesh_.notes.push_back("cell field '" + field.name +
                             "': only its values on tetrahedra are kept, those on other cells are dropped");
     }
@@ -308,7 +308,17 @@ void GridConverter::distribute_cell_fields() {
 void GridConverter::take_point_arrays() {
   std::vector<Field>& fields = grid_.point_arrays;
   if (const auto labels = take_labels(fields, kVtkPointLabelNames, "point", grid_.file, mesh_.notes)) {
-    mesh_.vertex_labels.assign(labels->values.begin(), labels->values.end());
+    std::size_t n_others = 0;
+    mesh_.vertex_labels.resize(labels->values.size(), 0);  // some may have one of a cell of one point
+    for (std::size_t i = 0; i < labels->values.size(); ++i) {
+      const auto label = static_cast<int>(labels->values[i]);
+      if (label == 0) continue;
+      if (mesh_.vertex_labels[i] != 0 && mesh_.vertex_labels[i] != label) ++n_others;
+      mesh_.vertex_labels[i] = label;
+    }
+    if (n_others > 0)
+      mesh_.notes.push_back(std::to_string(n_others) + " points have one label in point array '" +
+                            labels->name + "' and another as a cell; that of the array is taken");
   }
   const auto fixed = std::find_if(fields.begin(), fields.end(), [](const Field& field) {
     return lower(field.name) == kVtkFixedArray && field.components == 1;

@@ -78,8 +78,14 @@ bool decode_base64(std::string_view text, std::string& out) {
 /// Reads one block: the parts of a block follow each other, each base64 text of its own or raw.
 class BlockReader {
  public:
-  BlockReader(std::string_view data, bool base64, const VtuCoding& coding, const BlockFailure& fail)
-      : data_(data), base64_(base64), coding_(coding), fail_(fail), word_(coding.wide_header ? 8 : 4) {}
+  BlockReader(std::string_view data, bool base64, const VtuCoding& coding, std::uint64_t n_bytes,
+              const BlockFailure& fail)
+      : data_(data),
+        base64_(base64),
+        coding_(coding),
+        n_bytes_(n_bytes),
+        fail_(fail),
+        word_(coding.wide_header ? 8 : 4) {}
 
   VtuBlock read() { return coding_.zlib ? read_compressed() : read_plain(); }
 
@@ -97,6 +103,7 @@ class BlockReader {
   std::string_view data_;
   bool base64_;
   VtuCoding coding_;
+  std::uint64_t n_bytes_;
   const BlockFailure& fail_;
   std::size_t word_;
 };
@@ -126,8 +133,8 @@ VtuBlock BlockReader::read_plain() const {
   const std::size_t header_length = base64_length(word_);
   const std::uint64_t n = word(decoded(0, header_length), 0);
   if (n > data_.size() / 4 * 3) fail(std::string(too_long));
-  // Most writers code header and bytes as one text, some each on its own.
-  if (data_[header_length - 1] == '=') {
+  // Most writers code header and bytes as one text, some each on its own: then the header's ends with itself.
+  if (decoded(0, header_length).size() == word_) {
     block.owned = decoded(header_length, base64_length(n));
   } else {
     block.owned = decoded(0, base64_length(word_ + n));
@@ -174,21 +181,29 @@ std::string BlockReader::inflated(std::string_view header, std::string_view byte
   const std::uint64_t n_blocks = word(header, 0);
   const std::uint64_t full = word(header, 1);
   const std::uint64_t partial = word(header, 2);
-  // Deflate makes at most 1032 bytes of one.
+  const auto packed = [&](std::size_t i) { return word(header, 3 + i); };
+  const auto size = [&](std::size_t i) { return i + 1 == n_blocks && partial != 0 ? partial : full; };
+  // Whether they can hold so much, and what is needed, is known before the first is unpacked. Deflate makes
+  // at most 1032 bytes of one.
   constexpr std::uint64_t kBestRatio = 1032;
+  for (std::size_t i = 0; i < n_blocks; ++i)
+    if (size(i) > (packed(i) + 1) * kBestRatio) fail("a block is too short for what it should hold");
+  std::uint64_t total = 0;
+  for (std::size_t i = 0; i < n_blocks; ++i) total += size(i);
+  if (total > n_bytes_)
+    fail("its blocks hold " + std::to_string(total) + " bytes, and " + std::to_string(n_bytes_) +
+         " are needed");
   std::string out;
   for (std::size_t i = 0; i < n_blocks; ++i) {
-    const std::uint64_t packed = word(header, 3 + i);
-    const std::uint64_t size = i + 1 == n_blocks && partial != 0 ? partial : full;
-    if (size > (packed + 1) * kBestRatio) fail("a block is too short for what it should hold");
     const std::size_t begin = out.size();
-    out.resize(begin + size);
-    uLongf n = static_cast<uLongf>(size);
-    const int status = ::uncompress(reinterpret_cast<Bytef*>(out.data() + begin), &n,
-                                    reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(packed));
-    if (status != Z_OK || n != size)
+    out.resize(begin + size(i));
+    uLongf n = static_cast<uLongf>(size(i));
+    const int status =
+        ::uncompress(reinterpret_cast<Bytef*>(out.data() + begin), &n,
+                     reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(packed(i)));
+    if (status != Z_OK || n != size(i))
       fail("block " + std::to_string(i) + " is not the zlib data it should be");
-    bytes.remove_prefix(packed);
+    bytes.remove_prefix(packed(i));
   }
   return out;
 }
@@ -268,8 +283,9 @@ std::optional<std::size_t> parse_numbers(std::string_view text, std::size_t n, T
 template std::optional<std::size_t> parse_numbers(std::string_view, std::size_t, double*);
 template std::optional<std::size_t> parse_numbers(std::string_view, std::size_t, std::int64_t*);
 
-VtuBlock decode_block(std::string_view data, bool base64, const VtuCoding& coding, const BlockFailure& fail) {
-  return BlockReader(data, base64, coding, fail).read();
+VtuBlock decode_block(std::string_view data, bool base64, const VtuCoding& coding, std::uint64_t n_bytes,
+                      const BlockFailure& fail) {
+  return BlockReader(data, base64, coding, n_bytes, fail).read();
 }
 
 void Base64Writer::add(std::string_view bytes) {

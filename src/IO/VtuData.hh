@@ -77,8 +77,10 @@ struct VtuBlock {
 using BlockFailure = std::function<void(const std::string& message)>;
 
 /// The array that begins at `data`, which may go on behind it: header words, then bytes, base64 if so, and
-/// compressed if so. No more memory is taken than `data` can fill.
-VtuBlock decode_block(std::string_view data, bool base64, const VtuCoding& coding, const BlockFailure& fail);
+/// compressed if so. No more memory is taken than `data` can fill, nor for compressed bytes that are not as
+/// many as `n_bytes`.
+VtuBlock decode_block(std::string_view data, bool base64, const VtuCoding& coding, std::uint64_t n_bytes,
+                      const BlockFailure& fail);
 
 /// Base64 text of bytes that come in pieces.
 class Base64Writer {

@@ -182,11 +182,14 @@ void note_names(std::size_t n_names, Notes& notes) {
                     " names of regions and patches are left out");
 }
 
-void note_solution_beside(const std::filesystem::path& solution, Notes& notes) {
-  std::error_code ignored;
-  if (std::filesystem::exists(solution, ignored))
-    notes.push_back(solution.filename().string() +
-                    " stands beside the file and is not of this mesh, but will be read with it");
+void note_solution_beside(const std::filesystem::path& mesh, Notes& notes) {
+  for (const char* const extension : {".sol", ".solb"}) {  // a reader takes either
+    const std::filesystem::path solution = file_beside(mesh, extension);
+    std::error_code ignored;
+    if (std::filesystem::exists(solution, ignored))
+      notes.push_back(solution.filename().string() +
+                      " stands beside the file and is not of this mesh, but will be read with it");
+  }
 }
 
 /// `solution_name` is empty where there is no place beside the mesh for its fields.
@@ -214,8 +217,7 @@ void note_losses(const MeshData& mesh, std::string_view solution_name, Notes& no
 
 template <class Sink>
 Notes write(const std::filesystem::path& path, const MeshData& mesh, const char* solution_extension) {
-  const std::filesystem::path solution_path =
-      std::filesystem::path(path).replace_extension(solution_extension);
+  const std::filesystem::path solution_path = file_beside(path, solution_extension);
   const bool alone = path == kStandardOutput;
   Notes notes;
   note_losses(mesh, alone ? "" : solution_path.filename().string(), notes);
@@ -235,22 +237,22 @@ Notes write(const std::filesystem::path& path, const MeshData& mesh, const char*
   }
   const std::vector<const Field*> point_fields = storable(mesh.point_fields);
   const std::vector<const Field*> cell_fields = storable(mesh.cell_fields);
+  std::optional<OutputFile> solution_file;
   if (!point_fields.empty() || !cell_fields.empty()) {
-    OutputFile solution_file(solution_path);
-    Sink solution(solution_file, true, version);
+    solution_file.emplace(solution_path);
+    Sink solution(*solution_file, true, version);
     write_fields(solution, Keyword::kSolAtVertices, point_fields, mesh.points.size());
     write_fields(solution, Keyword::kSolAtTetrahedra, cell_fields, mesh.cells.size());
     solution.finish();
-    solution_file.commit();
   } else {
-    note_solution_beside(solution_path, notes);
+    note_solution_beside(path, notes);
   }
-  file.commit();
+  commit_together({solution_file ? &*solution_file : nullptr, &file});
   return notes;
 }
 
 template <class Sink>
-StretchedFile stretches(const MeshStretch& mesh, const std::filesystem::path& solution) {
+StretchedFile stretches(const MeshStretch& mesh, const std::filesystem::path& path) {
   StretchedFile file;
   file.write = [&mesh, version = version_for(mesh, 0)](ByteSink& out) {
     Sink sink(out, mesh.is_first(), version);
@@ -258,7 +260,7 @@ StretchedFile stretches(const MeshStretch& mesh, const std::filesystem::path& so
     sink.finish();
   };
   note_names(mesh.names->size(), file.notes);
-  note_solution_beside(solution, file.notes);
+  note_solution_beside(path, file.notes);
   return file;
 }
 
@@ -299,11 +301,7 @@ Notes write_medit_part(ByteSink& file, const MeditPart& part) {
 }
 
 StretchedFile medit_stretches(const std::filesystem::path& path, const MeshStretch& mesh, bool is_binary) {
-  const auto beside = [&](const char* extension) {
-    return std::filesystem::path(path).replace_extension(extension);
-  };
-  return is_binary ? stretches<BinarySink>(mesh, beside(".solb"))
-                   : stretches<AsciiSink>(mesh, beside(".sol"));
+  return is_binary ? stretches<BinarySink>(mesh, path) : stretches<AsciiSink>(mesh, path);
 }
 
 }  // namespace hfr::io

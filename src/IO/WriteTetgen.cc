@@ -93,9 +93,7 @@ Notes losses(const MeshData& mesh) {
 }  // namespace
 
 Notes write_tetgen(const std::filesystem::path& path, const MeshData& mesh, const WriteOptions& /*options*/) {
-  const auto part = [&](const char* extension) {
-    return std::filesystem::path(path).replace_extension(extension);
-  };
+  const auto part = [&](const char* extension) { return file_beside(path, extension); };
   OutputFile nodes(part(".node"));
   write_nodes(nodes, mesh);
   OutputFile cells(part(".ele"));
@@ -114,10 +112,7 @@ Notes write_tetgen(const std::filesystem::path& path, const MeshData& mesh, cons
     edges = std::make_unique<OutputFile>(part(".edge"));
     write_elements(*edges, mesh.edges, mesh.edge_labels);
   }
-  nodes.commit();
-  cells.commit();
-  if (faces) faces->commit();
-  if (edges) edges->commit();
+  commit_together({&nodes, &cells, faces.get(), edges.get()});
   return losses(mesh);
 }
 

@@ -270,6 +270,15 @@ TEST(GmshReader, LastTimeStepOfAFieldIsTakenAndGapsAreNoted) {
   EXPECT_TRUE(has_note(mesh.notes, "1 value on elements other than tetrahedra"));
 }
 
+TEST(GmshReader, FieldsWithoutAnyValueAreLeftOut) {
+  const MeshData mesh = read_file(kAscii41 +
+                                  "$NodeData\n1\n\"none\"\n0\n3\n0\n9\n0\n$EndNodeData\n"
+                                  "$NodeData\n1\n\"u\"\n0\n3\n0\n1\n1\n10 4\n$EndNodeData\n");
+  ASSERT_EQ(mesh.point_fields.size(), 1U);
+  EXPECT_EQ(mesh.point_fields[0].name, "u");
+  EXPECT_TRUE(has_note(mesh.notes, "field 'none' has no values and is left out"));
+}
+
 TEST(GmshReader, ParametricNodesOfVersion2AreRead) {
   const MeshData mesh = read_file(
       "$MeshFormat\n2 0 8\n$EndMeshFormat\n$ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 1 .5\n3 0 1 0 2 1 .5 "

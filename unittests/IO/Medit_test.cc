@@ -178,6 +178,10 @@ TEST(Medit, AStaleSolutionBesideTheOutputIsNamed) {
   const TemporaryFolder folder;
   samples::write_bytes(folder / "a.sol", "old");
   EXPECT_TRUE(mentions(write_mesh(folder / "a.mesh", samples::two_cells()), "a.sol"));
+  samples::write_bytes(folder / "b.solb", "old");
+  EXPECT_TRUE(mentions(write_mesh(folder / "b.mesh", samples::two_cells()), "b.solb"));
+  samples::write_bytes(folder / "C.SOL", "old");
+  EXPECT_TRUE(mentions(write_mesh(folder / "C.MESH", samples::two_cells()), "C.SOL"));
 }
 
 /// A binary file of any version and byte order, section by section.

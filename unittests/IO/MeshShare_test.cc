@@ -223,6 +223,7 @@ TEST(MeshShare, BinaryMeditThatCannotBeReadSaysWhy) {
   EXPECT_THAT(changed(16, 2), HasSubstr("only dimension 3 is read"));
   EXPECT_THAT(changed(28, 100), HasSubstr("100 entries"));
   EXPECT_THAT(changed(28, 9), HasSubstr("9 entries"));
+  EXPECT_THAT(changed(28, 5), HasSubstr("5 entries")) << "the fifth would be the heading of the next section";
   EXPECT_THAT(changed(32 + 4 * 28 + 12, 5), HasSubstr("vertex 5 is out of range"));
 }
 

@@ -3,10 +3,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <iterator>
+#include <tuple>
 
 #include "HalfFace/Errors.hh"
 #include "IO/InputFile.hh"
@@ -179,6 +182,51 @@ class ScopedDescriptor {
  private:
   int number_, kept_;
 };
+
+/// A bound on the size of files, as long as it lives.
+class ScopedFileSize {
+ public:
+  explicit ScopedFileSize(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit bound = {bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &bound);
+  }
+  ~ScopedFileSize() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, signal_);
+  }
+  ScopedFileSize(const ScopedFileSize&) = delete;
+  ScopedFileSize& operator=(const ScopedFileSize&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*signal_)(int);
+};
+
+TEST(OutputFile, FilesOfOneMeshAreReplacedTogetherOrNotAtAll) {
+  const TemporaryFolder folder;
+  // The file that is written first has room, the other one has not.
+  MeshData cells = samples::two_cells(), fields = cells;
+  for (int i = 0; i < 40; ++i) cells.cells.push_back(cells.cells[0]);
+  fields.points.resize(4);
+  fields.points.insert(fields.points.end(), 40, Vec3{0.25, 0.25, 0.25});
+  fields.point_fields.push_back({.name = "p", .values = std::vector<double>(44, 1)});
+  fields.cells.resize(1);
+  for (const auto& [name, others, mesh, bound] :
+       {std::tuple("a.node", std::vector<std::string>{"a.node", "a.ele"}, cells, rlim_t{120}),
+        std::tuple("a.mesh", std::vector<std::string>{"a.mesh", "a.sol"}, fields, rlim_t{300})}) {
+    for (const std::string& other : others) samples::write_bytes(folder / other, "old");
+    {
+      const ScopedFileSize room(bound);
+      EXPECT_NE(message_of([&, &name = name, &mesh = mesh] { write_mesh(folder / name, mesh); }), "no error");
+    }
+    for (const std::string& other : others) EXPECT_EQ(samples::read_bytes(folder / other), "old") << other;
+    write_mesh(folder / name, mesh);
+    std::size_t n_small = 0;
+    for (const std::string& other : others) n_small += fs::file_size(folder / other) <= bound ? 1u : 0u;
+    EXPECT_EQ(n_small, 1u) << name << ": one of them would have had room";
+  }
+}
 
 TEST(StandardStreams, AMeshGoesThroughThemInTheNamedFormat) {
   const TemporaryFolder folder;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -90,7 +91,23 @@ TEST_P(SurfaceFiles, TrianglesWithoutCellsComeBackInTheirOrder) {
   mesh.triangle_labels.assign(mesh.triangles.size(), 0);
   write_mesh(folder / GetParam().file, mesh, {GetParam().binary, ""});
   const MeshData read = read_mesh(folder / GetParam().file);
-  if (!GetParam().exact) return;
+  if (!GetParam().exact) {
+    const auto rounded = [&](Index v) {
+      Vec3 p = mesh.points[v];
+      for (int d = 0; d < 3; ++d) p[d] = static_cast<double>(static_cast<float>(p[d]));
+      return p;
+    };
+    std::erase_if(mesh.triangles, [&](const auto& t) {  // two corners in one place are dropped
+      return rounded(t[0]) == rounded(t[1]) || rounded(t[1]) == rounded(t[2]) ||
+             rounded(t[2]) == rounded(t[0]);
+    });
+    ASSERT_GT(mesh.triangles.size(), 50u);
+    ASSERT_EQ(read.triangles.size(), mesh.triangles.size());
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_EQ(read.points[read.triangles[i][k]], rounded(mesh.triangles[i][k])) << i;
+    return;
+  }
   EXPECT_TRUE(samples::same_bits(read.points, mesh.points));
   EXPECT_EQ(read.triangles, mesh.triangles);
 }
@@ -187,6 +204,42 @@ TEST(SurfaceFormats, PlyWithOtherElementsAndPropertiesIsRead) {
       "2 0.5 0.5\n9 0.1 0 0 255\n9 1 0 0 255\n9 0 1 0 255\n1 3 0 1 2\n0 1\n");
   EXPECT_EQ(mesh.points[0], (Vec3{0.1, 0, 0}));
   EXPECT_EQ(mesh.triangles, (std::vector<std::array<Index, 3>>{{0, 1, 2}}));
+}
+
+TEST(SurfaceFormats, WhatPlyHasBesideVerticesAndFacesIsNamed) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n";
+  const MeshData mesh =
+      read_text("a.ply", head + "element cloud 2\nproperty int i\nend_header\n" + points + "1\n2\n");
+  EXPECT_THAT(mesh.notes, testing::ElementsAre("element cloud (2) is not kept"));
+  const TemporaryFolder folder;
+  EXPECT_EQ(
+      samples::short_message_for(
+          folder / "a.ply", head + "element tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
+                                points + "3 0 1 2\n"),
+      ":12: triangles in strips (element 'tristrips') are not read: convert them to element 'face'");
+}
+
+TEST(SurfaceFormats, PlyOfOneByteAnItemIsRead) {
+  const TemporaryFolder folder;
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement flag 1000\nproperty uchar v\nend_header\n";
+  EXPECT_EQ(samples::short_message_for(folder / "a.ply", text + std::string(999, 'x')),
+            ": at byte " + std::to_string(text.size()) +
+                ": number of flag 1000 is more than the rest of the file can hold");
+  EXPECT_THAT(read_text("a.ply", text + std::string(1000, 'x')).notes,
+              testing::ElementsAre("element flag (1000) is not kept"));
+}
+
+TEST(SurfaceFormats, StlInCapitalsOrBehindBlanksIsText) {
+  const std::string text =
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+      "endsolid\n";
+  std::string capitals = text;
+  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  EXPECT_EQ(read_text("a.stl", capitals).triangles.size(), 1u);
+  EXPECT_EQ(read_text("a.stl", "\n  " + text).triangles.size(), 1u);
 }
 
 TEST(SurfaceFormats, PlyMessagesAreShortWhateverTheFileSays) {

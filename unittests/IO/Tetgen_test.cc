@@ -136,5 +136,24 @@ TEST(Tetgen, RealMeshesHaveTheirCounts) {
   }
 }
 
+TEST(Tetgen, WithoutTheFlagTheFirstLineShowsWhetherThereAreMarkers) {
+  const std::string cells = "1 4 0\n1 1 2 3 4\n";
+  const MeshData plain = read_set(kNodes, cells, "2\n1 1 2 3\n2 1 2 4\n");
+  EXPECT_EQ(plain.triangles.size(), 2U);
+  EXPECT_TRUE(plain.triangle_labels.empty() || plain.triangle_labels == std::vector<int>(2));
+  EXPECT_THAT(read_set(kNodes, cells, "2\n1 1 2 3 7\n2 1 2 4 8\n").triangle_labels, ElementsAre(7, 8));
+}
+
+TEST(Tetgen, NamesInCapitalsAreThoseOfTheWholeSet) {
+  const TemporaryFolder folder;
+  samples::write_bytes(folder / "B.node", "nothing of ours");
+  write_mesh(folder / "B.NODE", samples::full());
+  EXPECT_EQ(read_mesh(folder / "B.ELE").cells.size(), 2U);
+  EXPECT_EQ(read_mesh(folder / "B.NODE").triangles.size(), 3U);
+  EXPECT_EQ(samples::read_bytes(folder / "B.node"), "nothing of ours");
+  EXPECT_THAT(files_of_mesh("x/B.NODE"),
+              testing::UnorderedElementsAre("x/B.NODE", "x/B.ELE", "x/B.FACE", "x/B.EDGE"));
+}
+
 }  // namespace
 }  // namespace hfr::io

@@ -258,6 +258,20 @@ TEST(Vtk, FlatCellsThatAreNoTrianglesAreDroppedAndVerticesLabelPoints) {
   EXPECT_TRUE(has_note(mesh, "1 cell of type VTK_POLY_VERTEX dropped"));
 }
 
+TEST(Vtk, LabelsOfPointsAndOfCellsOfOnePointAreBothTaken) {
+  const TemporaryFolder folder;
+  const std::string head =
+      "# vtk DataFile Version 2.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
+      "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\n"
+      "CELLS 3 9\n4 0 1 2 3\n1 2\n1 3\n"
+      "CELL_TYPES 3\n10 1 1\nCELL_DATA 3\nSCALARS region int 1\nLOOKUP_TABLE default\n2 4 5\n"
+      "POINT_DATA 4\nSCALARS label int 1\nLOOKUP_TABLE default\n";
+  const MeshData mesh = read_text(folder, head + "7 0 0 6\n");
+  EXPECT_EQ(mesh.vertex_labels, (std::vector<int>{7, 0, 4, 6}));
+  EXPECT_TRUE(has_note(mesh, "1 points have one label in point array 'label' and another as a cell"));
+  EXPECT_EQ(read_text(folder, head + "0 0 0 0\n").vertex_labels, (std::vector<int>{0, 0, 4, 5}));
+}
+
 TEST(Vtk, WhatIsBrokenIsNamedWithItsLine) {
   const TemporaryFolder folder;
   const std::string good = kTwoCells;

@@ -353,6 +353,42 @@ TEST(Vtu, AnOffsetBehindTheAppendedDataIsRefused) {
   EXPECT_NE(samples::short_message_for(folder / "a.vtu", replaced(good, "offset=\"0\"", "offset=\"1\"")), "");
 }
 
+/// One cell has one byte of types: header and byte end as a header of its own does, but for a sign.
+TEST(Vtu, AnArrayOfOneByteIsReadInEveryCoding) {
+  const TemporaryFolder folder;
+  for (const bool appended : {false, true})
+    for (const bool wide : {false, true})
+      for (const bool apart : {false, true}) {
+        Foreign f{.wide = wide, .appended = appended, .header_apart = apart};
+        std::string cells = f.array<std::int64_t>("type=\"Int64\" Name=\"connectivity\"", {0, 1, 2, 3});
+        cells += f.array<std::int8_t>("type=\"Int8\" Name=\"offsets\"", {4});
+        cells += f.array<std::uint8_t>("type=\"UInt8\" Name=\"types\"", {10});
+        const std::string points =
+            f.array<float>("type=\"Float32\" NumberOfComponents=\"3\"", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+        samples::write_bytes(
+            folder / "a.vtu",
+            std::string("<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"") +
+                (wide ? " header_type=\"UInt64\"" : "") +
+                "><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Cells>" + cells +
+                "</Cells><Points>" + points + "</Points></Piece></UnstructuredGrid>" +
+                (appended ? "<AppendedData encoding=\"base64\">_" + f.data + "</AppendedData>" : "") +
+                "</VTKFile>");
+        EXPECT_EQ(read_mesh(folder / "a.vtu").cells.size(), 1u) << appended << wide << apart;
+      }
+}
+
+TEST(Vtu, BlocksThatHoldMoreThanIsNeededAreNotUnpacked) {
+  const TemporaryFolder folder;
+  Foreign foreign{.appended = true, .coded = false, .zlib = true};
+  std::string bytes = foreign.file();
+  const std::size_t begin = bytes.find("_", bytes.find("<AppendedData")) + 1;
+  bytes[begin + 8] = 8;    // the last of the four blocks of the connectivity has 8 bytes, not 16
+  bytes[begin + 4] = 100;  // and the others 100
+  EXPECT_EQ(samples::short_message_for(folder / "a.vtu", bytes),
+            ": at byte " + std::to_string(begin) +
+                ": array 'connectivity': its blocks hold 308 bytes, and 64 are needed");
+}
+
 TEST(Vtu, PiecesAreJoined) {
   const TemporaryFolder folder;
   std::string text = kText;
