@@ -40,18 +40,15 @@ class Values {
 template <class T>
 class ValuesOf final : public Values {
  public:
-  explicit ValuesOf(detail::Dense<T>& property) : property_(property) {}
-  int n_components() const override {
-    if constexpr (std::same_as<T, std::vector<double>>)
-      return static_cast<int>(property_.preset.size());
-    else
-      return io::Layout<T>::kComponents;
-  }
+  explicit ValuesOf(detail::Dense<T>& property)
+      : property_(property), n_components_(io::n_components(property.preset, property.values)) {}
+  int n_components() const override { return n_components_; }
   double get(std::size_t i, int k) const override { return io::Layout<T>::get(property_.values[i], k); }
   void set(std::size_t i, int k, double x) override { io::Layout<T>::set(property_.values[i], k, x); }
 
  private:
   detail::Dense<T>& property_;
+  int n_components_;
 };
 
 template <class... T>
@@ -214,6 +211,12 @@ void validate_fields(const TetMesh& mesh, std::span<const FieldTransfer> fields)
       continue;
     }
     required(mesh, field.name, field.how);
+    const auto is_same = [&](const FieldTransfer& f) {
+      return f.name == field.name && f.how != Transfer::kCallback &&
+             is_of_vertices(f.how) == is_of_vertices(field.how);
+    };
+    HFR_REQUIRE(std::count_if(fields.begin(), fields.end(), is_same) == 1,
+                "field '" + field.name + "' is to be transferred in two ways: name one");
     if (field.density.empty()) continue;
     HFR_REQUIRE(field.how == Transfer::kConserve,
                 "field '" + field.name + "' has a density, which only conserved fields have");

@@ -38,29 +38,40 @@ struct Box {
   }
 };
 
-/// Boxes by where they begin along x.
-class ByX {
+/// Boxes by where they begin along the axis in which all of them together are longest.
+class AlongAxis {
  public:
-  ByX() = default;
-  ByX(std::span<const Box> boxes, std::span<const Index> numbers) {
-    by_x_.reserve(numbers.size());
+  AlongAxis() = default;
+  AlongAxis(std::span<const Box> boxes, std::span<const Index> numbers) {
+    if (numbers.empty()) return;
+    Vec3 low = boxes[numbers[0]].low, high = boxes[numbers[0]].high;
+    for (const Index i : numbers)
+      for (int d = 0; d < 3; ++d) {
+        low[d] = std::min(low[d], boxes[i].low[d]);
+        high[d] = std::max(high[d], boxes[i].high[d]);
+      }
+    for (const int d : {1, 2})
+      if (high[d] - low[d] > high[axis_] - low[axis_]) axis_ = d;
+    by_begin_.reserve(numbers.size());
     for (const Index i : numbers) {
-      by_x_.emplace_back(boxes[i].low.x, i);
-      widest_ = std::max(widest_, boxes[i].high.x - boxes[i].low.x);
+      by_begin_.emplace_back(boxes[i].low[axis_], i);
+      widest_ = std::max(widest_, boxes[i].high[axis_] - boxes[i].low[axis_]);
     }
-    std::sort(by_x_.begin(), by_x_.end());
+    std::sort(by_begin_.begin(), by_begin_.end());
   }
   /// visit(number) for those that may meet the box, until it returns true; whether it did.
   template <class Visit>
   bool find_near(const Box& box, Visit&& visit) const {
-    auto at = std::lower_bound(by_x_.begin(), by_x_.end(), std::pair(box.low.x - widest_, Index(0)));
-    for (; at != by_x_.end() && at->first <= box.high.x; ++at)
+    auto at =
+        std::lower_bound(by_begin_.begin(), by_begin_.end(), std::pair(box.low[axis_] - widest_, Index(0)));
+    for (; at != by_begin_.end() && at->first <= box.high[axis_]; ++at)
       if (visit(at->second)) return true;
     return false;
   }
 
  private:
-  std::vector<std::pair<double, Index>> by_x_;
+  int axis_ = 0;
+  std::vector<std::pair<double, Index>> by_begin_;
   double widest_ = 0;
 };
 
@@ -85,14 +96,14 @@ class Candidates {
       }
     });
     list_by_vertex(mesh);
-    inverted_ = ByX(boxes_, par::compact<Index>(policy, cells.size(),
-                                                [&](std::size_t i) { return shapes_[i].is_inverted; }));
+    inverted_ = AlongAxis(boxes_, par::compact<Index>(policy, cells.size(),
+                                                      [&](std::size_t i) { return shapes_[i].is_inverted; }));
   }
   /// For near().
-  void sort_by_x() {
+  void sort() {
     std::vector<Index> all(cells_.size());
     std::iota(all.begin(), all.end(), Index{0});
-    all_ = ByX(boxes_, all);
+    all_ = AlongAxis(boxes_, all);
   }
   struct Shape {
     TetPoints points;
@@ -139,7 +150,7 @@ class Candidates {
   std::vector<Box> boxes_;
   std::vector<Shape> shapes_;
   std::vector<Index> first_of_, of_;  // by vertex: where its candidates begin, and these
-  ByX inverted_, all_;
+  AlongAxis inverted_, all_;
 };
 
 /// Candidates that a search has seen; one list serves many searches.
@@ -348,7 +359,7 @@ Overlaps find_overlaps(const TetMesh& old, const Edits& edits, std::span<const N
   });
   const std::vector<Index> open =
       par::compact<Index>(policy, new_cells.size(), [&](std::size_t i) { return is_open[i] != 0; });
-  if (!open.empty()) candidates.sort_by_x();
+  if (!open.empty()) candidates.sort();
   const std::vector<Found> second = search_all(open.size(), kNanoseconds, [&](std::size_t i, Search& s) {
     s.begin(new_cells[open[i]].points);
     for_near_corners(new_cells[open[i]], [&](Index near) {

@@ -241,6 +241,12 @@ TEST(TransferFields, WhatCannotBeTransferredIsNamed) {
     return message([&] { validate_fields(two.old, std::vector{field}); });
   };
   EXPECT_EQ(says({.name = "T"}), "");
+  EXPECT_THAT(message([&] {
+                validate_fields(two.old,
+                                std::vector<FieldTransfer>{{.name = "rho", .how = Transfer::kConserve},
+                                                           {.name = "rho", .how = Transfer::kInherit}});
+              }),
+              HasSubstr("'rho' is to be transferred in two ways"));
   EXPECT_THAT(says({.name = "Q"}), HasSubstr("no field 'Q' of vertices"));
   EXPECT_THAT(says({.name = "rho"}), HasSubstr("'rho' is one of cells"));
   EXPECT_THAT(says({.name = "n"}), HasSubstr("'n' does not hold floating-point numbers"));
