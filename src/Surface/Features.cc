@@ -447,11 +447,12 @@ void lock_meeting_sheets(const Arrays& arrays, std::span<const std::uint32_t> fa
   for (std::size_t i = 0; i < arrays.faces.size(); ++i) {
     for (VertexHandle v : arrays.faces[i]) {
       Incidence& here = at[v.idx()];
-      const auto end = here.beside.begin() + 2 * here.n_features;
-      if (here.n_features == 0)
+      if (here.n_features == 0) {
         here.locked = here.locked || facet[i] != facet[here.face];
-      else if (!here.crosses)
+      } else if (!here.crosses) {
+        const auto end = here.beside.begin() + 2 * here.n_features;
         here.locked = here.locked || std::find(here.beside.begin(), end, facet[i]) == end;
+      }
     }
   }
 }

@@ -276,6 +276,8 @@ std::size_t SurfaceMesh::n_vertices(SurfaceKind kind) const {
                                                 [&](const MotionConstraint& f) { return f.kind == kind; }));
 }
 
+std::size_t SurfaceMesh::n_points() const { return impl_->motion_constraint.size(); }
+
 const MotionConstraint& SurfaceMesh::motion_constraint(VertexHandle v) const {
   static const MotionConstraint kInner;
   return v.idx() < impl_->motion_constraint.size() ? impl_->motion_constraint[v.idx()] : kInner;

@@ -66,6 +66,8 @@ class SurfaceMesh {
   std::size_t n_edges() const;
   std::size_t n_feature_edges() const;
   std::size_t n_vertices(SurfaceKind kind) const;
+  /// Of the mesh that it was made of, those that no face has included, and of vertices that came later.
+  std::size_t n_points() const;
   const MotionConstraint& motion_constraint(VertexHandle v) const;
   bool has_interfaces() const;
   /// The vertices that move with v by the same step, itself included; none where it moves alone. See

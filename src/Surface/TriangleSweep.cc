@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "Quality/Metrics.hh"
@@ -61,6 +62,11 @@ struct TriangleSweep::Star {
   double worst = std::numeric_limits<double>::infinity();
   double mean_edge = 0;
   Vec3 normal;  // of length 1; zero when there is none
+  /// By face, of those that no feature parts from it: they look about the same way, at a sharp edge no others
+  /// do.
+  std::vector<Vec3> outside;
+
+  bool turns_over(std::size_t i, const Triangle& t) const { return !(dot(scaled_normal(t), outside[i]) > 0); }
 
   std::vector<Triangle> moved_to(Vec3 x) const {
     std::vector<Triangle> created = removed;
@@ -73,8 +79,7 @@ struct TriangleSweep::Star {
       Triangle t = removed[i];
       t[corner[i]] = x;
       // A triangle that turns over is none.
-      const double now = dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0;
-      least = std::min(least, now);
+      least = std::min(least, turns_over(i, t) ? 0.0 : triangle_decision(t));
     }
     return least;
   }
@@ -105,13 +110,10 @@ struct TriangleSweep::Insertion {
   std::size_t n_edges() const { return polygon.size() - (closed ? 0 : 1); }
 };
 
-TriangleSweep::TriangleSweep(SurfaceMesh& surface) : surface_(surface) {
-  for (std::size_t f = 0; f < surface.n_faces(); ++f) {
-    for (VertexHandle v : surface.face_vertices(f)) {
-      if (v.idx() >= points_.size()) points_.resize(v.idx() + 1);
-      points_[v.idx()] = surface.point(v);
-    }
-  }
+// Also of vertices that no face has: new ones come behind them.
+TriangleSweep::TriangleSweep(SurfaceMesh& surface) : surface_(surface), points_(surface.n_points()) {
+  for (std::size_t f = 0; f < surface.n_faces(); ++f)
+    for (VertexHandle v : surface.face_vertices(f)) points_[v.idx()] = surface.point(v);
   changed_.assign(points_.size(), clock_);
 }
 
@@ -186,8 +188,38 @@ bool TriangleSweep::gather(VertexHandle v, Star& star) const {
     for (std::size_t k = 0; k < 3; ++k) length += k == star.corner.back() ? 0.0 : norm(t[k] - point(v));
   }
   star.normal = unit(sum);
+  if (!find_outside(v, sum, star)) return false;
   star.mean_edge = length / (2.0 * static_cast<double>(star.faces.size()));
   return star.normal != Vec3{};
+}
+
+/// False at an edge of more than two sheets, which stays.
+bool TriangleSweep::find_outside(VertexHandle v, Vec3 sum, Star& star) const {
+  star.outside.assign(star.faces.size(), sum);
+  if (surface_.motion_constraint(v).kind != SurfaceKind::kCurve) return true;
+  const auto next = [&](const Face& f) { return f[0] == v ? f[1] : f[1] == v ? f[2] : f[0]; };
+  const auto previous = [&](const Face& f) { return f[0] == v ? f[2] : f[1] == v ? f[0] : f[1]; };
+  std::vector<std::size_t> side(star.faces.size());  // the first face of it
+  std::iota(side.begin(), side.end(), std::size_t{0});
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < side.size(); ++i)
+      for (std::size_t j = 0; j < side.size(); ++j) {
+        const VertexHandle w = next(star.faces[i]);
+        if (side[i] == side[j] || previous(star.faces[j]) != w || surface_.is_feature(v, w)) continue;
+        side[i] = side[j] = std::min(side[i], side[j]);
+        changed = true;
+      }
+  }
+  std::vector<Vec3> sums(side.size());
+  for (std::size_t i = 0; i < side.size(); ++i)
+    sums[side[i]] = sums[side[i]] + scaled_normal(star.removed[i]);
+  std::size_t n_sides = 0;
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    star.outside[i] = sums[side[i]];
+    n_sides += side[i] == i ? 1 : 0;
+  }
+  return n_sides <= 2;
 }
 
 std::size_t TriangleSweep::swap() {
@@ -209,6 +241,10 @@ bool TriangleSweep::try_swap(VertexHandle a, VertexHandle b) {
   const std::array<Triangle, 2> created = {corners({c, d, b}), corners({d, c, a})};
   const double worst = std::min(triangle_decision(removed[0]), triangle_decision(removed[1]));
   if (!(triangle_decision(created[0]) > worst) || !(triangle_decision(created[1]) > worst)) return false;
+  // Both ways the quadrilateral has the same sum. One that is not convex has a triangle that looks back.
+  const Vec3 outside = scaled_normal(removed[0]) + scaled_normal(removed[1]);
+  const auto looks_back = [&](const Triangle& t) { return !(dot(scaled_normal(t), outside) > 0); };
+  if (std::ranges::any_of(created, looks_back) && std::ranges::none_of(removed, looks_back)) return false;
   if (!surface_.may_swap(a, b) || !surface_.keeps_shape(faces, removed, created)) return false;
   surface_.on_swap(a, b);
   for (VertexHandle v : {a, b, c, d}) touch(v);
@@ -230,19 +266,23 @@ bool TriangleSweep::try_collapse(VertexHandle v) {
   if (!gather(v, star)) return false;
   // Best first; the first whose shape is right is taken.
   std::vector<std::pair<double, VertexHandle>> ranked;
+  bool turns_over = false;  // a triangle that does not do so already
   const auto without = [&](VertexHandle onto) {
     std::vector<Triangle> created;
+    turns_over = false;
     for (std::size_t i = 0; i < star.faces.size(); ++i) {
       const Face& f = star.faces[i];
       if (f[0] == onto || f[1] == onto || f[2] == onto) continue;
       created.push_back(star.removed[i]);
       created.back()[star.corner[i]] = point(onto);
+      turns_over = turns_over || (star.turns_over(i, created.back()) && !star.turns_over(i, star.removed[i]));
     }
     return created;
   };
   for (VertexHandle onto : targets) {
     double worst = std::numeric_limits<double>::infinity();
     for (const Triangle& t : without(onto)) worst = std::min(worst, triangle_decision(t));
+    if (turns_over) continue;
     if (worst > star.worst && worst < std::numeric_limits<double>::infinity())
       ranked.emplace_back(worst, onto);
   }
@@ -341,14 +381,23 @@ void TriangleSweep::place(Insertion& cavity) const {
   const auto triangle = [&](std::size_t i, Vec3 x) {
     return Triangle{x, point(cavity.polygon[i]), point(cavity.polygon[(i + 1) % cavity.polygon.size()])};
   };
-  Vec3 normal;
-  for (const Face& f : cavity.faces) normal = normal + scaled_normal(corners(f));
+  // By edge of the polygon; at a feature each face has its own.
+  Vec3 sum;
+  for (const Face& f : cavity.faces) sum = sum + scaled_normal(corners(f));
+  std::vector<Vec3> outside(cavity.n_edges(), sum);
+  for (std::size_t i = 0; i < outside.size() && cavity.on_line; ++i) {
+    const VertexHandle p = cavity.polygon[i], q = cavity.polygon[(i + 1) % cavity.polygon.size()];
+    for (const Face& f : cavity.faces)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (f[k] == p && f[(k + 1) % 3] == q) outside[i] = scaled_normal(corners(f));
+  }
+  const auto decision_of = [&](std::size_t i, const Triangle& t) {
+    return dot(scaled_normal(t), outside[i]) > 0 ? triangle_decision(t) : 0.0;
+  };
   const auto value = [&](Vec3 x, double floor) {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < cavity.n_edges() && least > floor; ++i) {
-      const Triangle t = triangle(i, x);
-      least = std::min(least, dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0);
-    }
+    for (std::size_t i = 0; i < cavity.n_edges() && least > floor; ++i)
+      least = std::min(least, decision_of(i, triangle(i, x)));
     return least;
   };
   const auto project = [&](Vec3 x) {
@@ -359,8 +408,7 @@ void TriangleSweep::place(Insertion& cavity) const {
   cavity.middle = climb(cavity.middle, 0.25 * cavity.size, cavity.axis, cavity.on_line, project, value);
   cavity.worst_new = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < cavity.n_edges(); ++i) {
-    const Triangle t = triangle(i, cavity.middle);
-    const double now = dot(scaled_normal(t), normal) > 0 ? triangle_decision(t) : 0.0;
+    const double now = decision_of(i, triangle(i, cavity.middle));
     if (now < cavity.worst_new) {
       cavity.worst_new = now;
       cavity.weakest = i;

@@ -67,6 +67,7 @@ class TriangleSweep {
   bool try_offset(VertexHandle v);
   bool try_split(VertexHandle a, VertexHandle b);
   bool gather(VertexHandle v, Star& star) const;
+  bool find_outside(VertexHandle v, Vec3 sum, Star& star) const;
   void place(Insertion& cavity) const;
 
   SurfaceMesh& surface_;

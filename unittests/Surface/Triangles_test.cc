@@ -227,6 +227,92 @@ TEST(Triangles, EveryPassKeepsTheWorstAndTheSurfaceInStep) {
   EXPECT_GT(changes, 100U);
 }
 
+double area_of(const TriangleMesh& mesh, const auto& counts) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 p = mesh.points[t[0].idx()];
+    const Vec3 n = cross(mesh.points[t[1].idx()] - p, mesh.points[t[2].idx()] - p);
+    if (counts(n)) sum += 0.5 * norm(n);
+  }
+  return sum;
+}
+
+/// Its two sides are nearer to each other than a surface may go: for a triangle that turns over the other one
+/// is there and looks the way that it does.
+TEST(Triangles, ThinPlateIsNotFoldedOver) {
+  TriangleMesh plate;
+  for (const double z : {0.0, -0.01})
+    for (const Vec3 p : {Vec3{0, 0, 0}, {1, 0, 0}, {2, 1, 0}, {2, -1, 0}, {3, 0, 0}})
+      plate.points.push_back({p.x, p.y, z});
+  const auto add = [&](int a, int b, int c) {
+    plate.triangles.push_back({VertexHandle(a), VertexHandle(b), VertexHandle(c)});
+  };
+  for (const auto& [a, b, c] : std::vector<std::array<int, 3>>{{0, 1, 2}, {1, 0, 3}, {1, 3, 4}, {1, 4, 2}}) {
+    add(a, b, c);
+    add(a + 5, c + 5, b + 5);
+  }
+  for (const auto& [a, b] : std::vector<std::array<int, 2>>{{0, 3}, {3, 4}, {4, 2}, {2, 0}}) {
+    add(a, a + 5, b);
+    add(b, a + 5, b + 5);
+  }
+  const auto looks_up = [](Vec3 n) { return n.z > 0.5 * norm(n); };
+  const double before = area_of(plate, looks_up);
+  TriangleMesh mesh = plate;
+  improve_triangles(mesh, with(SurfaceMode::kFree));
+  EXPECT_NEAR(area_of(mesh, looks_up), before, 0.02 * before);
+}
+
+/// Two planes at 20 degrees. A triangle that turns over in one looks about the way that the other does.
+TEST(Triangles, FacetsAtASharpEdgeAreNotFoldedOver) {
+  TriangleMesh wedge;
+  const double angle = 20 * 3.14159265358979 / 180;
+  const auto in_b = [&](double x, double y) { return Vec3{x, y * std::cos(angle), y * std::sin(angle)}; };
+  wedge.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0.5, 1, 0}, {1.5, 0.1, 0}, in_b(0.8, 1), in_b(1.6, 0.03)};
+  for (const auto& [a, b, c] :
+       std::vector<std::array<int, 3>>{{1, 2, 4}, {1, 4, 3}, {1, 3, 0}, {1, 6, 2}, {1, 5, 6}, {1, 0, 5}})
+    wedge.triangles.push_back({VertexHandle(a), VertexHandle(b), VertexHandle(c)});
+  const auto all = [](Vec3) { return true; };
+  for (const double goal : {5.0, 30.0}) {
+    TriangleMesh mesh = wedge;
+    TriangleOptions options = with(SurfaceMode::kFlat);
+    options.min_angle = goal;
+    const TriangleResult result = improve_triangles(mesh, options);
+    EXPECT_NEAR(area_of(mesh, all), area_of(wedge, all), 1e-9) << goal;
+    EXPECT_GE(result.after.min_angle.min, result.before.min_angle.min);
+  }
+}
+
+/// The sides of such an edge differ in size: the smaller one is not taken for turned over.
+TEST(Triangles, VerticesOnASharpEdgeMove) {
+  TriangleMesh wedge;
+  const double angle = 20 * 3.14159265358979 / 180;
+  wedge.points = {
+      {0, 0, 0}, {0.1, 0, 0}, {2, 0, 0}, {1, 3, 0}, {1, 0.8 * std::cos(angle), 0.8 * std::sin(angle)}};
+  for (const auto& [a, b, c] : std::vector<std::array<int, 3>>{{0, 1, 3}, {1, 2, 3}, {1, 0, 4}, {2, 1, 4}})
+    wedge.triangles.push_back({VertexHandle(a), VertexHandle(b), VertexHandle(c)});
+  SurfaceMesh surface(wedge, with(SurfaceMode::kFlat).surface);
+  ASSERT_EQ(surface.motion_constraint(VertexHandle(1)).kind, SurfaceKind::kCurve);
+  TriangleSweep sweep(surface);
+  sweep.focus(1);
+  EXPECT_EQ(sweep.smooth(), 1U);
+  EXPECT_GT(sweep.points()[1].x, 0.3);
+}
+
+TEST(Triangles, PointsThatNoTriangleHasStay) {
+  TriangleMesh mesh = sheet(6, 0.4);
+  const std::size_t n = mesh.points.size();
+  mesh.points.push_back({7, 7, 7});
+  mesh.points.push_back({8, 8, 8});
+  const TriangleResult result = improve_triangles(mesh, with(SurfaceMode::kFree));
+  ASSERT_GT(winners(result, "surface split"), 0U);
+  for (const std::size_t i : {n, n + 1}) {
+    const VertexHandle now = result.vertex_map[i];
+    if (!now.is_valid()) continue;  // not kept, and taken by no other
+    EXPECT_EQ(mesh.points[now.idx()].x, static_cast<double>(7 + i - n));
+    for (const auto& t : mesh.triangles) EXPECT_EQ(std::find(t.begin(), t.end(), now), t.end());
+  }
+}
+
 TEST(Triangles, RefusesWhatItCannotDo) {
   TriangleMesh mesh = sheet(3, 0);
   EXPECT_THROW(improve_triangles(mesh, with(SurfaceMode::kFrozen)), InvalidInput);
