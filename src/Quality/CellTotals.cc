@@ -306,6 +306,15 @@ CellTotals gather_cells(const TetMesh& mesh, par::Policy policy, double max_det,
   return all;
 }
 
+/// Adds a·b·c to twice the precision of a double: faces far from the centre cancel nearly all of it.
+static void add_product(double a, double b, double c, FixedSum& sum) {
+  const double high = a * b, low = std::fma(a, b, -high);
+  const double product = high * c;
+  sum.add(product);
+  sum.add(std::fma(high, c, -product) + low * c);
+}
+
+/// Vertices are rounded to the centre once, each for all of its faces, so a closed surface stays closed.
 double boundary_determinant(const TetMesh& mesh, std::span<const HalfFaceHandle> faces, Vec3 centre,
                             double max_det) {
   FixedSum sum(max_det);
@@ -313,8 +322,12 @@ double boundary_determinant(const TetMesh& mesh, std::span<const HalfFaceHandle>
     if (mesh.opposite_halfface(h).is_valid()) continue;
     const auto [x, y, z] = mesh.halfface_vertices(h);
     // (x, y, z, opposite corner) is positive, so from outside the face turns the other way
-    sum.add(hfr_orient6(to_real3(centre), to_real3(mesh.point(x)), to_real3(mesh.point(z)),
-                        to_real3(mesh.point(y))));
+    const Vec3 p = mesh.point(x) - centre, q = mesh.point(z) - centre, r = mesh.point(y) - centre;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      add_product(p[i], q[j], r[k], sum);
+      add_product(-p[i], q[k], r[j], sum);
+    }
   }
   return sum.value();
 }

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "Quality/Metrics.hh"
 
@@ -63,6 +65,61 @@ bool fold(const TetMesh& mesh, VertexHandle v, HalfFaceHandle f, HalfFaceHandle 
   return fold_at_vertex(p(v), p(a), p(b), p(c), p(d));
 }
 
+/// In which directions a face lies seen from v, as a box round the arc between those of its other corners.
+struct Directions {
+  Vec3 low, high;
+  std::size_t face;
+
+  Directions(const TetMesh& mesh, VertexHandle v, HalfFaceHandle h, std::size_t i) : face(i) {
+    std::array<Vec3, 2> ends;
+    std::size_t n = 0;
+    for (VertexHandle w : mesh.halfface_vertices(h)) {
+      if (w == v || n == 2) continue;
+      const Vec3 d = mesh.point(w) - mesh.point(v);
+      ends[n++] = (1 / norm(d)) * d;
+    }
+    const auto is_none = [](Vec3 d) { return !(norm(d) > 0.5); };
+    if (is_none(ends[0]) || is_none(ends[1])) {  // a corner in v, or too near to it: anywhere
+      low = {-2, -2, -2};
+      high = {2, 2, 2};
+      return;
+    }
+    // An arc of angle t leaves the box of its ends by less than the height over its chord, 1 - cos(t/2).
+    const double chord = norm(ends[1] - ends[0]);
+    const double margin = 1 - std::sqrt(std::max(1 - 0.25 * chord * chord, 0.0)) + 1e-9;
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(ends[0][d], ends[1][d]) - margin;
+      high[d] = std::max(ends[0][d], ends[1][d]) + margin;
+    }
+  }
+  bool meets(const Directions& o) const {
+    return low.y <= o.high.y && o.low.y <= high.y && low.z <= o.high.z && o.low.z <= high.z;
+  }
+};
+
+/// Calls visit(i, j) for pairs of faces at v that may fold, until it returns true: for all of few, of many
+/// for those that lie in some direction both.
+template <class FaceOf, class Visit>
+bool any_pair(const TetMesh& mesh, VertexHandle v, std::size_t n, FaceOf&& face_of, Visit&& visit) {
+  constexpr std::size_t kFew = 64;
+  if (n <= kFew) {
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i + 1; j < n; ++j)
+        if (visit(i, j)) return true;
+    return false;
+  }
+  std::vector<Directions> all;
+  all.reserve(n);
+  for (std::size_t i = 0; i < n; ++i) all.emplace_back(mesh, v, face_of(i), i);
+  std::sort(all.begin(), all.end(), [](const Directions& a, const Directions& b) {
+    return a.low.x != b.low.x ? a.low.x < b.low.x : a.face < b.face;
+  });
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n && all[j].low.x <= all[i].high.x; ++j)
+      if (all[i].meets(all[j]) && visit(all[i].face, all[j].face)) return true;
+  return false;
+}
+
 }  // namespace
 
 std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy,
@@ -93,13 +150,16 @@ std::vector<HalfFaceHandle> folded_faces(const TetMesh& mesh, par::Policy policy
     const std::size_t end = par::part_begin(n_vertices, n_parts, part + 1);
     for (std::size_t v = par::part_begin(n_vertices, n_parts, part); v < end; ++v) {
       if (at && !at(corners[first[v]].vertex)) continue;
-      for (std::size_t i = first[v]; i < first[v + 1]; ++i) {
-        for (std::size_t j = i + 1; j < first[v + 1]; ++j) {
-          if (!fold(mesh, corners[i].vertex, corners[i].face, corners[j].face)) continue;
-          mine.push_back(corners[i].face);
-          mine.push_back(corners[j].face);
-        }
-      }
+      const std::span<const Corner> here(&corners[first[v]], first[v + 1] - first[v]);
+      any_pair(
+          mesh, here[0].vertex, here.size(), [&](std::size_t i) { return here[i].face; },
+          [&](std::size_t i, std::size_t j) {
+            if (fold(mesh, here[0].vertex, here[i].face, here[j].face)) {
+              mine.push_back(here[i].face);
+              mine.push_back(here[j].face);
+            }
+            return false;
+          });
     }
   });
   std::vector<HalfFaceHandle> folded;
@@ -117,10 +177,9 @@ bool is_folded_at(const TetMesh& mesh, std::span<const VertexHandle> vertices, p
       for (HalfFaceHandle h : mesh.cell_halffaces(c))
         if (mesh.is_boundary(h) && mesh.cell(c).v[static_cast<std::size_t>(corner_of(h))] != v)
           faces.push_back(h);
-    for (std::size_t k = 0; k < faces.size(); ++k)
-      for (std::size_t j = 0; j < k; ++j)
-        if (fold(mesh, v, faces[j], faces[k])) return true;
-    return false;
+    return any_pair(
+        mesh, v, faces.size(), [&](std::size_t k) { return faces[k]; },
+        [&](std::size_t j, std::size_t k) { return fold(mesh, v, faces[j], faces[k]); });
   };
   return !par::compact<std::size_t>(policy.for_items_of(kVertexNanoseconds), vertices.size(), is_folded)
               .empty();

@@ -93,7 +93,8 @@ inline int orientation(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return hfr_orient_sign(to_real3(a), to_real3(b), to_real3(c), to_real3(d));
 }
 
-/// A user's own metric. The callable is called from several threads at once and must be pure.
+/// A user's own metric. The callable is called from several threads at once and must be pure. A cell whose
+/// value is not above 0 counts as inverted or flat, so good cells need one that is.
 class CustomMetric {
  public:
   using Function = std::function<double(Vec3, Vec3, Vec3, Vec3)>;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 
@@ -18,20 +19,36 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
+/// Coordinates that are no numbers are left out, whichever comes first.
 struct Box {
-  Vec3 low, high;
-  bool empty = true;
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vec3 low = {kFar, kFar, kFar}, high = {-kFar, -kFar, -kFar};
 
-  friend Box united(const Box& a, const Box& b) {
-    if (a.empty) return b;
-    if (b.empty) return a;
-    return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
-            {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)},
-            false};
+  Box() = default;
+  explicit Box(Vec3 p) {
+    for (int d = 0; d < 3; ++d) {
+      low[d] = std::min(kFar, p[d]);
+      high[d] = std::max(-kFar, p[d]);
+    }
+  }
+  friend Box united(Box a, const Box& b) {
+    for (int d = 0; d < 3; ++d) {
+      a.low[d] = std::min(a.low[d], b.low[d]);
+      a.high[d] = std::max(a.high[d], b.high[d]);
+    }
+    return a;
+  }
+  /// Zeros where nothing is in it.
+  Box or_zero() const {
+    Box box = *this;
+    for (int d = 0; d < 3; ++d)
+      if (!(low[d] <= high[d])) box.low[d] = box.high[d] = 0;
+    return box;
   }
 };
 
-void add_vertices(const TetMesh& mesh, par::Policy policy, Statistics& s) {
+/// Returns the box of those that cells have: what is measured goes by it, wherever others lie.
+Box add_vertices(const TetMesh& mesh, par::Policy policy, Statistics& s) {
   const auto live = [&](std::size_t i) { return !mesh.is_deleted(VertexHandle(i)); };
   const auto sum = [](std::size_t a, std::size_t b) { return a + b; };
   s.vertices = mesh.n_logical_vertices();
@@ -41,15 +58,22 @@ void add_vertices(const TetMesh& mesh, par::Policy policy, Statistics& s) {
         return static_cast<std::size_t>(live(i) && !mesh.incident_cell(VertexHandle(i)).is_valid());
       },
       sum);
-  const Box box = par::reduce(
-      policy, mesh.n_vertices(), Box{},
+  struct Boxes {
+    Box all, used;
+  };
+  const Boxes boxes = par::reduce(
+      policy, mesh.n_vertices(), Boxes{},
       [&](std::size_t i) {
-        const Vec3 p = mesh.point(VertexHandle(i));
-        return live(i) ? Box{p, p, false} : Box{};
+        const Box here(mesh.point(VertexHandle(i)));
+        return Boxes{live(i) ? here : Box(), mesh.incident_cell(VertexHandle(i)).is_valid() ? here : Box()};
       },
-      [](const Box& a, const Box& b) { return united(a, b); });
-  s.box_low = box.low;
-  s.box_high = box.high;
+      [](const Boxes& a, const Boxes& b) {
+        return Boxes{united(a.all, b.all), united(a.used, b.used)};
+      });
+  const Box all = boxes.all.or_zero();
+  s.box_low = all.low;
+  s.box_high = all.high;
+  return boxes.used.or_zero();
 }
 
 // Of decision values; the mean is left to the caller.
@@ -150,8 +174,8 @@ std::size_t n_cells_below(const Statistics& statistics, std::size_t degrees) {
 
 Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsOptions& options) {
   Statistics s;
-  add_vertices(mesh, policy, s);
-  const double diagonal = norm(s.box_high - s.box_low);
+  const Box box = add_vertices(mesh, policy, s);
+  const double diagonal = norm(box.high - box.low);
   const double max_det = 2.0 * diagonal * diagonal * diagonal;
   detail::CellValues values;
   const detail::CellTotals totals = detail::gather_cells(mesh, policy, max_det, diagonal, values);
@@ -174,7 +198,7 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
     s.min_dihedral.mean = kDegrees * totals.min_angles.value() / n;
     s.volume_length.mean = totals.volume_length.value() / n;
   }
-  const Vec3 centre = 0.5 * (s.box_low + s.box_high);
+  const Vec3 centre = 0.5 * (box.low + box.high);
   s.enclosed_volume = detail::boundary_determinant(mesh, totals.constrained, centre, max_det) / 6.0;
   if (s.enclosed_volume != 0.0) s.overlap = s.absolute_volume / std::abs(s.enclosed_volume) - 1.0;
   s.edges = edge_count(mesh, totals.constrained, s);

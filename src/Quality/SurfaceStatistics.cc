@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Quality/SurfaceStatistics.hh"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 
 #include "Quality/FixedSum.hh"
+#include "Quality/Metrics.hh"
 #include "Quality/Wedges.hh"
 
 namespace hfr::detail {
@@ -40,6 +45,15 @@ std::vector<PatchStatistics> gather_patches(const TetMesh& mesh, std::span<const
 
 struct Ceilings {
   EdgeWedge surface, interface, angle;
+  // Of an angle that is surely too large to lower one of the three.
+  double cosine_that_counts = -2;
+
+  void note_what_counts() {
+    constexpr double kRounding = 1e-4, kRadians = std::numbers::pi / 180.0;
+    const double most = std::max({surface.degrees, interface.degrees, 2 * angle.degrees}) + kRounding;
+    const bool all = surface.cell.is_valid() && interface.cell.is_valid() && angle.cell.is_valid();
+    cosine_that_counts = all && most < 180 ? std::cos(kRadians * most) : -2;
+  }
 
   static bool is_lower(double degrees, const EdgeWedge& least) {
     return !least.cell.is_valid() || degrees < least.degrees;
@@ -76,21 +90,51 @@ bool counts_from(const TetMesh& mesh, HalfFaceHandle h, RingPlace start) {
   }
 }
 
+// Cosine of a lower bound for the wedge of a boundary edge whose cells are positive, with no constrained face
+// among them: the angle between its two faces, or what it lacks to a turn. NaN at any other edge.
+double cosine_of_plain_wedge(const TetMesh& mesh, RingPlace start, VertexHandle a, VertexHandle b) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  RingPlace at = start;
+  VertexHandle first, last;
+  for (;;) {
+    const Cell& cell = mesh.cell(at.cell);
+    if (orientation(mesh.point(cell.v[0]), mesh.point(cell.v[1]), mesh.point(cell.v[2]),
+                    mesh.point(cell.v[3])) <= 0)
+      return kNone;
+    if (!first.is_valid()) first = cell.v[at.p];
+    last = cell.v[at.q];
+    const HalfFaceHandle exit = halfface_of(at.cell, at.p);
+    if (!mesh.opposite_halfface(exit).is_valid()) break;
+    if (mesh.is_constrained(exit)) return kNone;
+    at = mesh.next_in_ring(at);
+    if (at.cell == start.cell) return kNone;
+  }
+  const Vec3 from = mesh.point(a), along = mesh.point(b) - from;
+  const auto across = [&](VertexHandle v) {
+    const Vec3 d = mesh.point(v) - from;
+    return d - (dot(d, along) / dot(along, along)) * along;
+  };
+  const Vec3 u = across(first), w = across(last);
+  return dot(u, w) / std::sqrt(dot(u, u) * dot(w, w));
+}
+
 void lower_at(const TetMesh& mesh, HalfFaceHandle h, std::size_t side, EdgeWedges& scratch,
               Ceilings& ceilings) {
   const auto q = static_cast<std::uint8_t>(corner_of(h));
   const auto& corners = kFaceCorners[q];
   const RingPlace start{cell_of(h), corners[(side + 2) % 3], q};
   if (!counts_from(mesh, h, start)) return;
-  find_wedges(mesh, start, scratch);
   const Cell& cell = mesh.cell(start.cell);
   const VertexHandle a = cell.v[corners[side]];
   const VertexHandle b = cell.v[corners[(side + 1) % 3]];
+  if (cosine_of_plain_wedge(mesh, start, a, b) < ceilings.cosine_that_counts) return;
+  find_wedges(mesh, start, scratch);
   if (scratch.whole) Ceilings::lower(ceilings.surface, scratch.whole->degrees, *scratch.whole, a, b);
   for (const Wedge& wedge : scratch.wedges) {
     Ceilings::lower(ceilings.interface, wedge.degrees, wedge, a, b);
     ceilings.lower_angle(mesh, wedge, a, b);
   }
+  ceilings.note_what_counts();
 }
 
 Ceilings gather_ceilings(const TetMesh& mesh, par::Policy policy,

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "Quality/Metrics.hh"
 
@@ -71,12 +73,38 @@ class Shadow {
   template <class Visit>
   void visit(const Face& f, Visit&& visit) const {
     const Point2 a = flat(f.p[0]), b = flat(f.p[1]), c = flat(f.p[2]);
-    const std::size_t x0 = row(std::min({a.x, b.x, c.x}), low_.x, high_.x);
-    const std::size_t x1 = row(std::max({a.x, b.x, c.x}), low_.x, high_.x);
     const std::size_t y0 = row(std::min({a.y, b.y, c.y}), low_.y, high_.y);
     const std::size_t y1 = row(std::max({a.y, b.y, c.y}), low_.y, high_.y);
-    for (std::size_t y = y0; y <= y1; ++y)
+    for (std::size_t y = y0; y <= y1; ++y) {
+      const auto [least, most] = within_row({a, b, c}, y);
+      const std::size_t x0 = row(least, low_.x, high_.x), x1 = row(most, low_.x, high_.x);
       for (std::size_t x = x0; x <= x1; ++x) visit(n_ * y + x);
+    }
+  }
+  /// From where to where the triangle lies in one row of the grid, and a little more: a long one that leans
+  /// has few squares of those that its box has.
+  std::pair<double, double> within_row(const std::array<Point2, 3>& p, std::size_t y) const {
+    constexpr double kMargin = 1e-9;  // of the whole
+    const double height = high_.y - low_.y, width = high_.x - low_.x;
+    const double bottom = low_.y + height * (static_cast<double>(y) / static_cast<double>(n_) - kMargin);
+    const double top = low_.y + height * (static_cast<double>(y + 1) / static_cast<double>(n_) + kMargin);
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    const auto add = [&](double x) {
+      least = std::min(least, x);
+      most = std::max(most, x);
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point2 s = p[i], e = p[(i + 1) % 3];
+      if (bottom <= s.y && s.y <= top) add(s.x);
+      for (const double level : {bottom, top})
+        if ((s.y < level) != (e.y < level)) add(s.x + (level - s.y) / (e.y - s.y) * (e.x - s.x));
+    }
+    // Rounding may hide a row that is only touched: then the box counts.
+    if (!(least <= most)) {
+      least = std::min({p[0].x, p[1].x, p[2].x});
+      most = std::max({p[0].x, p[1].x, p[2].x});
+    }
+    return {least - kMargin * width, most + kMargin * width};
   }
 
   int axis_;

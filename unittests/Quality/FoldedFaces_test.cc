@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <vector>
 
 #include "HalfFace/Generate.hh"
 
@@ -75,6 +77,35 @@ TEST(FoldedFaces, FaceThroughAnotherAtACommonVertexIsFound) {
   std::vector<Vec3> apart = points;
   for (std::size_t i = 4; i < 7; ++i) apart[i] = -1.0 * points[i];
   EXPECT_TRUE(folded_faces(build(apart, cells)).empty());
+}
+
+/// A fan of cells round an axle, whose ends have as many boundary faces; rim vertices `swapped` and the next
+/// have changed places where it is not 0.
+TetMesh fan(Index n, Index swapped) {
+  std::vector<Vec3> points = {{0, 0, -1}, {0, 0, 1}};
+  std::vector<Corners> cells;
+  for (Index i = 0; i <= n; ++i) {
+    const Index at = swapped > 0 && i == swapped ? i + 1 : swapped > 0 && i == swapped + 1 ? i - 1 : i;
+    const double angle = 6 * static_cast<double>(at) / static_cast<double>(n);
+    points.push_back({std::cos(angle), std::sin(angle), 0});
+    if (i > 0) cells.push_back({0, 1, i + 1, i + 2});
+  }
+  return build(points, cells);
+}
+
+/// With few faces at a vertex each is held against each other one, with many those in the same directions.
+TEST(FoldedFaces, AtAVertexOfManyFacesAreThoseOfAFew) {
+  for (const Index n : {40, 400}) {
+    EXPECT_TRUE(folded_faces(fan(n, 0)).empty()) << n;
+    for (const Index swapped : {n / 5, n / 2, n - 3}) {
+      const TetMesh mesh = fan(n, swapped);
+      // At each end of the axle the faces before and behind those two go through each other.
+      EXPECT_EQ(folded_faces(mesh).size(), 4U) << n << " " << swapped;
+      if (n < 256) {
+        EXPECT_TRUE(is_folded_at(mesh, std::array{VertexHandle(0)}));
+      }
+    }
+  }
 }
 
 TEST(FoldedFaces, TangledInsideWithASoundBoundaryHasNone) {

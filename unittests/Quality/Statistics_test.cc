@@ -363,6 +363,55 @@ TEST(Statistics, CoordinatesNearTheEndsOfTheRangeGiveNoNaN) {
   }
 }
 
+TetMesh box_of(Index n) {
+  const auto arrays = generate::jittered_box({n, n, n}, 0, 1);
+  return build(arrays.points, arrays.cells);
+}
+
+/// A vertex without cells may be anywhere, and parts far from each other: neither is overlap.
+TEST(Statistics, OverlapIsOfTheCellsAlone) {
+  for (const double far : {1e4, 1e5, 1e8}) {
+    TetMesh mesh = box_of(1);
+    mesh.add_vertex({far, far, far});
+    const Statistics s = statistics(mesh);
+    EXPECT_NEAR(s.volume, 1, 1e-12) << far;
+    EXPECT_NEAR(s.overlap, 0, 1e-12) << far;
+    EXPECT_EQ(s.box_high.x, far) << "the box is that of all vertices";
+  }
+  for (const double far : {1e3, 1e5}) {
+    std::vector<Vec3> points;
+    std::vector<std::array<Index, 4>> cells;
+    const TetMesh one = box_of(1);
+    for (const double shift : {0.0, far}) {
+      const auto first = static_cast<Index>(points.size());
+      for (Vec3 p : one.points()) points.push_back(p + Vec3{shift, shift, shift});
+      for (CellHandle c : one.cells()) {
+        std::array<Index, 4> corners{};
+        for (std::size_t k = 0; k < 4; ++k) corners[k] = one.cell(c).v[k].idx() + first;
+        cells.push_back(corners);
+      }
+    }
+    const Statistics s = statistics(build(points, cells));
+    EXPECT_EQ(s.components, 2U);
+    EXPECT_NEAR(s.overlap, 0, 1e-10) << far;
+  }
+}
+
+TEST(Statistics, ACoordinateThatIsNoNumberGivesTheSameForAnyThreads) {
+  TetMesh mesh = box_of(14);
+  ASSERT_GT(mesh.n_vertices(), 2048U);
+  mesh.set_point(VertexHandle(0), {std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  const Statistics one = statistics(mesh, {.threads = 1});
+  for (const int threads : {2, 4}) {
+    const Statistics more = statistics(mesh, {.threads = threads});
+    EXPECT_EQ(more.box_low, one.box_low);
+    EXPECT_EQ(more.box_high, one.box_high);
+    EXPECT_EQ(std::isnan(more.volume), std::isnan(one.volume));
+    EXPECT_EQ(more.mean_edge, one.mean_edge);
+  }
+  EXPECT_EQ(one.box_high.x, 1);
+}
+
 TEST(FixedSumTest, DoesNotDependOnTheOrder) {
   test::RandomTets random(8);
   std::vector<double> values;
