@@ -29,7 +29,7 @@ constexpr std::size_t kWordsPerCandidate = 12;
 constexpr std::size_t kLeastRoom = 1024;
 constexpr std::size_t kSpare = 16;  // cells per spare slot
 /// Bytes of device memory a cell slot, a vertex and a candidate.
-constexpr std::uint64_t kCellBytes = 32 + 8 + 1 + 4 + 16 + 1 + 4 + 4;
+constexpr std::uint64_t kCellBytes = 32 + 8 + 1 + 4 + 16 + 1 + 4 + 4 + 4 + 4 + 2;
 constexpr std::uint64_t kVertexBytes = 24 + 4 + 1 + 4 + 4 + 1 + 4 * 8 + 1;
 constexpr std::uint64_t kCandidateBytes = 8 + 4 + 4 + 4 + 4 + 1 + 1 + 4 + 4 + 4 * kWordsPerCandidate;
 /// Share of the memory that a mesh may take.
@@ -476,6 +476,8 @@ RoundCounts DeviceMesh::round(Kind kind, const DeviceLook& look, std::uint64_t s
   if (counts.winners == 0) return counts;
   const std::size_t extra = block[HFR_EXTRA];
   const std::size_t reused = std::min(extra, m.n_free);
+  if (m.n_cells + extra - reused > TetMesh::kMostCells)
+    throw ResourceLimit("the mesh would have too many cells for the indices of this build");
   m.grow_cells(m.n_cells + extra - reused);
   m.commit(kind, clock + 1);
   m.n_cells += extra - reused;

@@ -166,11 +166,13 @@ bool may_exist(const TetMesh& mesh, const std::array<VertexHandle, N>& wanted, c
     const Cell& cell = mesh.cell(c);
     return std::all_of(wanted.begin(), wanted.end(), [&](VertexHandle v) { return cell.has(v); });
   };
+  std::span<const CellHandle> listed;  // the fewest; a vertex with a whole small star knows it sooner
   for (VertexHandle v : wanted) {
     if (!mesh.incident_cell(v).is_valid()) return false;
     if (known.pinched) {
       const std::span<const CellHandle> all = known.pinched->cells(v);
-      if (!all.empty()) return std::any_of(all.begin(), all.end(), has_all);
+      if (!all.empty() && (listed.empty() || all.size() < listed.size())) listed = all;
+      if (!all.empty()) continue;
     }
     if (!mesh.gather_star(v, scratch)) continue;  // too large
     const std::span<const CellHandle> star(scratch.cells.data(), static_cast<std::size_t>(scratch.size));
@@ -179,6 +181,7 @@ bool may_exist(const TetMesh& mesh, const std::array<VertexHandle, N>& wanted, c
         !known.star_size.empty() && known.star_size[v.idx()] == static_cast<std::uint32_t>(scratch.size);
     if (is_all) return false;
   }
+  if (!listed.empty()) return std::any_of(listed.begin(), listed.end(), has_all);
   if (!known.star_size.empty()) return true;
   for (std::size_t i = 0; i < mesh.n_cells(); ++i)
     if (!mesh.is_deleted(CellHandle(i)) && has_all(CellHandle(i))) return true;

@@ -21,8 +21,8 @@ struct Row {
   FixedVector<VertexHandle, kMaxCells + 1> vertices;
 };
 
-/// At most so many cells before and after the seed's, up to a face that may not change, and never all of a
-/// ring.
+/// At most so many cells before and after the seed's, up to a face that may not change. Those of a small ring
+/// are all of it: then the first outer vertex is the last one, too.
 template <std::size_t kMaxCells>
 Row<kMaxCells> gather_row(const TetMesh& mesh, CellHandle c, int edge, int n_before, int n_after) {
   const auto [a, b] = mesh.edge_vertices(EdgeHandle(6 * c.idx() + static_cast<Index>(edge)));
@@ -82,7 +82,9 @@ auto FanMerge<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const -> 
   for (int i = 0; i <= at; ++i) {
     for (int j = std::max(at + 1, i + 3); j < n; ++j) {
       double worst = table.best(i, j);
-      if (!(worst > best)) continue;
+      if (!(worst > best) ||
+          row.vertices[static_cast<std::size_t>(i)] == row.vertices[static_cast<std::size_t>(j)])
+        continue;
       worst = std::min(worst, metric(a, b, p[static_cast<std::size_t>(i)], p[static_cast<std::size_t>(j)]));
       if (!(worst > best)) continue;
       best = worst;

@@ -116,6 +116,15 @@ std::optional<std::size_t> DevicePasses::smooth(const char* name, std::uint8_t p
   return counts->winners;
 }
 
+double DevicePasses::smallest_dihedral() {
+  try {
+    return report_value(Metric::kMinDihedral, state_.run_.device.mesh()->smallest_dihedral());
+  } catch (const DeviceError& error) {
+    lose(error.what());
+    return hfr::smallest_dihedral(state_.run_.mesh, state_.run_.policy());
+  }
+}
+
 void DevicePasses::count() {
   const DeviceMesh::Tally tally = state_.run_.device.mesh()->tally();
   state_.n_invalid_ = tally.n_invalid;

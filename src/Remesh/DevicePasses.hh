@@ -32,6 +32,9 @@ class DevicePasses {
   /// Whether the device has the mesh, and the host an older one.
   bool is_resident() const { return is_resident_; }
 
+  /// Degrees; of the mesh on the processor where the device is lost over it.
+  double smallest_dihedral();
+
  private:
   struct DonePass {
     PassKind kind;

@@ -31,7 +31,9 @@ bool refine(const Run& run, const RefineEffort& effort) {
   if (share <= effort.least_share || share >= effort.largest_share) return false;
   const bool met_before = run.findings.met_cell_bound;
   CellBounds bounds = run.bounds;
-  if (bounds.max > 0) bounds.max = std::max<std::size_t>(bounds.max * effort.of_hundred / 100, 1);
+  bounds.max = bounds.max > 0
+                   ? std::max<std::size_t>(bounds.max * effort.of_hundred / 100, 1)
+                   : static_cast<std::size_t>(effort.more_cells * static_cast<double>(run.n_cells()));
   const Run part = run.within(bounds);
   Trial trial(part, effort.below);
   insert_where_poor(part, effort);

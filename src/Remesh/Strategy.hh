@@ -233,6 +233,9 @@ struct RefineEffort {
   double gain = 1.6;          ///< factor by which a vertex raises sin² of the worst of its cells
   /// Of 100 cells that the run may make, those there may be afterwards; the rest is for the worst cells.
   std::size_t of_hundred = 100;
+  /// Times the cells that there are, where the run has no bound on them: cells that no vertex mends let the
+  /// poor ones become more and more.
+  double more_cells = kMoreCells;
   int iterations = kIterations;  ///< at most
   /// Vertices go in when an iteration leaves more than this share of the poor cells,
   double fewer = 1 - kFewShare;

@@ -284,6 +284,13 @@ void SurfacePasses<Metric>::look_for_folds(std::uint32_t since) {
   };
   const auto changed = par::compact<VertexHandle>(run.policy(), run.mesh.n_vertices(), has_changed);
   run.findings.is_folded = is_folded_at(run.mesh, changed, run.policy());
+  // Of a pinched vertex a walk sees a part alone, and the parts may go through each other.
+  const std::vector<std::uint8_t>& pinched = run.work.pinched;
+  const auto is_pinched = [&](VertexHandle v) { return !pinched.empty() && pinched[v.idx()] != 0; };
+  if (!run.findings.is_folded && std::any_of(changed.begin(), changed.end(), is_pinched))
+    run.findings.is_folded = !folded_faces(run.mesh, run.policy(), [&](VertexHandle v) {
+                                return is_pinched(v) && has_changed(v.idx());
+                              }).empty();
 }
 
 template <class Metric>

@@ -398,11 +398,17 @@ class RoundCore::State {
     return {slots_.data() + winners_[w].first_slot, plan_of(winners_[w]).n_created};
   }
 
-  /// Before anything is written: that there is an index for each cell that may be made.
-  void require_room() const {
-    std::size_t n = mesh_.n_cells();
-    for (const Winner& winner : winners_) n += plan_of(winner).n_created;
-    if (n <= TetMesh::kMostCells) return;
+  /// Before anything is written: that there is an index for each slot that is made.
+  void require_room() {
+    std::size_t n = 0;  // slots beyond those of removed cells
+    for (const Winner& winner : winners_) {
+      const PlanBase& plan = plan_of(winner);
+      for (const CavityPart& p :
+           parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first))
+        n += p.n_created > p.n_removed ? p.n_created - p.n_removed : 0;
+    }
+    const std::size_t n_free = options_.place ? 0 : writer_.free_cells().size();
+    if (mesh_.n_cells() + (n > n_free ? n - n_free : 0) <= TetMesh::kMostCells) return;
     throw ResourceLimit("the mesh would have too many cells for the indices of this build");
   }
 
