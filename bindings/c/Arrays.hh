@@ -59,8 +59,12 @@ To held(From x, const std::string& name) {
     else
       fits =
           x == std::trunc(x) && x >= -0x1p63 && x < 0x1p63 && std::in_range<To>(static_cast<std::int64_t>(x));
-    HFR_REQUIRE(
-        fits, name + ": there are values that these integers cannot hold; get them in wider ones or doubles");
+    HFR_REQUIRE(fits, name + ": there are values that these integers cannot hold; use wider ones or doubles");
+  } else if constexpr (std::integral<From>) {
+    // 2^63 as a floating-point number is one more than an integer has.
+    const auto real = static_cast<To>(x);
+    HFR_REQUIRE(static_cast<double>(real) < 0x1p63 && static_cast<From>(real) == x,
+                name + ": there are integers that floating-point numbers of this width do not have");
   }
   return static_cast<To>(x);
 }

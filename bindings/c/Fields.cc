@@ -31,7 +31,15 @@ void require_field(const hfr_mesh& mesh, bool of_vertices, const std::string& na
 }
 
 template <class H, class Property>
-void write_values(Property property, const hfr_array& from, std::size_t columns) {
+void write_values(Property property, const std::string& name, const hfr_array& from) {
+  const auto columns = static_cast<std::size_t>(from.columns);
+  if constexpr (std::same_as<std::remove_cvref_t<decltype(property.default_value())>, std::vector<double>>)
+    HFR_REQUIRE(property.default_value().size() == columns,
+                name + " has " + std::to_string(property.default_value().size()) + " components");
+  for_each(from, [&](std::int64_t, std::int64_t, auto value) {
+    using Number = std::remove_reference_t<decltype(*io::components_of(property[H(0)]))>;
+    held<Number>(value, name);
+  });
   for_each(from, [&](std::int64_t i, std::int64_t j, auto value) {
     auto& kept = property[H(i)];
     if constexpr (requires { kept.resize(columns); }) kept.resize(columns);
@@ -60,11 +68,10 @@ hfr_status hfr_mesh_set_field(hfr_mesh* mesh, const char* of, const char* name, 
     require_field(*mesh, of_vertices, called, values);
     with_field_type(*values, [&]<class T>() {
       const T zero = io::field_preset<T>(values->columns);
-      const auto columns = static_cast<std::size_t>(values->columns);
       if (of_vertices)
-        write_values<VertexHandle>(mesh->tets.request_vertex_property<T>(called, zero), *values, columns);
+        write_values<VertexHandle>(mesh->tets.request_vertex_property<T>(called, zero), called, *values);
       else
-        write_values<CellHandle>(mesh->tets.request_cell_property<T>(called, zero), *values, columns);
+        write_values<CellHandle>(mesh->tets.request_cell_property<T>(called, zero), called, *values);
     });
   });
 }

@@ -38,6 +38,17 @@ struct hfr_mesh {
 
 namespace hfr::c {
 
+/// Runs f, whose messages count cells and vertices as the library does; says so where the caller does not.
+template <class F>
+void counted_from_zero(const hfr_mesh& mesh, F&& f) {
+  try {
+    f();
+  } catch (const InvalidInput& error) {
+    if (mesh.base == 0) throw;
+    throw InvalidInput(std::string(error.what()) + " (cells and vertices counted from 0)");
+  }
+}
+
 inline void keep(std::string& message, const char* text) {
   try {
     message = text;

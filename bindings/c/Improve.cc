@@ -71,7 +71,7 @@ hfr_status hfr_improve(hfr_mesh* mesh, const hfr_options* options, hfr_result* r
     chosen.maps = true;
     Result made;
     try {
-      made = improve(mesh->tets, chosen);
+      counted_from_zero(*mesh, [&] { made = improve(mesh->tets, chosen); });
     } catch (const InvalidInput&) {
       throw;  // before anything was done
     } catch (...) {

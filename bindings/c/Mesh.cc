@@ -170,7 +170,7 @@ hfr_status hfr_mesh_build(hfr_mesh* mesh, const hfr_array* points, const hfr_arr
   return guarded(mesh, [&] {
     std::vector<Vec3> p = points_of(points, "points", -1);
     const auto c = indices_of<4>(cells, "cells", 4, mesh->base, p.size());
-    replace_mesh(*mesh, build(std::move(p), c, all_threads()));
+    counted_from_zero(*mesh, [&] { replace_mesh(*mesh, build(std::move(p), c, all_threads())); });
   });
 }
 
@@ -237,6 +237,6 @@ hfr_status hfr_cell_cells(hfr_mesh* mesh, int64_t c, int64_t* out, size_t capaci
 hfr_status hfr_mesh_check(hfr_mesh* mesh) {
   return guarded(mesh, [&] {
     const CheckResult found = check(mesh->tets, {.policy = all_threads()});
-    HFR_REQUIRE(found, found.message);
+    counted_from_zero(*mesh, [&] { HFR_REQUIRE(found, found.message); });
   });
 }

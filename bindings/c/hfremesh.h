@@ -4,9 +4,9 @@
  *
  * Handles are opaque and belong to whoever made them. A function that can fail returns HFR_OK or what went
  * wrong, and the handle that it was called with keeps a line that says where and what to do:
- * hfr_mesh_message(), hfr_options_message(). What fails leaves the handle as it was. No exception comes out,
- * nothing is printed, and the program is never ended. Two threads may use two handles at
- * once, but not one. */
+ * hfr_mesh_message(), hfr_options_message(). What fails leaves the handle as it was, but for two functions
+ * that say so. No exception comes out, nothing is printed, and the program is never ended. Two threads may use
+ * two handles at once, but not one. */
 #ifndef HFREMESH_H
 #define HFREMESH_H
 
@@ -102,7 +102,8 @@ HFR_C_EXPORT const char* hfr_options_message(const hfr_options* options);
 /* --- a mesh --- */
 
 /* An empty mesh. index_base, 0 or 1: the number of the first vertex and of the first cell in every array and
- * argument of this mesh. NULL for another base, or when there is no memory. */
+ * argument of this mesh. Messages that name a cell or vertex of the library's count from 0 and then say so.
+ * NULL for another base, or when there is no memory. */
 HFR_C_EXPORT hfr_mesh* hfr_mesh_new(int index_base);
 HFR_C_EXPORT void hfr_mesh_free(hfr_mesh* mesh);
 /* The line about the last call that failed; "" after one that did not. Valid until the next call. */
@@ -131,7 +132,8 @@ HFR_C_EXPORT hfr_status hfr_mesh_set(hfr_mesh* mesh, const char* what, const hfr
  * "source_vertices" (for each vertex after: the one before whose field values it has). */
 HFR_C_EXPORT hfr_status hfr_mesh_get(hfr_mesh* mesh, const char* what, const hfr_array* values);
 /* A field of "vertices" or "cells" of one row each, kept as double or 64-bit integers by the type of the
- * array. It follows its vertices and cells through every run: values are attached, not interpolated. */
+ * array; with other than 1, 2, 3, 4, 6 or 9 columns as double, and integers that double does not have are
+ * refused. Who sets it again gives as many columns. It follows its vertices and cells through every run: values are attached, not interpolated. */
 HFR_C_EXPORT hfr_status hfr_mesh_set_field(hfr_mesh* mesh, const char* of, const char* name,
                                            const hfr_array* values);
 HFR_C_EXPORT hfr_status hfr_mesh_get_field(hfr_mesh* mesh, const char* of, const char* name,
@@ -193,7 +195,9 @@ typedef struct hfr_result {
 } hfr_result;
 
 /* Improves the mesh in place. However it ends, the mesh is no worse than it was: no more inverted cells, no
- * more overlap, no smaller worst angle. options may be NULL (all as they are by default), result, too. */
+ * more overlap, no smaller worst angle. options may be NULL (all as they are by default), result, too. With
+ * HFR_RESOURCE_LIMIT or HFR_INTERNAL_ERROR the mesh may be one that the run had come to, with other cells and
+ * vertices, and "map_vertices" and "map_cells" are empty. */
 HFR_C_EXPORT hfr_status hfr_improve(hfr_mesh* mesh, const hfr_options* options, hfr_result* result);
 
 /* --- a mesh inside of a simulation --- */
@@ -241,6 +245,8 @@ HFR_C_EXPORT hfr_status hfr_remesher_step(hfr_remesher* remesher, const hfr_arra
 HFR_C_EXPORT hfr_status hfr_remesher_move(hfr_remesher* remesher, const hfr_array* displacement,
                                           hfr_step* step);
 HFR_C_EXPORT hfr_status hfr_remesher_repair(hfr_remesher* remesher, hfr_step* step);
+/* Where that fails, fields that were carried over before stay so; it may be called again, and the next step
+ * does. */
 HFR_C_EXPORT hfr_status hfr_remesher_transfer(hfr_remesher* remesher);
 /* hfr_cause: why the mesh is to be repaired now. */
 HFR_C_EXPORT int hfr_remesher_needs_repair(const hfr_remesher* remesher);

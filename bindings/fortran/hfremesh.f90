@@ -1,5 +1,6 @@
 ! SPDX-License-Identifier: BSD-3-Clause
-! HFRemesh for Fortran 2008: the functions of hfremesh.h, with Fortran's strings and arrays. Compile this file with the
+! HFRemesh for Fortran 2008: the functions of hfremesh.h, with Fortran's strings and arrays; not here are
+! hfr_options_on_transfer(), hfr_options_name() and hfr_version(). Compile this file with the
 ! program and link libhfremesh_c. docs/c-api.md tells the story.
 !
 ! Arrays are (components, items), so that an item lies in one piece: points(3, n), cells(4, m). Vertices and cells count
@@ -14,7 +15,10 @@ module hfremesh
       HFR_RESOURCE_LIMIT = 4, HFR_INTERNAL_ERROR = 5
   integer(c_int32_t), parameter, public :: HFR_STOP_GOAL = 0, HFR_STOP_NO_PROGRESS = 1, HFR_STOP_ITERATIONS = 2, &
       HFR_STOP_TIME_LIMIT = 3, HFR_STOP_CANCELLED = 4, HFR_STOP_DEVICE_LOST = 5
-  integer(c_int32_t), parameter :: kInt32 = 1, kFloat64 = 4
+  integer(c_int32_t), parameter, public :: HFR_CAUSE_NONE = 0, HFR_CAUSE_INVERTED = 1, HFR_CAUSE_ANGLE = 2, &
+      HFR_CAUSE_METRIC = 3, HFR_CAUSE_JACOBIAN = 4, HFR_CAUSE_INDICATOR = 5, HFR_CAUSE_MOTION = 6, &
+      HFR_CAUSE_STEPS = 7, HFR_CAUSE_ASKED = 8
+  integer(c_int32_t), parameter :: kInt32 = 1, kInt64 = 2, kFloat64 = 4
 
   type, bind(c) :: c_array
     type(c_ptr) :: data
@@ -106,17 +110,20 @@ module hfremesh
   end interface
   ! hfr_get_edits(remesher, repair, 'created_cells', cells): see hfr_remesher_get() in hfremesh.h; repair from 1.
   interface hfr_get_edits
-    module procedure get_int_edits, get_int_rows_edits, get_real_rows_edits
+    module procedure get_int_edits, get_int_rows_edits, get_real_rows_edits, get_long_edits
   end interface
   interface hfr_set_field
-    module procedure set_real_field, set_real_rows_field, set_int_field
+    module procedure set_real_field, set_real_rows_field, set_int_field, set_int_rows_field, set_long_field, &
+        set_long_rows_field
   end interface
   interface hfr_get_field
-    module procedure get_real_field, get_real_rows_field, get_int_field
+    module procedure get_real_field, get_real_rows_field, get_int_field, get_int_rows_field, get_long_field, &
+        get_long_rows_field
   end interface
   public :: hfr_new, hfr_free, hfr_message, hfr_set, hfr_get, hfr_set_field, hfr_get_field, hfr_abi, hfr_build, hfr_read, &
       hfr_write, hfr_count, hfr_stats, hfr_quality, hfr_check, hfr_improve, hfr_on_progress, hfr_on_cancel, &
-      hfr_vertex_cells, hfr_edge_cells, hfr_new_remesher, hfr_take_step, hfr_edit_count, hfr_get_edits
+      hfr_vertex_cells, hfr_vertex_vertices, hfr_edge_cells, hfr_cell_cells, hfr_new_remesher, hfr_take_step, hfr_move, &
+      hfr_repair, hfr_transfer, hfr_needs_repair, hfr_reset, hfr_edit_count, hfr_get_edits
 
   interface
     function c_abi() bind(c, name='hfr_abi_version') result(n)
@@ -254,6 +261,24 @@ module hfremesh
       integer(c_size_t), intent(out) :: n
       integer(c_int) :: status
     end function
+    function c_vertex_vertices(handle, vertex, out, capacity, n) bind(c, name='hfr_vertex_vertices') result(status)
+      import
+      type(c_ptr), value :: handle
+      integer(c_int64_t), value :: vertex
+      integer(c_int64_t), intent(out) :: out(*)
+      integer(c_size_t), value :: capacity
+      integer(c_size_t), intent(out) :: n
+      integer(c_int) :: status
+    end function
+    function c_cell_cells(handle, cell, out, capacity, n) bind(c, name='hfr_cell_cells') result(status)
+      import
+      type(c_ptr), value :: handle
+      integer(c_int64_t), value :: cell
+      integer(c_int64_t), intent(out) :: out(*)
+      integer(c_size_t), value :: capacity
+      integer(c_size_t), intent(out) :: n
+      integer(c_int) :: status
+    end function
     function c_edge_cells(handle, a, b, out, capacity, n) bind(c, name='hfr_edge_cells') result(status)
       import
       type(c_ptr), value :: handle
@@ -283,6 +308,34 @@ module hfremesh
       type(c_ptr), value :: handle
       type(c_array), intent(in) :: displacement
       type(hfr_step), intent(out) :: what
+      integer(c_int) :: status
+    end function
+    function c_move(handle, displacement, what) bind(c, name='hfr_remesher_move') result(status)
+      import
+      type(c_ptr), value :: handle
+      type(c_array), intent(in) :: displacement
+      type(hfr_step), intent(out) :: what
+      integer(c_int) :: status
+    end function
+    function c_repair(handle, what) bind(c, name='hfr_remesher_repair') result(status)
+      import
+      type(c_ptr), value :: handle
+      type(hfr_step), intent(out) :: what
+      integer(c_int) :: status
+    end function
+    function c_transfer(handle) bind(c, name='hfr_remesher_transfer') result(status)
+      import
+      type(c_ptr), value :: handle
+      integer(c_int) :: status
+    end function
+    function c_needs_repair(handle) bind(c, name='hfr_remesher_needs_repair') result(cause)
+      import
+      type(c_ptr), value :: handle
+      integer(c_int) :: cause
+    end function
+    function c_reset(handle) bind(c, name='hfr_remesher_reset') result(status)
+      import
+      type(c_ptr), value :: handle
       integer(c_int) :: status
     end function
     function c_edit_count(handle, repair, what) bind(c, name='hfr_remesher_count') result(n)
@@ -508,6 +561,54 @@ contains
     status = c_get_field(mesh%handle, to_c(of), to_c(name), int_items(values))
   end function
 
+  function set_int_rows_field(mesh, of, name, values) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    character(len=*), intent(in) :: of, name
+    integer(c_int32_t), intent(in), target, contiguous :: values(:, :)
+    integer(c_int) :: status
+    status = c_set_field(mesh%handle, to_c(of), to_c(name), int_rows(values))
+  end function
+
+  function set_long_field(mesh, of, name, values) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    character(len=*), intent(in) :: of, name
+    integer(c_int64_t), intent(in), target, contiguous :: values(:)
+    integer(c_int) :: status
+    status = c_set_field(mesh%handle, to_c(of), to_c(name), long_items(values))
+  end function
+
+  function set_long_rows_field(mesh, of, name, values) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    character(len=*), intent(in) :: of, name
+    integer(c_int64_t), intent(in), target, contiguous :: values(:, :)
+    integer(c_int) :: status
+    status = c_set_field(mesh%handle, to_c(of), to_c(name), long_rows(values))
+  end function
+
+  function get_int_rows_field(mesh, of, name, values) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    character(len=*), intent(in) :: of, name
+    integer(c_int32_t), intent(inout), target, contiguous :: values(:, :)
+    integer(c_int) :: status
+    status = c_get_field(mesh%handle, to_c(of), to_c(name), int_rows(values))
+  end function
+
+  function get_long_field(mesh, of, name, values) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    character(len=*), intent(in) :: of, name
+    integer(c_int64_t), intent(inout), target, contiguous :: values(:)
+    integer(c_int) :: status
+    status = c_get_field(mesh%handle, to_c(of), to_c(name), long_items(values))
+  end function
+
+  function get_long_rows_field(mesh, of, name, values) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    character(len=*), intent(in) :: of, name
+    integer(c_int64_t), intent(inout), target, contiguous :: values(:, :)
+    integer(c_int) :: status
+    status = c_get_field(mesh%handle, to_c(of), to_c(name), long_rows(values))
+  end function
+
   ! Up to size(cells) of the n cells round the vertex.
   function hfr_vertex_cells(mesh, vertex, cells, n) result(status)
     type(hfr_mesh), intent(in) :: mesh
@@ -516,6 +617,25 @@ contains
     integer(c_size_t), intent(out) :: n
     integer(c_int) :: status
     status = c_vertex_cells(mesh%handle, vertex, cells, size(cells, kind=c_size_t), n)
+  end function
+
+  function hfr_vertex_vertices(mesh, vertex, vertices, n) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    integer(c_int64_t), intent(in) :: vertex
+    integer(c_int64_t), intent(inout), contiguous :: vertices(:)
+    integer(c_size_t), intent(out) :: n
+    integer(c_int) :: status
+    status = c_vertex_vertices(mesh%handle, vertex, vertices, size(vertices, kind=c_size_t), n)
+  end function
+
+  ! Those behind its faces.
+  function hfr_cell_cells(mesh, cell, cells, n) result(status)
+    type(hfr_mesh), intent(in) :: mesh
+    integer(c_int64_t), intent(in) :: cell
+    integer(c_int64_t), intent(inout), contiguous :: cells(:)
+    integer(c_size_t), intent(out) :: n
+    integer(c_int) :: status
+    status = c_cell_cells(mesh%handle, cell, cells, size(cells, kind=c_size_t), n)
   end function
 
   function hfr_edge_cells(mesh, a, b, cells, n) result(status)
@@ -591,6 +711,42 @@ contains
     status = c_step(remesher%handle, real_rows(displacement), what)
   end function
 
+  ! The parts of a step alone. displacement(3, n).
+  function hfr_move(remesher, displacement, what) result(status)
+    type(hfr_remesher), intent(in) :: remesher
+    real(c_double), intent(in), target, contiguous :: displacement(:, :)
+    type(hfr_step), intent(out) :: what
+    integer(c_int) :: status
+    status = c_move(remesher%handle, real_rows(displacement), what)
+  end function
+
+  function hfr_repair(remesher, what) result(status)
+    type(hfr_remesher), intent(in) :: remesher
+    type(hfr_step), intent(out) :: what
+    integer(c_int) :: status
+    status = c_repair(remesher%handle, what)
+  end function
+
+  function hfr_transfer(remesher) result(status)
+    type(hfr_remesher), intent(in) :: remesher
+    integer(c_int) :: status
+    status = c_transfer(remesher%handle)
+  end function
+
+  ! HFR_CAUSE_NONE, or why the mesh is to be repaired now.
+  function hfr_needs_repair(remesher) result(cause)
+    type(hfr_remesher), intent(in) :: remesher
+    integer(c_int) :: cause
+    cause = c_needs_repair(remesher%handle)
+  end function
+
+  ! For whoever has changed the mesh between steps, by hfr_set(mesh, 'points', points) or hfr_improve().
+  function hfr_reset(remesher) result(status)
+    type(hfr_remesher), intent(in) :: remesher
+    integer(c_int) :: status
+    status = c_reset(remesher%handle)
+  end function
+
   function hfr_edit_count(remesher, repair, what) result(n)
     type(hfr_remesher), intent(in) :: remesher
     integer, intent(in) :: repair
@@ -606,6 +762,16 @@ contains
     integer(c_int32_t), intent(inout), target, contiguous :: values(:)
     integer(c_int) :: status
     status = c_get_edits(remesher%handle, int(repair - 1, c_int64_t), to_c(what), int_items(values))
+  end function
+
+  ! 'vertex_ids' and 'cell_ids' go beyond 32 bits in the end.
+  function get_long_edits(remesher, repair, what, values) result(status)
+    type(hfr_remesher), intent(in) :: remesher
+    integer, intent(in) :: repair
+    character(len=*), intent(in) :: what
+    integer(c_int64_t), intent(inout), target, contiguous :: values(:)
+    integer(c_int) :: status
+    status = c_get_edits(remesher%handle, int(repair - 1, c_int64_t), to_c(what), long_items(values))
   end function
 
   function get_int_rows_edits(remesher, repair, what, values) result(status)
@@ -675,6 +841,24 @@ contains
     data = c_null_ptr
     if (size(values) > 0) data = c_loc(values)
     array = described(data, size(values, 2), size(values, 1), kInt32)
+  end function
+
+  function long_rows(values) result(array)
+    integer(c_int64_t), intent(in), target, contiguous :: values(:, :)
+    type(c_array) :: array
+    type(c_ptr) :: data
+    data = c_null_ptr
+    if (size(values) > 0) data = c_loc(values)
+    array = described(data, size(values, 2), size(values, 1), kInt64)
+  end function
+
+  function long_items(values) result(array)
+    integer(c_int64_t), intent(in), target, contiguous :: values(:)
+    type(c_array) :: array
+    type(c_ptr) :: data
+    data = c_null_ptr
+    if (size(values) > 0) data = c_loc(values)
+    array = described(data, size(values), 1, kInt64)
   end function
 
   function real_items(values) result(array)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <climits>
 #include <cstring>
+#include <new>
 
 #include "Plex.hh"
 
@@ -89,11 +91,12 @@ struct Closure {
   std::array<std::int64_t, 4> v = {};  ///< numbers of its vertices, in the order in which PETSc has them
   int n = 0;                           ///< of them
   bool is_to_refine = false;           ///< a point of it is marked DM_ADAPT_REFINE
+  int unknown = DM_ADAPT_KEEP;         ///< a flag of a point of it that is none of PETSc's
 };
 
 /// `marks` may be nullptr.
 PetscErrorCode look_at(const Points& points, PetscInt p, DMLabel marks, Closure* out) {
-  PetscInt size = 0, unknown = DM_ADAPT_KEEP;
+  PetscInt size = 0;
   PetscInt* closure = nullptr;
 
   PetscFunctionBegin;
@@ -103,17 +106,13 @@ PetscErrorCode look_at(const Points& points, PetscInt p, DMLabel marks, Closure*
     const PetscInt q = closure[2 * i];
     PetscInt flag = DM_ADAPT_KEEP;
     if (marks) PetscCall(DMLabelGetValue(marks, q, &flag));
-    if (flag < DM_ADAPT_DETERMINE || flag > DM_ADAPT_COARSEN) unknown = flag;
+    if (flag < DM_ADAPT_DETERMINE || flag > DM_ADAPT_COARSEN) out->unknown = static_cast<int>(flag);
     out->is_to_refine = out->is_to_refine || flag == DM_ADAPT_REFINE;
     if (q >= points.begin[0] && q < points.end[0] && out->n < 4)
       out->v[static_cast<std::size_t>(out->n++)] =
           points.number[static_cast<std::size_t>(q - points.begin[0])];
   }
   PetscCall(DMPlexRestoreTransitiveClosure(points.dm, p, PETSC_TRUE, &size, &closure));
-  PetscCheck(unknown == DM_ADAPT_KEEP, PETSC_COMM_SELF, PETSC_ERR_SUP,
-             "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; a point of cell %" PetscInt_FMT
-             " has flag %" PetscInt_FMT,
-             p, unknown);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,13 +152,15 @@ PetscErrorCode refinement_limit(const Points& points, PetscInt c, double* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode read_cells(const Points& points, DMLabel marks, LocalPlex* out) {
+/// `unknown`: a flag of some point that is none of PETSc's.
+PetscErrorCode read_cells(const Points& points, DMLabel marks, LocalPlex* out, int* unknown) {
   PetscFunctionBegin;
   for (PetscInt c = points.begin[3]; c < points.end[3]; ++c) {
     Closure closure;
     double largest = kKeep;
     if (!points.is_mine(c)) continue;
     PetscCall(look_at(points, c, marks, &closure));
+    if (closure.unknown != DM_ADAPT_KEEP) *unknown = closure.unknown;
     if (!marks) PetscCall(refinement_limit(points, c, &largest));
     out->cells.push_back(closure.v);
     out->largest.push_back(closure.is_to_refine ? kRefine : largest);
@@ -227,15 +228,30 @@ PetscErrorCode read_labels(const Points& points, DMLabel marks, LocalPlex* out) 
 }  // namespace
 
 PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out) {
+  MPI_Comm comm = MPI_COMM_NULL;
   Points points;
+  // What goes wrong on one rank ends all of them: a flag that is none, and no memory.
+  struct {
+    int unknown = INT_MIN, no_memory = 0;
+  } wrong;
 
   PetscFunctionBegin;
+  PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(dm), &comm));
   PetscCall(require_tetrahedra(dm));
   PetscCall(DMGetCoordinatesLocalSetUp(dm));  // or asking for one point is collective
   PetscCall(find_points(dm, &points));
-  PetscCall(read_vertices(points, out));
-  PetscCall(read_cells(points, marks, out));
-  PetscCall(read_labels(points, marks, out));
+  try {
+    PetscCall(read_vertices(points, out));
+    PetscCall(read_cells(points, marks, out, &wrong.unknown));
+    PetscCall(read_labels(points, marks, out));
+  } catch (const std::bad_alloc&) {
+    wrong.no_memory = 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 2, MPI_INT, MPI_MAX, comm));
+  PetscCheck(!wrong.no_memory, comm, PETSC_ERR_MEM, "hfremesh: not enough memory for the mesh");
+  PetscCheck(wrong.unknown == INT_MIN, comm, PETSC_ERR_SUP,
+             "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; a point has flag %d",
+             wrong.unknown);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

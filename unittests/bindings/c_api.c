@@ -224,6 +224,45 @@ static void integers_of_any_number_are_kept_as_files_have_them(void) {
   hfr_mesh_free(mesh);
 }
 
+static void what_a_field_or_an_array_cannot_hold_is_refused(void) {
+  hfr_mesh* mesh = two(1);
+  double seven[2][7] = {{1, 2, 3, 4, 5, 6, 7}, {8, 9, 10, 11, 12, 13, 14}}, found[2][7];
+  const hfr_array wide = array(seven, 2, 7, HFR_FLOAT64), narrow = array(seven, 2, 5, HFR_FLOAT64);
+  const hfr_array out = array(found, 2, 7, HFR_FLOAT64);
+  CHECK(hfr_mesh_set_field(mesh, "cells", "a", &wide) == HFR_OK);
+  REFUSED(hfr_mesh_set_field(mesh, "cells", "a", &narrow), HFR_INVALID_INPUT, "a has 7 components");
+  CHECK(hfr_mesh_get_field(mesh, "cells", "a", &out) == HFR_OK && found[1][6] == 14);
+
+  int64_t odd[2][5] = {{1, 2, 3, 4, 5}, {6, 7, 8, 9, 0}};
+  const hfr_array five = array(odd, 2, 5, HFR_INT64);
+  odd[1][4] = (INT64_C(1) << 53) + 1;
+  REFUSED(hfr_mesh_set_field(mesh, "cells", "b", &five), HFR_INVALID_INPUT, "of this width do not have");
+  odd[1][4] = INT64_MAX;
+  REFUSED(hfr_mesh_set_field(mesh, "cells", "b", &five), HFR_INVALID_INPUT, "of this width do not have");
+  odd[1][4] = INT64_C(1) << 60;
+  CHECK(hfr_mesh_set_field(mesh, "cells", "b", &five) == HFR_OK);
+
+  int64_t regions[2] = {(1 << 24) + 1, 0};
+  const hfr_array r = array(regions, 2, 1, HFR_INT64);
+  float f[2];
+  const hfr_array as_floats = array(f, 2, 1, HFR_FLOAT32);
+  CHECK(hfr_mesh_set(mesh, "regions", &r) == HFR_OK);
+  REFUSED(hfr_mesh_get(mesh, "regions", &as_floats), HFR_INVALID_INPUT, "of this width do not have");
+  hfr_mesh_free(mesh);
+}
+
+static void messages_say_from_where_they_count(void) {
+  hfr_mesh* mesh = hfr_mesh_new(1);
+  int32_t cells[2][4] = {{1, 2, 3, 4}, {2, 3, 4, 4}};
+  const hfr_array p = array(two_points, 5, 3, HFR_FLOAT64), c = array(cells, 2, 4, HFR_INT32);
+  REFUSED(hfr_mesh_build(mesh, &p, &c), HFR_INVALID_INPUT, "cell 1: ");
+  REFUSED(hfr_mesh_build(mesh, &p, &c), HFR_INVALID_INPUT, "(cells and vertices counted from 0)");
+  cells[1][3] = 6;
+  REFUSED(hfr_mesh_build(mesh, &p, &c), HFR_INVALID_INPUT, "counted from 1");
+  CHECK(strstr(hfr_mesh_message(mesh), "counted from 0") == NULL);
+  hfr_mesh_free(mesh);
+}
+
 static void a_run_repairs_and_keeps_what_hangs_on_the_mesh(void) {
   hfr_mesh* mesh = cube();
   hfr_options* options = hfr_options_new();
@@ -545,6 +584,8 @@ int main(int argc, char** argv) {
   null_is_no_handle();
   options_go_by_name();
   integers_of_any_number_are_kept_as_files_have_them();
+  what_a_field_or_an_array_cannot_hold_is_refused();
+  messages_say_from_where_they_count();
   a_run_repairs_and_keeps_what_hangs_on_the_mesh();
   callbacks_are_called();
   files_and_fixed_things(argc > 1 ? argv[1] : ".");

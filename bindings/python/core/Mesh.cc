@@ -34,10 +34,22 @@ struct MeshArguments {
   nb::object vertex_labels, fixed_vertices;
 };
 
+/// The items of a mapping of names to arrays.
+nb::dict items_of(nb::handle fields, const char* argument) {
+  if (!PyMapping_Check(fields.ptr()))
+    throw nb::value_error((std::string(argument) + ": a mapping of names to arrays is wanted").c_str());
+  nb::dict items = nb::borrow<nb::dict>(nb::module_::import_("builtins").attr("dict")(fields));
+  for (auto [key, value] : items)
+    if (!nb::isinstance<nb::str>(key))
+      throw nb::value_error(
+          (std::string(argument) + ": the name " + nb::repr(key).c_str() + " is no string").c_str());
+  return items;
+}
+
 void add_fields(nb::handle fields, const char* argument, std::size_t n, const char* what,
                 std::vector<io::Field>& out) {
   if (fields.is_none()) return;
-  for (auto [key, value] : nb::cast<nb::dict>(fields)) {
+  for (auto [key, value] : items_of(fields, argument)) {
     const std::string name = nb::cast<std::string>(key);
     io::Field field = field_of(value, std::string(argument) + "['" + name + "']", n, what);
     field.name = name;
@@ -49,7 +61,7 @@ void add_fields(nb::handle fields, const char* argument, std::size_t n, const ch
 void add_fields_by_length(nb::handle fields, io::MeshData& data) {
   if (fields.is_none()) return;
   const std::size_t n = data.points.size(), m = data.cells.size();
-  for (auto [key, value] : nb::cast<nb::dict>(fields)) {
+  for (auto [key, value] : items_of(fields, "fields")) {
     const std::string name = nb::cast<std::string>(key);
     const std::string shown = "fields['" + name + "']";
     const std::size_t length = length_of(value, shown);

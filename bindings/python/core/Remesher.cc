@@ -38,6 +38,16 @@ std::vector<Vec3> displacement_of(nb::handle object, std::size_t n) {
   return displacement;
 }
 
+/// What a caller gives for a field that there is; ValueError for another shape, or floats for integers.
+std::vector<double> values_for(const FieldKind& kind, nb::handle values, std::size_t n) {
+  io::Field field = field_of(values, kind.name, n, kind.of_vertices ? "vertex" : "cell");
+  if (field.components != kind.components || (kind.integer && !field.integer))
+    throw nb::value_error(("field '" + kind.name + "' has " + std::to_string(kind.components) +
+                           (kind.integer ? " integer" : "") + " components")
+                              .c_str());
+  return std::move(field.values);
+}
+
 /// hfremesh.Remesher: a mesh of its own, since that one changes; what is read of it is copied.
 class OwnedRemesher {
  private:
@@ -73,7 +83,10 @@ class OwnedRemesher {
     }
     callbacks_.attach(options.improve);
     require_finite(mesh_.points().data(), mesh_.n_vertices(), "points");
-    fields_ = field_kinds(mesh_);
+    {
+      nb::gil_scoped_release others_run;
+      fields_ = field_kinds(mesh_);
+    }
     add_transfers(transfers, options);
     nb::gil_scoped_release others_run;
     remesher_ = std::make_unique<Remesher>(mesh_, std::move(options));
@@ -129,27 +142,30 @@ class OwnedRemesher {
     return *remesher_;
   }
 
-  const FieldKind& kind(const std::string& name) {
+  /// The field of that name, of "vertices" or "cells" where both have one.
+  const FieldKind& kind(const std::string& name, const std::optional<std::string>& of) {
     require_idle();
-    const auto found = std::ranges::find_if(fields_, [&](const FieldKind& k) { return k.name == name; });
-    if (found == fields_.end()) throw nb::key_error(("there is no field '" + name + "'").c_str());
+    if (of && *of != "vertices" && *of != "cells")
+      throw nb::value_error(("of: 'vertices' or 'cells', not '" + *of + "'").c_str());
+    const auto is_meant = [&](const FieldKind& k) {
+      return k.name == name && (!of || k.of_vertices == (*of == "vertices"));
+    };
+    const auto found = std::ranges::find_if(fields_, is_meant);
+    if (found == fields_.end())
+      throw nb::key_error(
+          ("there is no field '" + name + "' in the Mesh that the Remesher is made of").c_str());
+    if (std::ranges::count_if(fields_, is_meant) > 1)
+      throw nb::value_error(("both vertices and cells have a field '" + name + "': say of='vertices' or " +
+                             "of='cells'; a function that carries one over needs another name")
+                                .c_str());
     return *found;
   }
   const std::vector<FieldKind>& kinds() const { return fields_; }
 
-  void set_field(const std::string& name, nb::handle values) {
-    require_idle();
-    const auto found = std::ranges::find_if(fields_, [&](const FieldKind& k) { return k.name == name; });
-    if (found == fields_.end())
-      throw nb::key_error(
-          ("there is no field '" + name + "': give it to the Mesh that the Remesher is made of").c_str());
-    const std::size_t n = found->of_vertices ? mesh_.n_vertices() : mesh_.n_cells();
-    const io::Field field = field_of(values, name, n, found->of_vertices ? "vertex" : "cell");
-    if (field.components != found->components || (found->integer && !field.integer))
-      throw nb::value_error(("field '" + name + "' has " + std::to_string(found->components) +
-                             (found->integer ? " integer" : "") + " components")
-                                .c_str());
-    set_field_values(mesh_, *found, field.values);
+  void set_field(const std::string& name, nb::handle values, const std::optional<std::string>& of) {
+    const FieldKind& found = kind(name, of);
+    const std::size_t n = found.of_vertices ? mesh_.n_vertices() : mesh_.n_cells();
+    set_field_values(mesh_, found, values_for(found, values, n));
   }
 
  private:
@@ -158,19 +174,16 @@ class OwnedRemesher {
     for (auto [key, function] : transfers) {
       const std::string name = nb::cast<std::string>(key);
       const std::size_t i = transfers_.size();
-      kind(name);  // KeyError where there is no such field
+      const FieldKind* carried = &kind(name, std::nullopt);  // KeyError where there is no such field
       transfers_.push_back(nb::borrow(function));
       options.fields.push_back(
           {.name = name,
            .how = Transfer::kCallback,
-           .callback = [this, i, name](const TetMesh& old, TetMesh& now, const Edits& edits) {
+           .callback = [this, i, carried](const TetMesh& old, TetMesh& now, const Edits& edits) {
              const nb::gil_scoped_acquire python;
-             carry_over(transfers_[i], field_of_name(name), old, now, edits);
+             carry_over(transfers_[i], *carried, old, now, edits);
            }});
     }
-  }
-  const FieldKind& field_of_name(const std::string& name) const {
-    return *std::ranges::find_if(fields_, [&](const FieldKind& k) { return k.name == name; });
   }
   /// Meshes and edits are copies: whoever keeps them may.
   static void carry_over(const nb::object& function, const FieldKind& kind, const TetMesh& old, TetMesh& now,
@@ -178,12 +191,8 @@ class OwnedRemesher {
     const nb::object values =
         function(nb::cast(Mesh{old, {}, {}}, nb::rv_policy::move),
                  nb::cast(Mesh{now, {}, {}}, nb::rv_policy::move), nb::cast(edits, nb::rv_policy::copy));
-    const std::size_t n = kind.of_vertices ? now.n_vertices() : now.n_cells();
-    const io::Field field = field_of(values, kind.name, n, kind.of_vertices ? "vertex" : "cell");
-    if (field.components != kind.components)
-      throw nb::value_error(
-          ("field '" + kind.name + "' has " + std::to_string(kind.components) + " components").c_str());
-    set_field_values(now, kind, field.values);
+    set_field_values(now, kind,
+                     values_for(kind, values, kind.of_vertices ? now.n_vertices() : now.n_cells()));
   }
 
   nb::object progress_, cancel_;
@@ -224,7 +233,8 @@ int traverse(PyObject* self, visitproc visit, void* arg) {
 }
 
 int clear(PyObject* self) {
-  nb::inst_ptr<OwnedRemesher>(self)->clear();
+  // One whose constructor has thrown holds nothing any more.
+  if (nb::inst_ready(self)) nb::inst_ptr<OwnedRemesher>(self)->clear();
   return 0;
 }
 
@@ -250,7 +260,8 @@ void bind_results(nb::module_& module) {
               "has.")
       .def_prop_ro(
           "cause", [](const StepResult& s) { return cause_name(s.cause); },
-          "Of the first repair: 'none', 'inverted', 'angle', 'metric', 'jacobian', 'motion' or 'steps'.")
+          "Of the first repair: 'none', 'inverted', 'angle', 'metric', 'jacobian', 'indicator', 'motion' or "
+          "'steps'.")
       .def_ro("fraction", &StepResult::fraction, "Of the displacement that was taken.")
       .def_ro("n_looked_at", &StepResult::n_looked_at, "Cells with a vertex that was moved.")
       .def_prop_ro(
@@ -351,11 +362,16 @@ void bind_remesher(nb::module_& module) {
       .def("transfer", &OwnedRemesher::transfer, "Carries the fields over the last repair().")
       .def(
           "field",
-          [](OwnedRemesher& r, const std::string& name) { return values_array(r.mesh(), r.kind(name)); },
-          "name"_a, "A field's values, a copy: one row a vertex or cell. KeyError where there is none.")
-      .def("set_field", &OwnedRemesher::set_field, "name"_a, "values"_a,
+          [](OwnedRemesher& r, const std::string& name, const std::optional<std::string>& of) {
+            return values_array(r.mesh(), r.kind(name, of));
+          },
+          "name"_a, "of"_a = nb::none(),
+          "A field's values, a copy: one row a vertex or cell. KeyError where there is none; ValueError "
+          "where "
+          "vertices and cells have one each and `of`, 'vertices' or 'cells', does not say which.")
+      .def("set_field", &OwnedRemesher::set_field, "name"_a, "values"_a, "of"_a = nb::none(),
            "Replaces a field's values. KeyError where there is none of the name, ValueError for another "
-           "shape.");
+           "shape, floats for integers, or a name that is of vertices and of cells, without `of`.");
   bind_reading(type);
 }
 

@@ -329,7 +329,7 @@ def plan(points: MeshLike, cells: Optional[ArrayLike] = None, **options: Any) ->
     for name in options:
         if name not in known:
             raise TypeError(f"no option is called {name!r}; there are {', '.join(known)}")
-    return _core.plan(_mesh(points, cells), _option_texts(options))
+    return _core.plan(_mesh(points, cells, threads=options.get("threads") or 0), _option_texts(options))
 
 
 def stats(points: MeshLike, cells: Optional[ArrayLike] = None, *, regions: Optional[ArrayLike] = None,
@@ -353,10 +353,10 @@ def min_dihedral(points: MeshLike, cells: Optional[ArrayLike] = None, *, threads
 
 def histogram(points: MeshLike, cells: Optional[ArrayLike] = None, metric: str = "min-dihedral",
               bins: Union[int, Sequence[float]] = 36,
-              range: Optional[Tuple[float, float]] = None) -> Tuple[NDArray[np.int64], NDArray[np.float64]]:
+              range: Optional[Tuple[float, float]] = None, *, threads: int = 0) -> Tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Counts and edges of numpy.histogram over quality(points, cells, metric). That of all six dihedrals of all cells
     is stats().dihedral_histogram."""
-    return np.histogram(quality(points, cells, metric), bins=bins, range=range)
+    return np.histogram(quality(points, cells, metric, threads=threads), bins=bins, range=range)
 
 
 @dataclass(frozen=True)

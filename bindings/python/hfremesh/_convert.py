@@ -21,7 +21,7 @@ _VTK_TETRA, _VTK_TRIANGLE, _VTK_LINE = 10, 5, 3
 
 
 def _is_label(values: Any) -> bool:
-    values = np.asarray(values)
+    values = np.asarray(values)  # of None, an array of objects without dimensions
     return values.ndim == 1 and values.dtype.kind in "iuf" and bool(np.all(values == np.rint(values)))
 
 
@@ -31,6 +31,12 @@ def _label_name(names: Any, values_of: Any) -> Optional[str]:
         if known in lower and _is_label(values_of(lower[known])):
             return lower[known]
     return None
+
+
+def _scalars(blocks: Any) -> Any:
+    """Values of all blocks of cells one after the other; None where they are vectors."""
+    arrays = [np.asarray(values) for values in blocks]
+    return np.concatenate(arrays) if all(values.ndim == 1 for values in arrays) else None
 
 
 def _numbers(fields: Dict[str, Any]) -> Dict[str, Any]:
@@ -58,7 +64,7 @@ def from_meshio(mesh: meshio.Mesh) -> _core.Mesh:
     def gathered(name: str, kind: str) -> Any:
         return np.concatenate([mesh.cell_data[name][i] for i in of_kind[kind][1]])
 
-    label = _label_name(mesh.cell_data, lambda name: np.concatenate([np.ravel(v) for v in mesh.cell_data[name]]))
+    label = _label_name(mesh.cell_data, lambda name: _scalars(mesh.cell_data[name]))
     parts: Dict[str, Any] = {}
     for kind, items, labels in (("triangle", "triangles", "triangle_labels"), ("line", "edges", "edge_labels")):
         if kind in of_kind:
@@ -79,9 +85,14 @@ def _three_columns(points: Any) -> Any:
     return points
 
 
+def _require_no_field_of_regions(fields: Any) -> None:
+    if "region" in fields:
+        raise ValueError("a field of cells is called 'region', as regions and labels are to be: give it another name")
+
+
 def to_meshio(mesh: _core.Mesh) -> meshio.Mesh:
     """A meshio mesh: tetrahedra, and labelled triangles and lines where there are any; regions and labels as 'region',
-    fields of cells as they are (NaN on triangles and lines)."""
+    fields of cells as they are (NaN on triangles and lines). ValueError where a field of cells is called 'region', too."""
     import meshio
 
     mesh = getattr(mesh, "mesh", mesh)
@@ -92,6 +103,7 @@ def to_meshio(mesh: _core.Mesh) -> meshio.Mesh:
             blocks.append((kind, more[items], more[labels]))
     cell_data: Dict[str, list] = {}
     if any(labels.any() for _, _, labels in blocks):
+        _require_no_field_of_regions(more["cell_fields"])
         cell_data["region"] = [labels for _, _, labels in blocks]
     for name, values in more["cell_fields"].items():
         fill = [np.full((len(items), *values.shape[1:]), np.nan) for _, items, _ in blocks[1:]]
@@ -128,7 +140,8 @@ def from_pyvista(grid: pyvista.UnstructuredGrid) -> _core.Mesh:
 
 
 def to_pyvista(mesh: _core.Mesh) -> pyvista.UnstructuredGrid:
-    """An unstructured grid of the tetrahedra with their fields, and their regions as 'region' where there are any."""
+    """An unstructured grid of the tetrahedra with their fields, and their regions as 'region' where there are any.
+    ValueError where a field of cells is called so, too."""
     import pyvista
 
     mesh = getattr(mesh, "mesh", mesh)
@@ -139,5 +152,6 @@ def to_pyvista(mesh: _core.Mesh) -> pyvista.UnstructuredGrid:
     for name, values in more["cell_fields"].items():
         grid.cell_data[name] = values
     if mesh.regions.any():
+        _require_no_field_of_regions(more["cell_fields"])
         grid.cell_data["region"] = mesh.regions
     return grid

@@ -32,6 +32,23 @@ def test_meshio_blocks_are_put_together(tet):
     assert made.n_cells == 2 and list(made.regions) == [5, 6]
 
 
+def test_vectors_of_a_name_for_labels_stay_a_field(tet):
+    meshio = pytest.importorskip("meshio")
+    mesh = meshio.Mesh(tet[0], [("tetra", tet[1])], cell_data={"material": [np.zeros((1, 3), dtype=int)]})
+    made = hf.from_meshio(mesh)
+    assert list(made.regions) == [0] and made.attachments["cell_fields"]["material"].shape == (1, 3)
+
+
+def test_a_field_that_is_called_as_regions_are_is_refused(tet):
+    mesh = hf.Mesh(*tet, regions=[7], cell_fields={"region": [2.5]})
+    pytest.importorskip("meshio")
+    with pytest.raises(ValueError, match="called 'region'"):
+        hf.to_meshio(mesh)
+    pytest.importorskip("pyvista")
+    with pytest.raises(ValueError, match="called 'region'"):
+        hf.to_pyvista(mesh)
+
+
 def test_meshio_without_tetrahedra_is_refused():
     meshio = pytest.importorskip("meshio")
     with pytest.raises(ValueError, match="no cells of type 'tetra' but triangle"):

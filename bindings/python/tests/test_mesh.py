@@ -146,3 +146,14 @@ def test_check_says_what_is_wrong(cavity):
     touching = hf.check([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 2], [-1, 0, 1], [0, -1, 1]],
                         [[0, 1, 2, 3], [3, 4, 5, 6]])
     assert not touching.is_manifold and touching.rule == "kNonManifoldVertex" and touching.valid
+
+
+def test_fields_are_any_mapping_with_names(tet):
+    from types import MappingProxyType
+
+    mesh = hf.Mesh(*tet, cell_fields=MappingProxyType({"p": [2.5]}))
+    assert mesh.attachments["cell_fields"]["p"].tolist() == [2.5]
+    with pytest.raises(ValueError, match="cell_fields: the name 0 is no string"):
+        hf.Mesh(*tet, cell_fields={0: [2.5]})
+    with pytest.raises(ValueError, match="point_fields: a mapping"):
+        hf.Mesh(*tet, point_fields=[1.0])

@@ -176,6 +176,49 @@ def test_a_function_carries_a_field_over(loaded):
         hf.Remesher(loaded, transfer={"nothing": fails})
 
 
+def test_floats_are_no_values_of_a_field_of_integers(loaded):
+    rm = hf.Remesher(loaded, trigger=0, every=1, transfer={"material": lambda old, new, edits: np.full(new.n_cells, 1.9)})
+    with pytest.raises(ValueError, match="1 integer components"):
+        rm.step(np.full((rm.n_vertices, 3), 1e-6))
+
+
+def test_a_name_of_vertices_and_of_cells_needs_of(tet):
+    mesh = hf.Mesh(*tet, point_fields={"p": np.zeros(4)}, cell_fields={"p": [2.5]})
+    rm = hf.Remesher(mesh, transfer={"p": "conserve"})
+    assert rm.field("p", of="cells").tolist() == [2.5] and len(rm.field("p", of="vertices")) == 4
+    rm.set_field("p", [3.5], of="cells")
+    assert rm.field("p", of="cells").tolist() == [3.5]
+    with pytest.raises(ValueError, match="both vertices and cells"):
+        rm.field("p")
+    with pytest.raises(ValueError, match="both vertices and cells"):
+        rm.set_field("p", [3.5])
+    with pytest.raises(ValueError, match="both vertices and cells"):
+        hf.Remesher(mesh, transfer={"p": lambda old, new, edits: None})
+    with pytest.raises(ValueError, match="not 'edges'"):
+        rm.field("p", of="edges")
+
+
+def test_a_remesher_that_was_never_made_is_collected():
+    """Its callbacks are let go once, though a cycle leads through it."""
+    import gc
+    import sys
+
+    def progress(now):
+        pass
+
+    def fails():
+        try:
+            hf.Remesher(hf.generate.cavity(2), goal=5, trigger=10, progress=progress)
+        except ValueError as error:
+            kept = error  # frame, error, traceback, frame
+            assert kept
+
+    before = sys.getrefcount(progress)
+    fails()
+    gc.collect()
+    assert sys.getrefcount(progress) == before
+
+
 def test_refused_motion_names_its_cells(loaded):
     rm = hf.Remesher(loaded, on_inversion="refuse")
     d = np.zeros((rm.n_vertices, 3))
@@ -326,8 +369,7 @@ def test_the_same_bits_for_every_number_of_threads(loaded):
     hashes = set()
     for threads in (1, 2, 3):
         rm = hf.Remesher(loaded, transfer=WAYS, threads=threads)
-        for _ in range(6):
-            rm.step(swirl(rm.points, 0.2))
+        assert any([rm.step(swirl(rm.points, 0.2)).changed for _ in range(6)])
         hashes.add((rm.mesh.hash, rm.field("T").tobytes(), rm.field("p").tobytes()))
     assert len(hashes) == 1
 

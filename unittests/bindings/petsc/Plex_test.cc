@@ -404,6 +404,20 @@ TEST(PetscAdaptor, FlagsThatPetscDoesNotNameAreRefused) {
   EXPECT_THAT(refusal.line, HasSubstr("has flag 7"));
 }
 
+/// Ranks without such a flag hear of it, too, and wait for nobody.
+TEST(PetscAdaptor, AFlagOnOneRankAloneEndsAll) {
+  const Plex before = cube(PETSC_COMM_WORLD, regular());
+  Plex out;
+  const Refusal refusal = refusal_of([&] {
+    return adapt(
+        before.get(),
+        [](const std::array<double, 3>& c) { return PetscInt{c[0] + c[1] + c[2] < 0.5 ? 7 : DM_ADAPT_KEEP}; },
+        out);
+  });
+  EXPECT_EQ(refusal.code, PETSC_ERR_SUP);
+  EXPECT_THAT(refusal.line, HasSubstr("has flag 7"));
+}
+
 TEST(PetscAdaptor, OptionsAreThoseOfTheToolAndWrongOnesAreRefused) {
   const Plex before = cube(PETSC_COMM_WORLD, tangled());
   Plex after;
