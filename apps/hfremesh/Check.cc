@@ -129,7 +129,9 @@ ExitCode run(const CommandLine& line, const CommonOptions& common, Json& report)
     print_error(fmt::format("{}: the smallest dihedral angle is {:.4f}, below the goal of {}", line.input,
                             figures.min_dihedral.min, *line.min_dihedral));
   const ExitCode code = !valid ? ExitCode::kInvalidCells : goal_met ? ExitCode::kDone : ExitCode::kGoalMissed;
-  return line.ids.empty() ? code : save_report(line.ids, ids_text(loaded, findings, folded), code);
+  return line.ids.empty() ? code
+                          : save_report(
+                                line.ids, [&] { return ids_text(loaded, findings, folded); }, code);
 }
 
 }  // namespace

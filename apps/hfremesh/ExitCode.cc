@@ -19,7 +19,7 @@ ExitCode exit_code_of(const std::exception& error) {
 }
 
 std::string message_of(const std::exception& error) {
-  if (dynamic_cast<const std::bad_alloc*>(&error)) return "not enough memory; nothing was written";
+  if (dynamic_cast<const std::bad_alloc*>(&error)) return "not enough memory";
   return error.what();
 }
 

@@ -99,19 +99,23 @@ std::vector<std::string> save(const std::string& path, const io::MeshData& data,
   return writing(path, [&] { return io::write_mesh(output_path(path), data, options); });
 }
 
-ExitCode save_report(const std::string& path, const std::string& text, ExitCode code) {
-  if (path == "-") {
-    put_out(text);  // whether it arrives is asked in the end
-    return code;
-  }
+ExitCode without_report(const std::exception& error, ExitCode code) {
+  print_error(message_of(error));
+  return code == ExitCode::kDone ? ExitCode::kUsage : code;
+}
+
+ExitCode save_report(const std::string& path, const std::function<std::string()>& text, ExitCode code) {
   try {
+    if (path == "-") {
+      put_out(text());  // whether it arrives is asked in the end
+      return code;
+    }
     io::OutputFile file(path);
-    file.text(text);
+    file.text(text());
     file.commit();
     return code;
-  } catch (const IoError& error) {
-    print_error(error.what());
-    return code == ExitCode::kDone ? ExitCode::kUsage : code;
+  } catch (const std::exception& error) {
+    return without_report(error, code);
   }
 }
 

@@ -2,6 +2,8 @@
 #ifndef HFR_APPS_FILES_HH
 #define HFR_APPS_FILES_HH
 
+#include <exception>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,8 +41,11 @@ std::vector<std::string> save(const std::string& path, const io::MeshData& data,
                               const io::WriteOptions& options);
 
 /// A report, whole or not at all; "-" is stdout. The mesh is written by then, so one that is lost costs a
-/// line and turns exit code 0 into 1, but no other: those say more. Returns the code to end with.
-ExitCode save_report(const std::string& path, const std::string& text, ExitCode code);
+/// line and turns exit code 0 into 1, but no other: those say more. Returns the code to end with. `text`
+/// makes it; what that throws loses it as well.
+ExitCode save_report(const std::string& path, const std::function<std::string()>& text, ExitCode code);
+/// The same of a report that could not be made.
+ExitCode without_report(const std::exception& error, ExitCode code);
 
 }  // namespace hfr::app
 

@@ -104,7 +104,6 @@ ExitCode run_on_mesh(io::MeshData data, const ImproveLine& line, const ImproveOp
   seconds.improve = result.seconds;
   if (line.label_features) label_features(loaded.mesh, options.surface, options.policy);
   seconds.statistics = improving.seconds() - result.seconds;
-  presentation.add_after(loaded.mesh, &result);
 
 #ifndef NDEBUG  // improve() has tested what it changed; a second look takes three times as long as a short
                 // run
@@ -125,15 +124,23 @@ ExitCode run_on_mesh(io::MeshData data, const ImproveLine& line, const ImproveOp
   seconds.write = writing.seconds();
   if (!result.device_note.empty()) notes.push_back("no device, or not to the end: " + result.device_note);
 
-  report["output"].update(contents(data));
-  report_run(report, loaded.mesh, result, options, seconds);
-  report["notes"] = notes;
-  if (!common.quiet) print_notes(notes);
-  if (common.prints_table()) print_result(result, seconds, line.dry_run, common);
+  // The mesh is saved: whatever goes wrong from here on loses a report and no more.
   ExitCode code = exit_code_of(result);
-  if (code != ExitCode::kDone) print_error(line.input + ": " + shortfall(result, options));
-  code = presentation.save(result.before, result.after, report, code);
-  return line.ids.empty() ? code : save_report(line.ids, ids_text(loaded.mesh, result), code);
+  try {
+    report["output"].update(contents(data));
+    report_run(report, loaded.mesh, result, options, seconds);
+    report["notes"] = notes;
+    if (!common.quiet) print_notes(notes);
+    if (common.prints_table()) print_result(result, seconds, line.dry_run, common);
+    if (code != ExitCode::kDone) print_error(line.input + ": " + shortfall(result, options));
+    presentation.add_after(loaded.mesh, &result);
+    code = presentation.save(result.before, result.after, report, code);
+  } catch (const std::exception& error) {
+    code = without_report(error, code);
+  }
+  return line.ids.empty() ? code
+                          : save_report(
+                                line.ids, [&] { return ids_text(loaded.mesh, result); }, code);
 }
 
 ExitCode run(const ImproveLine& line, const CommonOptions& common, Json& report) {
@@ -179,7 +186,7 @@ Subcommand add_improve(Command program, CommonOptions& common) {
   return {command,
           [line] {
             return std::vector<FileUse>{{Kind::kInput, "IN", line->input},
-                                        {Kind::kMesh, "-o", line->dry_run ? "" : line->output},
+                                        {Kind::kMesh, "-o", line->dry_run ? "" : line->output, !line->plan},
                                         {Kind::kReport, "--ids", line->ids},
                                         {Kind::kReport, "--png", line->presentation.png},
                                         {Kind::kReport, "--report", line->presentation.page}};

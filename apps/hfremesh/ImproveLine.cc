@@ -132,12 +132,14 @@ void add_surface_options(Command command, ImproveLine& line) {
               "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "
               "separate by commas")
       .type_name("WHAT")
-      .delimiter(',');
+      .delimiter(',')
+      .one_a_use();
   command
       .option("--periodic", line.periodic,
               "Patches A:B that match each other by a translation: their vertices move together")
       .type_name("A:B")
-      .delimiter(',');
+      .delimiter(',')
+      .one_a_use();
 }
 
 void add_device_options(Command command, ImproveLine& line) {
@@ -265,8 +267,10 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   };
   const bool frozen = on_tetrahedra && (line.surface.empty() || line.surface == "frozen");
   const bool free = line.surface == "free" || (line.surface.empty() && !on_tetrahedra);
-  idle(!free && line.hausdorff >= 0, "--hausdorff", "--surface free");
-  idle(!free && line.feature_angle, "--feature-angle", "--surface free");
+  idle(!free && !line.label_features && line.hausdorff >= 0, "--hausdorff",
+       "--surface free or --label-features");
+  idle(!free && !line.label_features && line.feature_angle, "--feature-angle",
+       "--surface free or --label-features");
   const auto is_patch = [](const std::string& what) { return what.starts_with("patch:"); };
   idle(frozen && std::ranges::any_of(line.fix, is_patch), "--fix patch", "--surface flat or free");
   idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
@@ -284,6 +288,17 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
     left_out(line.improve.coarsen, "--coarsen", kSurface);
     left_out(line.improve.iterations > 0, "--iterations", kSurface);
     left_out(!on_cpu, "--device", kSurface);
+    left_out(!line.metric.empty(), "--metric", kSurface);
+    left_out(!line.ops.empty(), "--ops", kSurface);
+    left_out(!line.smoother.empty(), "--smoother", kSurface);
+    left_out(!line.rounds.empty(), "--rounds", kSurface);
+    left_out(!line.compat.empty(), "--compat", kSurface);
+    left_out(line.improve.bulk_nodes, "--bulk-nodes", kSurface);
+    left_out(line.improve.polish_only, "--polish-only", kSurface);
+    left_out(line.label_features, "--label-features", kSurface);
+    left_out(line.improve.seed != ImproveOptions().seed, "--seed", kSurface);
+    left_out(line.progress, "--progress", kSurface);
+    return notes;
   }
   if (!line.compat.empty()) {  // a published pipeline, as it is
     left_out(!frozen, "--surface", "--compat");

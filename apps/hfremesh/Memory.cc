@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <string>
+#include <string_view>
 
 #include "ExitCode.hh"
 
@@ -23,21 +25,29 @@ double number_in(const char* file) {
   return in >> number ? number : kUnknown;
 }
 
-/// What Linux could give without swapping.
-double free_memory() {
-  constexpr double kKibibyte = 1024;
-  std::ifstream in("/proc/meminfo");
+/// The number behind a word in a file; unknown when it is not there.
+double number_after(const char* file, std::string_view wanted) {
+  std::ifstream in(file);
   for (std::string word; in >> word;) {
     double number = 0;
-    if (word == "MemAvailable:" && in >> number) return number * kKibibyte;
+    if (word == wanted && in >> number) return number;
   }
   return kUnknown;
 }
 
+/// What Linux could give without swapping.
+double free_memory() {
+  constexpr double kKibibyte = 1024;
+  return kKibibyte * number_after("/proc/meminfo", "MemAvailable:");
+}
+
 double left_in_container() {
   const double limit = number_in("/sys/fs/cgroup/memory.max");
-  const double used = number_in("/sys/fs/cgroup/memory.current");
-  return limit < kUnknown && used < kUnknown ? std::max(0.0, limit - used) : kUnknown;
+  double used = number_in("/sys/fs/cgroup/memory.current");
+  // Files that were read count as used, and give way.
+  const double files = number_after("/sys/fs/cgroup/memory.stat", "inactive_file");
+  if (files < kUnknown) used -= files;
+  return limit < kUnknown && used < kUnknown ? std::clamp(limit - used, 0.0, limit) : kUnknown;
 }
 
 double left_of_address_space() {

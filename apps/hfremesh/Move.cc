@@ -258,16 +258,44 @@ std::string output_name(const std::filesystem::path& collection, std::size_t i) 
 }
 
 /// Before anything is read: no file of the series is written over, by whatever name.
-void require_outputs_apart(const std::filesystem::path& collection, const std::vector<std::string>& inputs) {
+/// And all outputs can be written.
+void require_outputs_apart(const MoveLine& line, const std::vector<std::string>& inputs,
+                           const CommonOptions& common) {
+  const std::filesystem::path collection = line.output;
   std::set<std::filesystem::path> known;
   for (const std::string& input : inputs) known.insert(std::filesystem::canonical(input));
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const std::filesystem::path output = collection.parent_path() / output_name(collection, i);
+  const auto require_new = [&](const std::filesystem::path& output) {
     if (known.contains(std::filesystem::weakly_canonical(output)))
       throw Failure(ExitCode::kUsage,
                     fmt::format("-o {}: {} of the series would be written over; choose another name",
                                 in_quotes(collection.string()), output.string()));
+  };
+  require_new(collection);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string output = (collection.parent_path() / output_name(collection, i)).string();
+    require_new(output);
+    require_writable_mesh(output, line.write, common);
   }
+}
+
+/// The files of the command; those of a series are apart from each other, so as none of them counts as an
+/// output that others would have to be held against.
+std::vector<FileUse> uses_of(const MoveLine& line) {
+  using Kind = FileUse::Kind;
+  std::vector<FileUse> uses = {{Kind::kInput, "IN", line.input}, {Kind::kMesh, "-o", line.output}};
+  if (line.series.empty()) return uses;
+  std::vector<std::string> inputs;
+  try {
+    inputs = files_of(line.series);
+  } catch (const Failure&) {
+    return uses;  // the run says what is wrong
+  }
+  const std::filesystem::path collection = line.output;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    uses.push_back({Kind::kInput, "--series", inputs[i]});
+    uses.push_back({Kind::kInput, "-o", (collection.parent_path() / output_name(collection, i)).string()});
+  }
+  return uses;
 }
 
 /// What is said of a series: what ended it, then inverted cells, then angles; of the first step that has it.
@@ -281,13 +309,17 @@ std::string step_name(std::size_t i) { return fmt::format("hfremesh: displacemen
 
 /// Gives the vertices a field for the displacement of each step: the difference of the files' points. They
 /// are carried over repairs like any other, so that vertices that come later know where to go, too.
-void attach_motion(TetMesh& mesh, const std::vector<std::string>& files, const CommonOptions& common) {
+/// `copied`: vertices that the first mesh has behind those of its file, each by the one that it is a copy of.
+void attach_motion(TetMesh& mesh, const std::vector<VertexHandle>& copied,
+                   const std::vector<std::string>& files, const CommonOptions& common) {
   std::vector<Vec3> was(mesh.points().begin(), mesh.points().end());
   for (std::size_t i = 1; i < files.size(); ++i) {
-    const io::MeshData data = read_data(files[i], common);
-    if (data.points.size() != was.size())
-      throw Failure(ExitCode::kCannotRead, fmt::format("{}: has {} vertices where {} has {}", files[i],
-                                                       data.points.size(), files[0], was.size()));
+    io::MeshData data = read_data(files[i], common);
+    if (data.points.size() + copied.size() != was.size())
+      throw Failure(ExitCode::kCannotRead,
+                    fmt::format("{}: has {} vertices where {} has {}", files[i], data.points.size(), files[0],
+                                was.size() - copied.size()));
+    for (VertexHandle v : copied) data.points.push_back(data.points[v.idx()]);
     auto displacement = mesh.request_vertex_property<Vec3>(step_name(i));
     for (std::size_t v = 0; v < was.size(); ++v) displacement[VertexHandle(v)] = data.points[v] - was[v];
     was = data.points;
@@ -312,14 +344,14 @@ ExitCode move_series(const MoveLine& line, const CommonOptions& common, Json& re
                   "-o " + in_quotes(line.output) + ": a series is written as .pvd, with a .vtu a step");
   require_writable(line.output);
   const std::vector<std::string> files = files_of(line.series);
-  require_outputs_apart(collection, files);
+  require_outputs_apart(line, files, common);
   LoadedMesh loaded = load(files[0], common);
   TetMesh& mesh = loaded.mesh;
-  RemesherOptions options;
-  const SignalGuard signals;
-  options = remesher_options(line, common, signals);
-  options.fields = fields_of(mesh, line);
-  attach_motion(mesh, files, common);
+  std::vector<FieldTransfer> fields = fields_of(mesh, line);
+  attach_motion(mesh, loaded.report.copied, files, common);
+  const SignalGuard signals;  // from here on there is something to save
+  RemesherOptions options = remesher_options(line, common, signals);
+  options.fields = std::move(fields);
   for (std::size_t i = 1; i < files.size(); ++i) options.fields.push_back({.name = step_name(i)});
   std::vector<std::string> notes = std::move(loaded.notes), written;
   const auto write_step = [&](std::size_t i) {
@@ -439,16 +471,13 @@ Subcommand add_move(Command program, CommonOptions& common) {
       .option("--transfer", line->transfer,
               "How a field gets over a repair: NAME:linear or NAME:quadratic (of vertices), NAME:inherit, "
               "NAME:conserve or NAME:conserve:DENSITY (of cells). Others: linear, and inherited")
-      .type_name("NAME:HOW");
+      .type_name("NAME:HOW")
+      .one_a_use();
   add_format_options(command, common, true, true);
   add_split_option(command, common);
   add_write_options(command, line->write);
   add_common_options(command, common);
-  using Kind = FileUse::Kind;
-  return {command,
-          [line] {
-            return std::vector<FileUse>{{Kind::kInput, "IN", line->input}, {Kind::kMesh, "-o", line->output}};
-          },
+  return {command, [line] { return uses_of(*line); },
           [line, &common](Json& report) { return run(*line, common, report); }};
 }
 

@@ -62,8 +62,10 @@ ValueCheck whole_number(std::uint64_t low, std::uint64_t high) {
   const std::string range =
       wanted("a whole number", fmt::format("{}", low), bounded ? fmt::format("{}", high) : "", true);
   const auto check = [=](const std::string& text) {
+    // The parser would read one that begins with 0 by eights.
+    const bool leads_with_zero = text.size() > 1 && text[0] == '0';
     const std::optional<std::uint64_t> value = integer_of<std::uint64_t>(text);
-    if (value && *value >= low && *value <= high) return std::string();
+    if (value && *value >= low && *value <= high && !leads_with_zero) return std::string();
     return fmt::format("{} is wanted, not {}", range, in_quotes(text));
   };
   return check;

@@ -52,7 +52,7 @@ void add_split_option(Command command, CommonOptions& common) {
 }
 
 void add_write_options(Command command, io::WriteOptions& options) {
-  command.flag("--binary", options.binary, "Binary variant of .msh, .vtk and .vtu");
+  command.flag("--binary", options.binary, "Binary variant of .msh, .vtk, .stl and .ply");
   command
       .option("--variant", options.variant,
               "Version or encoding: msh 2.2, 4.0, 4.1; vtk 4.2, 5.1; vtu ascii, base64, appended, zlib")

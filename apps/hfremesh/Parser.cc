@@ -116,6 +116,11 @@ Option& Option::delimiter(char separator) {
   return *this;
 }
 
+Option& Option::one_a_use() {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 Option& Option::shows_default() {
   option_->capture_default_str();
   return *this;

@@ -41,6 +41,8 @@ class Option {
   Option& expected(int least, int most);
   /// Between values in one word.
   Option& delimiter(char separator);
+  /// An option that may repeat takes one word each time, and what follows is none of its own.
+  Option& one_a_use();
   /// Shows the variable's present value in the help as what counts where none is given.
   Option& shows_default();
   /// The same in words, where the variable's value stands for something else.

@@ -15,8 +15,9 @@ namespace hfr::app {
 struct FileUse {
   enum class Kind { kInput, kMesh, kReport };
   Kind kind;
-  std::string option;  ///< as messages call it
-  std::string path;    ///< as given; "-" is a standard stream, empty is no file
+  std::string option;   ///< as messages call it
+  std::string path;     ///< as given; "-" is a standard stream, empty is no file
+  bool is_used = true;  ///< false where this run does not come to it
 };
 
 /// Fails, with exit code 1, where two of these are one file (the mesh that is written may be the one that was

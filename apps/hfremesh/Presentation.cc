@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Presentation.hh"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,6 +10,7 @@
 
 #include "Console.hh"
 #include "Files.hh"
+#include "Memory.hh"
 #include "Numbers.hh"
 #include "Options.hh"
 #include "Paths.hh"
@@ -56,6 +59,11 @@ void require_presentable(const PresentationFiles& files) {
   if (!files.png.empty() && !view::has_png())
     throw Failure(ExitCode::kUsage, "--png: this build has no libpng; --report works without it");
   if (!files.png.empty()) require_writable(files.png);
+  // Three layers of nine samples a pixel, of 20 bytes each, for a panel of about a sixth of the picture.
+  constexpr double kBytesOfPixel = 100;
+  const double width = files.png_width;
+  if (!files.png.empty())
+    require_memory(kBytesOfPixel * width * width, fmt::format("--png-width {}", files.png_width));
   if (!files.page.empty()) require_writable(files.page);
 }
 
@@ -100,10 +108,13 @@ ExitCode Presentation::save(const Statistics& before, const Statistics& after,
                             const nlohmann::ordered_json& report, ExitCode code) const {
   if (!files_.png.empty())
     code = save_report(
-        files_.png, view::png_of(parts_->picture->finish(before, after), view::colours_that_matter()), code);
+        files_.png,
+        [&] { return view::png_of(parts_->picture->finish(before, after), view::colours_that_matter()); },
+        code);
   if (!files_.page.empty())
-    code =
-        save_report(files_.page, view::page_of(report, parts_->moments, parts_->before, parts_->after), code);
+    code = save_report(
+        files_.page, [&] { return view::page_of(report, parts_->moments, parts_->before, parts_->after); },
+        code);
   return code;
 }
 

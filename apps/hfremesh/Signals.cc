@@ -40,6 +40,8 @@ void handle(int signal) {
     pthread_kill(main_thread, signal);
   } else if (guarded && !stop_requested) {
     stop_requested = 1;
+  } else if (guarded && signal == SIGXCPU) {
+    // Linux sends it again each second beyond the soft limit; the hard one ends the process in any case.
   } else {
     io::remove_temporary_files();
     end_by(signal);

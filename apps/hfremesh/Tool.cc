@@ -55,7 +55,7 @@ void check_files(const Subcommand& subcommand, CommonOptions& common) {
   require_apart(files, common);
   if (!common.json.empty()) require_writable(common.json);
   for (const FileUse& use : files)
-    if (use.kind != FileUse::Kind::kInput && use.path == "-") common.stdout_taken = true;
+    if (use.kind != FileUse::Kind::kInput && use.path == "-" && use.is_used) common.stdout_taken = true;
 }
 
 /// Fewer threads than were asked for are no reason to fail: the result is the same.
@@ -94,7 +94,8 @@ ExitCode run(const Subcommand& subcommand, CommonOptions& common, StandardStream
   if (!streams.arrived() && code == ExitCode::kDone) code = ExitCode::kUsage;
   if (common.json.empty()) return code;
   report["exit_code"] = static_cast<int>(code);
-  return save_report(common.json, json_text(report), code);
+  return save_report(
+      common.json, [&] { return json_text(report); }, code);
 }
 
 /// The parser quotes arguments in full, however long they are.

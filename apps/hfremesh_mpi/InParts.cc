@@ -412,7 +412,8 @@ int run_in_parts(int argc, char** argv, mpi::Comm& comm) {
   const auto finish = [&](int code) {
     if (comm.rank() != 0 || !line || line->json.empty()) return code;
     report["exit_code"] = code;
-    return static_cast<int>(save_report(line->json, json_text(report), static_cast<ExitCode>(code)));
+    return static_cast<int>(save_report(
+        line->json, [&] { return json_text(report); }, static_cast<ExitCode>(code)));
   };
   const auto end = [&](const mpi::RankFailed& failed) {
     if (comm.rank() == 0) fmt::print(stderr, "hfremesh-mpi: {}\n", failed.what());

@@ -112,7 +112,7 @@ function showParts() {
     }));
     return [...rows].sort((a, b) => a[0] - b[0]);
   };
-  const either = (x, show) => (x === undefined ? "–" : show(x));
+  const either = (x, show) => (x === undefined || x === null ? "–" : show(x));
   const most = 60;
   const cut = (rows) => (rows.length > most ? [...rows.slice(0, most), [`${rows.length - most} more`]] : rows);
   const regions = joined((s) => s.regions, "region").map(([region, [b, a]]) => [String(region), either(b.cells, count), either(a.cells, count),

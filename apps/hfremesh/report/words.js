@@ -7,7 +7,7 @@ const degrees = (x) => `${x.toFixed(2).replace("-", "−")}°`;
 const seconds = (s) => (s < 1 ? `${(1000 * s).toFixed(0)} ms` : s < 100 ? `${s.toFixed(1)} s` : `${(s / 60).toFixed(1)} min`);
 const share = (part, all) => {
   const percent = all > 0 ? (100 * part) / all : 0;
-  return percent < 0.01 ? "less than 0.01 %" : `${percent.toPrecision(percent < 1 ? 1 : 2)} %`;
+  return percent < 0.01 ? "less than 0.01 %" : `${percent < 1 ? percent.toPrecision(1) : percent < 9.95 ? percent.toPrecision(2) : Math.round(percent)} %`;
 };
 
 /** What keeps a cell from getting better, and what would help. */
@@ -108,7 +108,7 @@ function whatWasDone(report) {
         `${seconds(report.seconds.improve)}${named.length > 0 ? `: ${named.join(", ")}` : " and found nothing to improve"}.`);
     if (passes.some((pass) => pass.op === "undo"))
       lines.push("Some passes were taken back, because they had made the mesh worse in the end.");
-    lines.push(result.changed ? STOPS[result.stop] : "Nothing had to be changed: the mesh is what it was.");
+    lines.push(result.changed || !result.goal_reached ? STOPS[result.stop] : "Nothing had to be changed: the mesh is what it was.");
   }
   const change = before.cells > 0 ? 100 * (after.cells / before.cells - 1) : 0;
   lines.push(`The mesh has ${count(after.cells)} cells, ${count(before.cells)} before (${change >= 0 ? "+" : "−"}` +
