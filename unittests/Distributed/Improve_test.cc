@@ -101,7 +101,15 @@ TEST(MpiImprove, PassesThatAreNotWorthAHandOverStayOnOneRank) {
 TEST(MpiImprove, InsertionIsLeftToOneRank) {
   ImproveOptions options;
   options.min_dihedral = 8;
-  expect_that_of_shared_memory(valid_box(4, 0.4, 1), options, true);
+  const TetMesh input = valid_box(4, 0.4, 1);
+  expect_that_of_shared_memory(input, options, true);
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const Outcome outcome = improve_on_all(input, options, comm, share_all(mpi::Partition::kGraph));
+  if (comm.rank() != 0) return;
+  std::size_t n_inserted = 0;
+  for (const PassReport& pass : outcome.result.passes)
+    if (pass.op == "insert") n_inserted += pass.winners;
+  EXPECT_GT(n_inserted, 0U) << "nothing was inserted";
 }
 
 /// Their polish mixes kinds and smooths.

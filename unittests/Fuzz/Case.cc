@@ -150,7 +150,7 @@ Outcome run_case(const Case& wanted, const std::string& folder) {
   compare_fields(*mesh, wanted.complex, outcome);
   if (wanted.number % 2 == 0 && !std::isfinite(wanted.options.improve.time_limit)) {
     TetMesh other = mesh_of(wanted.complex);
-    if (improved(other, wanted, wanted.options.threads, outcome) && io::mesh_hash(other) != hash_after)
+    if (!improved(other, wanted, wanted.options.threads, outcome) || io::mesh_hash(other) != hash_after)
       find(outcome, "same bits", "one thread and {} give other meshes", wanted.options.threads);
   }
   if (after.rule == Ok) write_and_read(*mesh, wanted.number, folder, outcome);

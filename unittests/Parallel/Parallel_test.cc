@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 namespace hfr::par {
 namespace {
@@ -103,9 +106,22 @@ TEST_P(Threads, ExceptionOfTheFirstPartThatFailsArrives) {
 TEST(ThreadCount, ShortLoopsStayOnTheCaller) {
   EXPECT_EQ(thread_count({4, 100}, 99), 1);
   EXPECT_EQ(thread_count({1, 1}, 1000), 1);
-  const int many = thread_count({4, 100}, 100);
-  EXPECT_TRUE(many == 4 || many == 1);  // 1 where the library was built without threads
+  EXPECT_EQ(thread_count({4, 100}, 100), HFR_TEST_HAS_THREADS ? 4 : 1);
   EXPECT_GE(Policy::all().threads, 1);
+}
+
+/// Each part waits for the other: one thread alone would wait for ever, so it gives up.
+TEST(Parts, RunAtTheSameTime) {
+  if (!HFR_TEST_HAS_THREADS) GTEST_SKIP() << "built without threads";
+  std::atomic<int> n_here{0};
+  std::array<bool, 2> met{};
+  parts(2, [&](int part) {
+    ++n_here;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (n_here < 2 && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+    met[static_cast<std::size_t>(part)] = n_here == 2;
+  });
+  EXPECT_TRUE(met[0] && met[1]);
 }
 
 TEST(ExclusiveScan, SumsWhatStandsBefore) {

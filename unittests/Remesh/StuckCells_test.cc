@@ -2,6 +2,8 @@
 #include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <optional>
 
@@ -64,13 +66,18 @@ TEST(StuckCells, WedgeThatOneCellHasToFillIsACeilingWhereThisCellIsPoor) {
   // Surface faces (0, 1, 2) and (0, 1, 3) meet at 40 degrees, and the cell on both of them has an angle of 9
   // at its other end: two cells in the wedge would have one of at most 20.
   TetMesh mesh = wedge(40);
-  mesh.set_point(V(2), {0.9, 0.6, 0.2});
+  const double half = 20 * std::numbers::pi / 180;
+  mesh.set_point(V(2), {0.9, 0.3 * std::sin(half), 0.3 * std::cos(half)});
+  const auto is_of_c0 = [](const StuckCell& cell) { return cell.cell == C(0); };
   const auto stuck = stuck_cells(mesh, 25, {});
-  for (const StuckCell& cell : stuck)
-    if (cell.cell == C(0)) {
-      EXPECT_EQ(cell.reason, StuckReason::kSurfaceCeiling);
-    }
-  EXPECT_EQ(n_of(stuck_cells(mesh, 15, {}), StuckReason::kSurfaceCeiling), 0U);
+  const auto found = std::find_if(stuck.begin(), stuck.end(), is_of_c0);
+  ASSERT_NE(found, stuck.end());
+  EXPECT_LT(found->degrees, 15);
+  EXPECT_EQ(found->reason, StuckReason::kSurfaceCeiling);
+  // Two of 20 degrees would do for 15.
+  const auto below = stuck_cells(mesh, 15, {});
+  ASSERT_TRUE(std::any_of(below.begin(), below.end(), is_of_c0));
+  EXPECT_EQ(n_of(below, StuckReason::kSurfaceCeiling), 0U);
 }
 
 TEST(StuckCells, WedgeAtAnInterfaceIsAnInputFeature) {

@@ -96,6 +96,7 @@ TEST(Trial, AllButFlatWreathOfCellsIsNotFilledWithVerticesForNothing) {
   try {
     result = improve(mesh, options);
   } catch (const InvalidInput& error) {
+    expect_build_without_surface();
     GTEST_SKIP() << error.what();
   }
   EXPECT_LE(mesh.n_cells(), 60U);

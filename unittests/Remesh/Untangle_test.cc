@@ -258,6 +258,7 @@ TEST(MaxCells, NoVertexIsInsertedBeyondIt) {
       if (pass.op == "insert") {
         EXPECT_EQ(pass.winners, 0U);
       }
+    EXPECT_LE(result.after.vertices, start.n_vertices());
     free_cells += n_free > result.after.vertices ? 1 : 0;
   }
   EXPECT_GT(free_cells, 0U);

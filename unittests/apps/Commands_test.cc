@@ -2,9 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "Tool.hh"
+#include "hfremesh/HalfFace/TetMesh.hh"
+#include "hfremesh/IO/MeshFile.hh"
 
 namespace hfr::app::test {
 namespace {
@@ -145,7 +149,44 @@ TEST(Commands, ImproveKeepsRegions) {
     EXPECT_NEAR(report["before"]["regions"][r]["volume"], report["after"]["regions"][r]["volume"], 1e-12);
 }
 
-TEST(Commands, ImproveKeepsLabelsNamesAndFields) {
+TEST(Commands, ImproveKeepsLabelsAndNames) {
+  Tool tool;
+  ASSERT_EQ(tool.run("generate box --n 5 5 5 --jitter 0.4 --regions 2 -o box.vtu").code, 0);
+  io::MeshData given = io::read_mesh(tool.path("box.vtu"));
+  const TetMesh mesh = build(given.points, given.cells);
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) {
+    const auto f = mesh.halfface_vertices(h);
+    given.triangles.push_back({f[0].idx(), f[2].idx(), f[1].idx()});
+    given.triangle_labels.push_back(mesh.point(f[0]).x == 0 && mesh.point(f[1]).x == 0 ? 7 : 8);
+  }
+  for (Index i = 0; i < 5; ++i) {  // an edge of the box: its vertices stand in a row
+    given.edges.push_back({i, i + 1});
+    given.edge_labels.push_back(5);
+  }
+  given.names = {{{2, 7}, "inflow"}, {{3, 1}, "steel"}};
+  io::write_mesh(tool.path("in.vtu"), given);
+  ASSERT_EQ(tool.run("in.vtu -o out.vtu --json report.json").code, 0);
+  ASSERT_TRUE(nlohmann::json::parse(tool.content("report.json"))["result"]["changed"].get<bool>());
+  const io::MeshData out = io::read_mesh(tool.path("out.vtu"));
+  EXPECT_EQ(out.names, given.names);
+  EXPECT_EQ(std::set(out.regions.begin(), out.regions.end()),
+            std::set(given.regions.begin(), given.regions.end()));
+  // Vertices of a frozen surface may have other numbers, so places are compared.
+  const auto places = [](const io::MeshData& data, const auto& elements, const std::vector<int>& labels) {
+    std::set<std::pair<std::set<std::array<double, 3>>, int>> all;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      std::set<std::array<double, 3>> corners;
+      for (Index v : elements[i]) corners.insert({data.points[v].x, data.points[v].y, data.points[v].z});
+      all.insert({corners, labels[i]});
+    }
+    return all;
+  };
+  EXPECT_EQ(places(out, out.triangles, out.triangle_labels),
+            places(given, given.triangles, given.triangle_labels));
+  EXPECT_EQ(places(out, out.edges, out.edge_labels), places(given, given.edges, given.edge_labels));
+}
+
+TEST(Commands, ImproveKeepsFields) {
   Tool tool;
   tool.write(
       "in.vtk",

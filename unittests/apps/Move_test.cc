@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "Tool.hh"
@@ -92,6 +93,43 @@ TEST(Move, FilesOfTheSeriesAreNotWrittenOver) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("in_0000.vtu of the series would be written over; choose another name"));
   EXPECT_EQ(tool.content("in_0001.vtu"), before);
+}
+
+TEST(Move, NeitherReportNorCollectionTakesThePlaceOfAFileOfTheSeries) {
+  Tool tool;
+  for (int i = 0; i < 3; ++i) io::write(tool.path("in_" + std::to_string(i) + ".vtu"), box(0.6));
+  const std::string before = tool.content("in_1.vtu");
+  for (const char* name : {"in_1.vtu", "out_0001.vtu"}) {
+    const Outcome outcome = tool.run(std::string("move --series in_%d.vtu -o out.pvd --json ") + name);
+    EXPECT_EQ(outcome.code, 1) << name;
+    EXPECT_THAT(outcome.err, HasSubstr("are the same file")) << name;
+  }
+  std::filesystem::create_symlink("in_1.vtu", tool.path("link.pvd"));
+  EXPECT_EQ(tool.run("move --series in_%d.vtu -o link.pvd").code, 1);
+  EXPECT_EQ(tool.content("in_1.vtu"), before);
+  std::filesystem::remove(tool.path("link.pvd"));
+  std::filesystem::create_directory(tool.path("out_0002.vtu"));
+  EXPECT_EQ(tool.run("move --series in_%d.vtu -o out.pvd").code, 1);
+  EXPECT_EQ(tool.run("move --series in_%d.vtu -o o.pvd --variant 4.1").code, 1);
+  EXPECT_THAT(tool.files(), ElementsAre("in_0.vtu", "in_1.vtu", "in_2.vtu", "out_0002.vtu"))
+      << "nothing was written";
+}
+
+TEST(Move, SeriesOfAMeshWithPinchedVerticesCanBeSplit) {
+  Tool tool;
+  // Two cells that meet in a vertex alone, of which each has one then.
+  TetMesh mesh =
+      build(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
+            std::vector<std::array<Index, 4>>{{0, 1, 2, 3}, {0, 5, 4, 6}});
+  for (int i = 0; i < 3; ++i) {
+    io::write(tool.path("in_" + std::to_string(i) + ".vtu"), mesh);
+    for (VertexHandle v : mesh.vertices()) mesh.set_point(v, mesh.point(v) + Vec3{0.01, 0, 0});
+  }
+  const Outcome outcome = tool.run("move --series in_%d.vtu -o out.pvd --split-nonmanifold");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  const TetMesh last = io::read(tool.path("out_0002.vtu"));
+  EXPECT_EQ(last.n_vertices(), 8U);
+  EXPECT_NEAR(last.point(VertexHandle(7)).x, 0.02, 1e-12);
 }
 
 TEST(Move, SeriesBecomesACollectionWithAMeshAStep) {

@@ -173,5 +173,51 @@ TEST(Limits, CountsThatWrapRoundAreRefused) {
   }
 }
 
+TEST(Options, WholeNumbersAreDecimal) {
+  Tool tool;
+  tool.write("in.mesh", kTwoCells);
+  for (const char* arguments :
+       {"generate box --n 010 010 010 -o a.mesh", "in.mesh -o a.mesh --max-cells 0100",
+        "in.mesh -o a.mesh -j 010", "in.mesh -o a.mesh --seed 08"})
+    expect_refused(tool, arguments, "a whole number");
+}
+
+TEST(Options, OneThatRepeatsLeavesTheNextWordAlone) {
+  Tool tool;
+  tool.write("in.mesh", kTwoCells);
+  const Outcome outcome = tool.run("--fix vertex:0 in.mesh -o a.mesh");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(tool.run("in.mesh -o a.mesh --fix vertex:0,vertex:1 --fix edge:0-1").code, 0);
+}
+
+TEST(Options, PlanIsPrintedWhereverTheMeshWouldGo) {
+  Tool tool;
+  tool.write("in.mesh", kTwoCells);
+  EXPECT_EQ(tool.run("in.mesh -o - --format mesh --plan").out, tool.run("in.mesh --plan").out);
+  EXPECT_THAT(tool.run("in.mesh --plan").out, HasSubstr("polish"));
+}
+
+TEST(Options, WhatDoesNothingForASurfaceIsNamed) {
+  Tool tool;
+  tool.write("s.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  const Outcome outcome = tool.run(
+      "s.off -o s2.off --surface flat --metric mean-ratio --ops edge --smoother taubin --rounds mixed "
+      "--bulk-nodes "
+      "--polish-only --label-features --seed 5 --compat jpdc2013");
+  if (outcome.code == 1) GTEST_SKIP() << outcome.err;
+  for (const char* option : {"--metric", "--ops", "--smoother", "--rounds", "--bulk-nodes", "--polish-only",
+                             "--label-features", "--seed", "--compat"})
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(option) + " does nothing with a surface without cells"));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("--surface does nothing")));
+}
+
+TEST(Options, LabelFeaturesGoesByTheFeatureAngle) {
+  Tool tool;
+  tool.write("in.mesh", kTwoCells);
+  EXPECT_THAT(tool.run("in.mesh -o a.mesh --label-features --feature-angle 50").err,
+              Not(HasSubstr("--feature-angle")));
+  EXPECT_THAT(tool.run("in.mesh -o a.mesh --feature-angle 50").err, HasSubstr("--feature-angle counts only"));
+}
+
 }  // namespace
 }  // namespace hfr::app::test

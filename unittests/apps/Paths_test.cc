@@ -153,7 +153,7 @@ class SignalledWhileWriting : public testing::TestWithParam<int> {
       n_ended += code == 128 + GetParam() ? 1 : 0;
       EXPECT_FALSE(has_temporary(0)) << arguments << ": " << code;
       const std::string out = tool_.content("out.vtk");
-      EXPECT_TRUE(out.empty() || code == 128 + GetParam() || tool_.run("stats out.vtk").code == 0);
+      EXPECT_TRUE(out.empty() || tool_.run("stats out.vtk").code == 0) << code << ": half a file";
       fs::remove(tool_.path("out.vtk"));
     }
     return n_ended;

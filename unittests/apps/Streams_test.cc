@@ -69,9 +69,12 @@ TEST_F(Streams, NoFileTakesThePlaceOfAClosedStream) {
 }
 
 TEST_F(Streams, AReaderWhoGoesAwayCostsNoMesh) {
-  const Outcome outcome =
-      tool_.shell("(\"$TOOL\" in.mesh -o out.mesh --progress; echo $? > code) 2>&1 | true");
+  // The reader opens the pipe and goes before the tool begins.
+  const Outcome outcome = tool_.shell(
+      "mkfifo pipe; (true < pipe) & exec 3> pipe; wait; "
+      "\"$TOOL\" in.mesh -o out.mesh --progress >&3 2>&3; echo $? > code");
   EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(tool_.content("code"), "1\n");
   EXPECT_TRUE(tool_.content("out.mesh") == wanted_);
   EXPECT_THAT(outcome.err, IsEmpty());
 }
