@@ -100,7 +100,7 @@ TEST(MpiImprove, PassesThatAreNotWorthAHandOverStayOnOneRank) {
 
 TEST(MpiImprove, InsertionIsLeftToOneRank) {
   ImproveOptions options;
-  options.min_dihedral = 8;
+  options.min_dihedral = 25;
   const TetMesh input = valid_box(4, 0.4, 1);
   expect_that_of_shared_memory(input, options, true);
   mpi::Comm comm(MPI_COMM_WORLD);

@@ -140,11 +140,15 @@ std::vector<std::pair<std::string, TetMesh>> tangled() {
 /// What the runs of a test have come to, over all meshes.
 struct Seen {
   std::size_t unfolded = 0, reconnected = 0, smoothed = 0, inserted = 0, searched = 0, undone = 0, left = 0;
+  std::size_t polished = 0;  ///< beside untangling
 
   void add(const Result& result) {
     for (const PassReport& pass : result.passes) {
       if (pass.stage == "undo") ++undone;
-      if (pass.stage != "untangle") continue;
+      if (pass.stage != "untangle") {
+        polished += pass.winners;
+        continue;
+      }
       std::size_t& n = pass.op == "unfold"    ? unfolded
                        : pass.op == "smooth"  ? smoothed
                        : pass.op == "insert"  ? inserted
@@ -235,7 +239,7 @@ TEST(UntangledParts, OverlappingCellsHaveTheBytesOfSharedMemory) {
     Seen seen;
     expect_same_run(comm, folder, path, polish_towards(30), seen);
     if (comm.rank() == 0) {
-      EXPECT_GT(seen.reconnected + seen.smoothed, 0U) << "nothing was done";
+      EXPECT_GT(seen.polished, 0U) << "nothing was done";
     }
   }
 }
