@@ -5,8 +5,8 @@
  * Handles are opaque and belong to whoever made them. A function that can fail returns HFR_OK or what went
  * wrong, and the handle that it was called with keeps a line that says where and what to do:
  * hfr_mesh_message(), hfr_options_message(). What fails leaves the handle as it was, but for two functions
- * that say so. No exception comes out, nothing is printed, and the program is never ended. Two threads may use
- * two handles at once, but not one. */
+ * that say so. No exception comes out, nothing is printed, and the program is never ended. Two threads may
+ * use two handles at once, but not one. */
 #ifndef HFREMESH_H
 #define HFREMESH_H
 
@@ -133,7 +133,8 @@ HFR_C_EXPORT hfr_status hfr_mesh_set(hfr_mesh* mesh, const char* what, const hfr
 HFR_C_EXPORT hfr_status hfr_mesh_get(hfr_mesh* mesh, const char* what, const hfr_array* values);
 /* A field of "vertices" or "cells" of one row each, kept as double or 64-bit integers by the type of the
  * array; with other than 1, 2, 3, 4, 6 or 9 columns as double, and integers that double does not have are
- * refused. Who sets it again gives as many columns. It follows its vertices and cells through every run: values are attached, not interpolated. */
+ * refused. Who sets it again gives as many columns. It follows its vertices and cells through every run:
+ * values are attached, not interpolated. */
 HFR_C_EXPORT hfr_status hfr_mesh_set_field(hfr_mesh* mesh, const char* of, const char* name,
                                            const hfr_array* values);
 HFR_C_EXPORT hfr_status hfr_mesh_get_field(hfr_mesh* mesh, const char* of, const char* name,
