@@ -379,7 +379,8 @@ ExitCode move_series(const MoveLine& line, const CommonOptions& common, Json& re
     if (common.prints_table()) print_step(files[i], step, mesh);
     const Ending now = ending_of(step, line);
     if (counts_before(now.code, ending.code)) ending = {now.code, fmt::format("step {}: {}", i, now.why)};
-    if (!step.refused.empty() || step.undone || step.stop == Stop::kCancelled) break;
+    // The next file begins where this step was to end.
+    if (!step.refused.empty() || step.undone || step.stop == Stop::kCancelled || step.fraction < 1) break;
     write_step(i);
   }
   report["seconds"]["move"] = moving.seconds();

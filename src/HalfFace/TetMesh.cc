@@ -47,14 +47,14 @@ void TetMesh::set_fixed(EdgeHandle e, bool fixed) {
   if (fixed)
     locks_.edges.set(edge_vertices(e), true);
   else
-    locks_.edges.erase(edge_vertices(e));
+    locks_.edges.erase_unordered(edge_vertices(e));
 }
 
 void TetMesh::set_fixed(FaceHandle f, bool fixed) {
   if (fixed)
     locks_.faces.set(face_vertices(f), true);
   else
-    locks_.faces.erase(face_vertices(f));
+    locks_.faces.erase_unordered(face_vertices(f));
 }
 
 void TetMesh::set_fixed_patch(int label, bool fixed) {

@@ -68,6 +68,8 @@ class CellWatch {
     std::vector<double> left, rest_volume;
     std::vector<std::uint8_t> excused;
   };
+  /// Whether repairs have left cells that call for no further one.
+  bool has_excuses() const { return has_excused_; }
   Memory memory() const;
   /// The mesh is again the one that the memory is of; look_at_all() is to follow.
   void restore(Memory memory);

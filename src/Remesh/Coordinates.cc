@@ -31,15 +31,21 @@ struct Box {
     for (int i = 0; i < 3; ++i) value = std::max({value, std::abs(low[i]), std::abs(high[i])});
     return value;
   }
+  bool has_nan() const {
+    bool found = false;
+    for (int i = 0; i < 3; ++i) found = found || std::isnan(low[i]) || std::isnan(high[i]);
+    return found;
+  }
 };
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Box kNoBox = {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
+/// A coordinate that is no number stays: it is to be refused.
 Box joined(Box a, const Box& b) {
   for (int i = 0; i < 3; ++i) {
-    a.low[i] = std::min(a.low[i], b.low[i]);
-    a.high[i] = std::max(a.high[i], b.high[i]);
+    if (!(a.low[i] < b.low[i]) && !std::isnan(a.low[i])) a.low[i] = b.low[i];
+    if (!(a.high[i] > b.high[i]) && !std::isnan(a.high[i])) a.high[i] = b.high[i];
   }
   return a;
 }
@@ -83,6 +89,7 @@ template <class NLost>
 void require(const Box& box, double n, const char* what, NLost&& n_lost) {
   const double largest = box.largest();
   const double side = box.side();
+  HFR_REQUIRE(!box.has_nan(), "there are coordinates that are no numbers");
   HFR_REQUIRE(largest <= kLargest,
               "there are coordinates up to " + number(largest) +
                   "; beyond 1e30 products of lengths are no numbers any more: scale the mesh");

@@ -71,9 +71,12 @@ FixedParts::FixedParts(TetMesh& mesh, const SurfaceOptions& options) {
 void FixedParts::release(TetMesh& mesh, std::span<const VertexHandle> vertices) {
   const auto now = [&](VertexHandle v) { return vertices.empty() ? v : vertices[v.idx()]; };
   for (VertexHandle v : vertices_) mesh.set_fixed(now(v), false);
-  for (const auto& e : edges_) mesh.set_fixed(mesh.find_edge(now(e[0]), now(e[1])), false);
-  for (const auto& f : faces_)
-    mesh.set_fixed(mesh.find_face(std::array{now(f[0]), now(f[1]), now(f[2])}), false);
+  // The last one first: the order of those that the mesh had before stays.
+  for (std::size_t i = edges_.size(); i-- > 0;)
+    mesh.set_fixed(mesh.find_edge(now(edges_[i][0]), now(edges_[i][1])), false);
+  for (std::size_t i = faces_.size(); i-- > 0;)
+    mesh.set_fixed(mesh.find_face(std::array{now(faces_[i][0]), now(faces_[i][1]), now(faces_[i][2])}),
+                   false);
 }
 
 }  // namespace hfr

@@ -172,6 +172,11 @@ Result improve(TetMesh& mesh, const ImproveOptions& options, RunMemory& memory) 
   validate(options);
   require_fixed_parts(mesh, options.surface);
   require_sound_coordinates(mesh, options.policy);
+  if (options.compat != Compat::kNone && options.surface.mode != SurfaceMode::kFrozen) {
+    ImproveOptions frozen = options;  // a published pipeline, which moves no surface
+    frozen.surface.mode = SurfaceMode::kFrozen;
+    return improve(mesh, frozen, memory);
+  }
   if (!mesh.needs_garbage_collection()) return improve_dense(mesh, options, memory);
   const GarbageMap garbage = mesh.collect_garbage({.policy = options.policy});
   ImproveOptions renamed = options;

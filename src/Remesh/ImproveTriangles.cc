@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
+#include <span>
+#include <string>
 
 #include "HalfFace/Errors.hh"
 #include "Remesh/Coordinates.hh"
@@ -145,6 +148,34 @@ void TriangleRun::write(TriangleMesh& mesh) {
   result_.vertex_map = std::move(number);
 }
 
+/// One that is misspelt would hold nothing, and nobody would know.
+void require_fixed_parts(const TriangleMesh& mesh, const SurfaceOptions& options) {
+  const auto text = [](const char* kind, std::span<const VertexHandle> vertices) {
+    std::string name = std::string("fix ") + kind;
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      name += (i == 0 ? ':' : '-') + std::to_string(vertices[i].idx());
+    return name;
+  };
+  const auto is_there = [&](VertexHandle v) { return v.is_valid() && v.idx() < mesh.points.size(); };
+  for (VertexHandle v : options.fixed_vertices)
+    HFR_REQUIRE(is_there(v), text("vertex", {&v, 1}) + ": there are " + std::to_string(mesh.points.size()) +
+                                 " points, counted from 0");
+  std::set<std::array<VertexHandle, 2>> edges;
+  std::set<std::array<VertexHandle, 3>> faces;
+  for (const auto& t : mesh.triangles) {
+    if (!options.fixed_faces.empty()) faces.insert(AnyOrder::key(t));
+    for (std::size_t k = 0; k < 3 && !options.fixed_edges.empty(); ++k)
+      edges.insert(AnyOrder::key(std::array{t[k], t[(k + 1) % 3]}));
+  }
+  for (const auto& edge : options.fixed_edges)
+    HFR_REQUIRE(edges.contains(AnyOrder::key(edge)), text("edge", edge) + ": there is no such edge");
+  for (const auto& face : options.fixed_faces)
+    HFR_REQUIRE(faces.contains(AnyOrder::key(face)), text("face", face) + ": there is no such triangle");
+  for (int patch : options.fixed_patches)
+    HFR_REQUIRE(std::ranges::find(mesh.patches, patch) != mesh.patches.end(),
+                "fix patch:" + std::to_string(patch) + ": no triangle has this label");
+}
+
 void validate(const TriangleMesh& mesh, const TriangleOptions& options) {
   HFR_REQUIRE(options.surface.mode != SurfaceMode::kFrozen,
               "a surface without cells cannot be improved while it is frozen: use flat or free");
@@ -162,6 +193,7 @@ void validate(const TriangleMesh& mesh, const TriangleOptions& options) {
     HFR_REQUIRE(t[0] != t[1] && t[1] != t[2] && t[2] != t[0],
                 "triangle " + std::to_string(i) + " names a vertex twice");
   }
+  require_fixed_parts(mesh, options.surface);
 }
 
 }  // namespace

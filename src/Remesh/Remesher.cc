@@ -44,6 +44,8 @@ void validate(const RemesherOptions& options) {
   at_least_0(triggers.min_dihedral, "min_dihedral");
   at_least_0(triggers.jacobian_ratio, "jacobian_ratio");
   at_least_0(triggers.motion, "motion");
+  HFR_REQUIRE(triggers.min_dihedral < kLargestGoal, "trigger min_dihedral: must be less than 70.5 degrees");
+  HFR_REQUIRE(triggers.jacobian_ratio <= 1, "trigger jacobian_ratio: must be at most 1");
   HFR_REQUIRE(triggers.every >= 0, "trigger every: must be 0 or more");
   HFR_REQUIRE(options.max_substeps >= 1, "max_substeps: must be 1 or more");
   for (const auto& [metric, value] : triggers.metrics)
@@ -92,7 +94,7 @@ class Remesher::State {
  private:
   /// All that a step may have to take back, but for the points that its first move has changed.
   struct Before {
-    std::shared_ptr<const TetMesh> mesh;
+    std::shared_ptr<TetMesh> mesh;
     MovedVertices moved;
     CellWatch::Memory cells;
     std::vector<double> travelled, travelled_before;
@@ -105,12 +107,14 @@ class Remesher::State {
   std::span<const Vec3> followed(std::span<const Vec3> displacement);
   void remember_mesh();
   std::size_t look_at_moved();
+  std::vector<CellHandle> inverted_now() const;
   void move_points(std::span<const Vec3> displacement);
   void put_points_back();
   MoveResult take(std::span<const Vec3> displacement, OnInversion on_inversion);
   void note_motion(std::span<const Vec3> displacement, double fraction);
 
   void copy_mesh();
+  void take_back(std::shared_ptr<TetMesh> mesh);
   RepairResult repair_mesh();
   void follow_edits(const Edits& edits, bool was_cut_short);
   Before before_now() const;
@@ -137,14 +141,15 @@ class Remesher::State {
   std::vector<std::uint8_t> known_;
   std::vector<Vec3> follow_;
 
-  RunMemory memory_;                 // of repairs
-  std::shared_ptr<TetMesh> before_;  // the mesh before the last repair
-  std::shared_ptr<TetMesh> spare_;   // where edits keep, or have kept, such a copy
-  std::optional<Edits> pending_;     // of the last repair, whose fields wait
-  std::optional<Before> undo_;       // of the step in progress, once it has repaired
-  bool has_moved_ = false;           // points, in the step in progress
-  int steps_before_ = 0;             // steps_ before the step in progress
-  bool is_stale_ = false;            // the cells could not be looked at after a step was taken back
+  RunMemory memory_;                                 // of repairs
+  std::optional<CellWatch::Memory> excuses_before_;  // of the step, where there were any
+  std::shared_ptr<TetMesh> before_;                  // the mesh before the last repair
+  std::shared_ptr<TetMesh> spare_;                   // where edits keep, or have kept, such a copy
+  std::optional<Edits> pending_;                     // of the last repair, whose fields wait
+  std::optional<Before> undo_;                       // of the step in progress, once it has repaired
+  bool has_moved_ = false;                           // points, in the step in progress
+  int steps_before_ = 0;                             // steps_ before the step in progress
+  bool is_stale_ = false;  // the cells could not be looked at after a step was taken back
 };
 
 void Remesher::State::reset() {
@@ -152,6 +157,7 @@ void Remesher::State::reset() {
   if (mesh_.needs_garbage_collection())
     rename_fixed(options_.improve.surface, mesh_.collect_garbage().vertices);
   require_sound_coordinates(mesh_, policy_);
+  require_fixed_parts(mesh_, options_.improve.surface);
   steps_ = 0;
   if (options_.triggers.motion > 0) {
     travelled_.assign(mesh_.n_vertices(), 0.0);
@@ -223,7 +229,10 @@ std::span<const Vec3> Remesher::State::followed(std::span<const Vec3> displaceme
   for_each_fixed(options_.improve.surface, [&](VertexHandle v) { known_[v.idx()] = 1; });
   follow_.assign(displacement.begin(), displacement.end());
   follow(mesh_, known_, options_.motion == Motion::kElastic, follow_);
-  moved_.find(follow_, policy_);
+  const std::size_t first = moved_.find(follow_, policy_);
+  HFR_REQUIRE(first == follow_.size(), "motion: that of vertex " + std::to_string(first) +
+                                           " could not be solved for: cells are too nearly flat; move it "
+                                           "by hand (motion given)");
   return follow_;
 }
 
@@ -259,22 +268,39 @@ std::size_t Remesher::State::look_at_moved() {
   return watch_.look_at_cells_of(moved_);
 }
 
+/// Ascending; nobody looks for them where there are none.
+std::vector<CellHandle> Remesher::State::inverted_now() const {
+  return watch_.n_inverted() > 0 ? watch_.inverted() : std::vector<CellHandle>();
+}
+
 /// Of the displacement that moved_ knows.
 MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion on_inversion) {
   MoveResult result;
   result.n_moved = moved_.size();
   if (moved_.size() == 0) return result;
-  const std::size_t inverted_before = watch_.n_inverted();
+  const std::vector<CellHandle> inverted_before = inverted_now();
+  // Cells of one move may come right and others go wrong, so that their number says nothing.
+  const auto inverts_none = [&] {
+    const std::vector<CellHandle> now = inverted_now();
+    return std::includes(inverted_before.begin(), inverted_before.end(), now.begin(), now.end());
+  };
+  std::optional<CellWatch::Memory> excuses;
+  if (on_inversion == OnInversion::kRefuse && watch_.has_excuses()) excuses = watch_.memory();
   move_points(displacement);
   result.n_looked_at = look_at_moved();
-  if (on_inversion == OnInversion::kRepair || watch_.n_inverted() <= inverted_before) {
+  if (on_inversion == OnInversion::kRepair || inverts_none()) {
     note_motion(displacement, 1);
     return result;
   }
   if (on_inversion == OnInversion::kRefuse) {
     result.refused = watch_.inverted();
     put_points_back();
-    look_at_moved();
+    if (excuses) {
+      watch_.restore(std::move(*excuses));
+      watch_.look_at_all();
+    } else {
+      look_at_moved();
+    }
     result.fraction = 0;
     return result;
   }
@@ -286,7 +312,7 @@ MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion
   for (int i = 0; i < kStepEffort.halvings; ++i) {
     const double middle = 0.5 * (safe + unsafe);
     put_at(middle);
-    (watch_.n_inverted() <= inverted_before ? safe : unsafe) = middle;
+    (inverts_none() ? safe : unsafe) = middle;
   }
   put_at(safe);
   result.fraction = safe;
@@ -325,6 +351,16 @@ void Remesher::State::copy_mesh() {
   }
 }
 
+/// The mesh is that one again: without a copy, which there may be no memory for, unless somebody else has it.
+void Remesher::State::take_back(std::shared_ptr<TetMesh> mesh) {
+  if (mesh.use_count() == 1) {
+    std::atomic_thread_fence(std::memory_order_acquire);
+    mesh_.restore(std::move(*mesh));
+  } else {
+    mesh_.restore(*mesh);
+  }
+}
+
 /// Leaves the mesh as it was where it throws; what is kept for its cells and vertices is for undo().
 RepairResult Remesher::State::repair_mesh() {
   copy_mesh();
@@ -341,7 +377,7 @@ RepairResult Remesher::State::repair_mesh() {
     return result;
   } catch (...) {
     forget_mesh();
-    mesh_.restore(*before_);
+    take_back(std::move(before_));
     throw;
   }
 }
@@ -432,6 +468,8 @@ void Remesher::State::run_step(std::span<const Vec3> displacement, StepResult& r
     std::vector<FieldTransfer> fields = options_.fields;
     fields.push_back({.name = kRest, .how = Transfer::kLinear});
     const bool finished = repair_in_step(fields, result);
+    // The part that was taken inverts nothing; what is left of it would.
+    if (result.cause == RepairCause::kNone) result.cause = RepairCause::kInverted;
     rest.assign(left.values().begin(), left.values().end());
     mesh_.properties().vertices.remove(kRest);
     if (!finished) return;
@@ -445,7 +483,8 @@ void Remesher::State::run_step(std::span<const Vec3> displacement, StepResult& r
 void Remesher::State::undo() {
   if (undo_ && undo_->mesh) {
     forget_mesh();
-    mesh_.restore(*undo_->mesh);
+    if (before_ == undo_->mesh) before_.reset();
+    take_back(std::move(undo_->mesh));
   }
   if (undo_) {
     mesh_.properties().vertices.remove(kRest);
@@ -466,6 +505,9 @@ void Remesher::State::undo() {
   undo_.reset();
   has_moved_ = false;
   is_stale_ = true;
+  // The move before the repair has taken excuses away by then.
+  if (excuses_before_) watch_.restore(std::move(*excuses_before_));
+  excuses_before_.reset();
   watch_.look_at_all();
   is_stale_ = false;
 }
@@ -477,10 +519,13 @@ StepResult Remesher::State::step(std::span<const Vec3> displacement) {
   has_moved_ = false;
   steps_before_ = steps_;
   const std::size_t inverted_before = watch_.n_inverted();
+  excuses_before_.reset();
+  if (watch_.has_excuses()) excuses_before_ = watch_.memory();
   StepResult result;
   try {
     run_step(followed(displacement), result);
   } catch (...) {
+    result.repairs.clear();  // whose edits hold the mesh as it was
     undo();
     throw;
   }

@@ -278,6 +278,12 @@ void validate(const ImproveOptions& options) {
   HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
   HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");
   HFR_REQUIRE(options.policy.threads >= 1, "the number of threads must be at least 1");
+  const SurfaceOptions& surface = options.surface;
+  HFR_REQUIRE(
+      surface.feature_angle >= 0 && surface.feature_angle <= 180,
+      "the feature angle must lie between 0 and 180 degrees, not " + std::to_string(surface.feature_angle));
+  HFR_REQUIRE(!surface.hausdorff || *surface.hausdorff >= 0,
+              "the distance from the surface must not be negative");
 }
 
 Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t n_cells) {

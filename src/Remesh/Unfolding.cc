@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "Operators/Unfold.hh"
 #include "Remesh/Strategy.hh"
@@ -39,9 +40,12 @@ bool Unfolding::helps(const Workspace& work, const Damage& was, const Damage& is
          (is.n_invalid() < was.n_invalid() || is.n_inverted() < was.n_inverted());
 }
 
-Box box_of(std::span<const Vec3> points) {
-  Box box{points[0], points[0]};
-  for (Vec3 p : points) {
+Box box_of(const TetMesh& mesh) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  Box box{{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}};
+  for (std::size_t i = 0; i < mesh.n_vertices(); ++i) {
+    if (!mesh.incident_cell(VertexHandle(i)).is_valid()) continue;
+    const Vec3 p = mesh.point(VertexHandle(i));
     for (int d = 0; d < 3; ++d) {
       box.low[d] = std::min(box.low[d], p[d]);
       box.high[d] = std::max(box.high[d], p[d]);

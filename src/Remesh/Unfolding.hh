@@ -69,8 +69,8 @@ class Unfolding {
 struct Box {
   Vec3 low, high;
 };
-/// Of the points of a mesh that has one, whether cells have them or not.
-Box box_of(std::span<const Vec3> points);
+/// Of the vertices that have cells.
+Box box_of(const TetMesh& mesh);
 
 }  // namespace hfr
 

@@ -23,7 +23,7 @@ namespace {
 /// Volume of the bounding box, shared out among the cells, times six: the same for any number of threads.
 double typical_six_volume(const Run& run) {
   if (run.n_cells() == 0) return 1.0;
-  const Box box = run.is_part() ? run.parts()->box() : box_of(run.mesh.points());
+  const Box box = run.is_part() ? run.parts()->box() : box_of(run.mesh);
   const Vec3 size = box.high - box.low;
   const double volume = 6.0 * size.x * size.y * size.z / static_cast<double>(run.n_cells());
   return volume > 0 ? volume : 1.0;

@@ -369,6 +369,90 @@ TEST(Remesher, WhatARepairHadToLeaveCallsForNoOtherUntilItIsWorse) {
   EXPECT_EQ(remesher.step(std::vector<Vec3>(4)).cause, RepairCause::kNone);
 }
 
+TetMesh flat_cell() {
+  return build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.3, 0.3, 0.05}},
+               std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
+}
+
+TEST(Remesher, WhatAMetricHadToLeaveCallsAgainWhenItIsWorse) {
+  for (const bool of_volume : {false, true}) {
+    TetMesh mesh = flat_cell();
+    RemesherOptions options = options_for(15, 0);
+    if (of_volume)
+      options.triggers.jacobian_ratio = 0.9;
+    else
+      options.triggers.metrics = {{Metric::kVolumeLength, 0.5}};
+    Remesher remesher(mesh, options);
+    std::vector<Vec3> d(4);
+    d[3].z = -0.01;
+    const RepairCause cause = of_volume ? RepairCause::kJacobian : RepairCause::kMetric;
+    EXPECT_EQ(remesher.step(d).cause, cause);
+    EXPECT_EQ(remesher.step(std::vector<Vec3>(4)).cause, RepairCause::kNone);
+    EXPECT_EQ(remesher.step(d).cause, cause);
+    EXPECT_EQ(remesher.step(std::vector<Vec3>(4)).cause, RepairCause::kNone);
+  }
+}
+
+TEST(Remesher, ARefusedMoveLeavesWhatRepairsHadToLeave) {
+  TetMesh mesh = flat_cell();
+  RemesherOptions options = options_for();
+  options.on_inversion = OnInversion::kRefuse;
+  Remesher remesher(mesh, options);
+  std::vector<Vec3> d(4);
+  EXPECT_EQ(remesher.step(std::vector<Vec3>(4)).cause, RepairCause::kAngle);
+  ASSERT_EQ(remesher.needs_repair(), RepairCause::kNone);
+  d[3].z = -0.2;
+  EXPECT_FALSE(remesher.step(d).refused.empty());
+  EXPECT_EQ(remesher.needs_repair(), RepairCause::kNone);
+}
+
+TEST(Remesher, AMoveThatRightsACellAndInvertsAnotherIsRefused) {
+  TetMesh mesh =
+      build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {5, 0, 1}},
+            std::vector<std::array<Index, 4>>{{0, 1, 2, 3}, {4, 5, 6, 7}});
+  mesh.set_point(VertexHandle(3), {0, 0, -1});
+  RemesherOptions options = options_for();
+  options.on_inversion = OnInversion::kRefuse;
+  Remesher remesher(mesh, options);
+  ASSERT_EQ(remesher.n_inverted(), 1U);
+  std::vector<Vec3> d(8);
+  d[3].z = 2;
+  EXPECT_TRUE(remesher.move(d).refused.empty()) << "what rights one alone is taken";
+  d[3].z = -2;
+  remesher.move(d);
+  mesh.set_point(VertexHandle(3), {0, 0, -1});
+  remesher.reset();
+  d[3].z = 2;
+  d[7].z = -2;
+  EXPECT_EQ(remesher.move(d).refused, std::vector<CellHandle>{CellHandle(1)});
+  EXPECT_EQ(mesh.point(VertexHandle(3)).z, -1);
+}
+
+TEST(Remesher, AStepOfPartsSaysWhyItHasRepaired) {
+  TetMesh mesh = box(5, 0);
+  RemesherOptions options = options_for(15, 0);
+  options.on_inversion = OnInversion::kSubsteps;
+  Remesher remesher(mesh, options);
+  VertexHandle inner;
+  for (VertexHandle v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inner = v;
+  std::vector<Vec3> d(mesh.n_vertices());
+  d[inner.idx()] = {0.25, 0, 0};
+  const StepResult step = remesher.step(d);
+  ASSERT_FALSE(step.repairs.empty());
+  EXPECT_EQ(step.cause, RepairCause::kInverted);
+}
+
+TEST(Remesher, FixedPartsThatAreNotThereAreRefusedAtOnce) {
+  for (const Motion motion : {Motion::kGiven, Motion::kLaplace}) {
+    TetMesh mesh = box(2, 0);
+    RemesherOptions options = options_for();
+    options.motion = motion;
+    options.improve.surface.fixed_vertices = {VertexHandle(1000000)};
+    EXPECT_THROW(Remesher(mesh, options), InvalidInput);
+  }
+}
+
 TEST(Remesher, EachTriggerCallsForARepair) {
   const auto cause = [](const std::function<void(RemesherOptions&)>& set, double by) {
     TetMesh mesh = box(5, 0);

@@ -2,6 +2,7 @@
 // Surfaces without cells.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <map>
 #include <set>
 
@@ -324,6 +325,32 @@ TEST(Triangles, RefusesWhatItCannotDo) {
   EXPECT_THROW(improve_triangles(broken, with(SurfaceMode::kFlat)), InvalidInput);
   broken.triangles[3][1] = broken.triangles[3][0];
   EXPECT_THROW(improve_triangles(broken, with(SurfaceMode::kFlat)), InvalidInput);
+}
+
+TEST(Triangles, FixedPartsThatAreNotThereAreRefused) {
+  const auto refuses = [](const std::function<void(SurfaceOptions&)>& set) {
+    TriangleMesh mesh = sheet(2, 0);
+    mesh.patches.assign(mesh.triangles.size(), 1);
+    TriangleOptions options = with(SurfaceMode::kFlat);
+    set(options.surface);
+    try {
+      improve_triangles(mesh, options);
+    } catch (const InvalidInput&) {
+      return true;
+    }
+    return false;
+  };
+  const VertexHandle a(0), b(1), c(4), far(99);
+  EXPECT_TRUE(refuses([&](SurfaceOptions& o) { o.fixed_vertices = {far}; }));
+  EXPECT_TRUE(refuses([&](SurfaceOptions& o) { o.fixed_edges = {{a, VertexHandle(8)}}; }));
+  EXPECT_TRUE(refuses([&](SurfaceOptions& o) { o.fixed_faces = {{a, b, VertexHandle(8)}}; }));
+  EXPECT_TRUE(refuses([&](SurfaceOptions& o) { o.fixed_patches = {77}; }));
+  EXPECT_FALSE(refuses([&](SurfaceOptions& o) {
+    o.fixed_vertices = {a};
+    o.fixed_edges = {{b, a}};
+    o.fixed_faces = {{c, a, b}};
+    o.fixed_patches = {1};
+  }));
 }
 
 TEST(Triangles, EmptySurfaceIsLeftAlone) {
