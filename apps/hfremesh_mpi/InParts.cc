@@ -28,6 +28,7 @@
 #include "Parser.hh"
 #include "Paths.hh"
 #include "Report.hh"
+#include "Signals.hh"
 #include "hfremesh/Distributed/InParts.hh"
 #include "hfremesh/HalfFace/Config.hh"
 #include "hfremesh/HalfFace/Errors.hh"
@@ -407,6 +408,7 @@ int run_in_parts(int argc, char** argv, mpi::Comm& comm) {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // as the tool does; see Tool.cc
 #endif
+  handle_signals();  // which leave no temporary file
   std::optional<PartsLine> line;
   Json report = new_report("parts");
   const auto finish = [&](int code) {

@@ -30,7 +30,7 @@ class Stars {
     for_corners([&](VertexHandle v, CellHandle) { ++begin_[v.idx() + 1]; });
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
     cells_.resize(begin_.back());
-    std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
+    std::vector<std::size_t> at(begin_.begin(), begin_.end() - 1);
     for_corners([&](VertexHandle v, CellHandle c) { cells_[at[v.idx()]++] = c; });
   }
   std::span<const CellHandle> operator[](VertexHandle v) const {
@@ -38,7 +38,7 @@ class Stars {
   }
 
  private:
-  std::vector<std::uint32_t> begin_;
+  std::vector<std::size_t> begin_;
   std::vector<CellHandle> cells_;  // ascending for each vertex
 };
 
@@ -217,6 +217,7 @@ struct HeldCell {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 4> v{};
   double quality = 0;
+  std::int64_t region = 0;
   std::uint64_t labels = 0;  ///< of what hangs on its vertices, edges and faces: a hash
 };
 struct HeldVertex {
@@ -235,7 +236,8 @@ std::uint64_t hash_of_labels(const DistributedMesh& mesh, CellHandle c) {
 }
 
 HeldCell held(const DistributedMesh& mesh, CellHandle c) {
-  HeldCell one{mesh.number(c), {}, mesh.work().quality[c.idx()], hash_of_labels(mesh, c)};
+  HeldCell one{
+      mesh.number(c), {}, mesh.work().quality[c.idx()], mesh.part().region(c), hash_of_labels(mesh, c)};
   for (std::size_t k = 0; k < 4; ++k) one.v[k] = mesh.number(mesh.part().cell(c).v[k]);
   return one;
 }
@@ -280,7 +282,8 @@ Fault compare_with_owners(DistributedMesh& mesh) {
         continue;
       }
       const HeldCell mine = held(mesh, c);
-      if (mine.v != theirs.v || mine.quality != theirs.quality) say("cell " + std::to_string(theirs.number));
+      if (mine.v != theirs.v || mine.quality != theirs.quality || mine.region != theirs.region)
+        say("cell " + std::to_string(theirs.number));
       if (mine.labels != theirs.labels) say("what is labelled of cell " + std::to_string(theirs.number));
     }
     for (const HeldVertex& theirs : in.get_all<HeldVertex>()) {

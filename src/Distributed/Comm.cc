@@ -200,7 +200,13 @@ std::vector<Comm::Message> Comm::send_and_receive(std::vector<Packer>& to) {
           const std::bad_alloc&) {  // it cannot be refused: this rank makes room, and fails once all is sent
         has_room = false;
         came = {};
-        message.bytes.resize(static_cast<std::size_t>(n));
+        try {
+          message.bytes.resize(static_cast<std::size_t>(n));
+        } catch (const std::bad_alloc&) {  // cut off: who has sent it waits for that
+          static_cast<void>(
+              MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, tag_, comm_, MPI_STATUS_IGNORE));
+          continue;
+        }
       }
       require(MPI_Recv(message.bytes.data(), n, MPI_BYTE, status.MPI_SOURCE, tag_, comm_, MPI_STATUS_IGNORE));
       if (has_room) came.push_back(std::move(message));

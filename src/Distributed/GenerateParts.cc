@@ -200,6 +200,9 @@ void generate_in_parts(DistributedMesh& mesh, const GridOptions& options, Partit
   HFR_REQUIRE(std::isfinite(cavity.jitter) && std::isfinite(cavity.amplitude),
               "jitter and amplitude must be finite numbers");
   HFR_REQUIRE(std::isfinite(cavity.sigma) && cavity.sigma > 0, "sigma must be above 0");
+  double n_places = 6;  // and cells of each
+  for (std::size_t d = 0; d < 3; ++d) n_places *= static_cast<double>(whole.size(d));
+  HFR_REQUIRE(n_places < 0x1p53, "a grid of so many cells cannot be numbered: ask for fewer");
   HFR_REQUIRE(whole.n_places() >= mesh.comm().n_ranks(),
               "there are more ranks than vertices: a rank would have none");
   const GridOwners owners(whole, mesh.comm().size(), how);

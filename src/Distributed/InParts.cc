@@ -92,7 +92,7 @@ Box Residents::box() {
   const TetMesh& part = mesh_.part();
   Box box{{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}};
   for (std::size_t i = 0; i < part.n_vertices(); ++i) {
-    if (!mesh_.is_own(VertexHandle(i))) continue;
+    if (!mesh_.is_own(VertexHandle(i)) || !part.incident_cell(VertexHandle(i)).is_valid()) continue;
     const Vec3 p = part.point(VertexHandle(i));
     for (int d = 0; d < 3; ++d) {
       box.low[d] = std::min(box.low[d], p[d]);

@@ -77,12 +77,42 @@ std::uint64_t Incoming::end_of(std::uint64_t mine) const {
   return static_cast<std::uint64_t>(-comm_.min(-static_cast<double>(mine)));
 }
 
+/// Numbers of the items that count are 0 … n-1, each once: there are as many, and a sum over hashes of theirs
+/// is that over those. n: one more than the largest.
+template <class Item, class Counts>
+void Incoming::require_each_once(std::uint64_t n, const char* what, const std::vector<Item>& items,
+                                 Counts&& counts) const {
+  std::uint64_t n_mine = 0, found = 0, wanted = 0;
+  for (const Item& item : items) {
+    if (!counts(item)) continue;
+    ++n_mine;
+    found += mix64(item.number);
+  }
+  const std::string fault = std::string("numbers of ") + what + " have gaps, or come twice";
+  HFR_REQUIRE(comm_.sum(n_mine) == n, fault);
+  const auto begin = [&](std::uint64_t r) {
+    return n / comm_.n_ranks() * r + std::min(r, n % comm_.n_ranks());
+  };
+  const auto me = static_cast<std::uint64_t>(comm_.rank());
+  for (std::uint64_t i = begin(me); i < begin(me + 1); ++i) wanted += mix64(i);
+  HFR_REQUIRE(comm_.sum(found - wanted) == 0, fault);
+}
+
 void Incoming::find_owners() {
   unite();
   n_points_ = end_of(points_.empty() ? 0 : points_.back().number + 1);
   n_cells_ = end_of(cells_.empty() ? 0 : cells_.back().number + 1);
   HFR_REQUIRE(n_points_ > 0 && n_cells_ > 0, "the pieces have no cells");
-  HFR_REQUIRE(comm_.sum(cells_.size()) == n_cells_, "numbers of cells have gaps, or come twice");
+  HFR_REQUIRE(n_points_ <= comm_.sum(points_.size()), "numbers of points have gaps");
+  require_each_once(n_cells_, "cells", cells_, [](const CornerRecord&) { return true; });
+  for (const auto& [kind, what] :
+       {std::pair(LabelRecord::Kind::kFace, "triangles"), std::pair(LabelRecord::Kind::kEdge, "edges")}) {
+    const auto counts = [kind = kind](const LabelRecord& r) { return r.kind == kind; };
+    std::uint64_t end = 0;
+    for (const LabelRecord& r : labels_)
+      if (counts(r)) end = std::max(end, r.number + 1);
+    require_each_once(end_of(end), what, labels_, counts);
+  }
   const std::uint64_t n_ranks = comm_.n_ranks();
   const auto begin = [&](std::uint64_t r) { return (r * n_points_ + n_ranks - 1) / n_ranks; };
   std::vector<Packer> to(comm_.n_ranks());

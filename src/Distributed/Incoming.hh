@@ -68,6 +68,9 @@ class Incoming {
   void for_cells(Body&& body) const;
   int owner(Index at) const { return points_[at].owner; }
   std::uint64_t end_of(std::uint64_t mine) const;
+  template <class Item, class Counts>
+  void require_each_once(std::uint64_t n, const char* what, const std::vector<Item>& items,
+                         Counts&& counts) const;
   template <class Receivers>
   void send(Receivers&& receivers, Incoming& into);
   Sets near_own(int edges) const;

@@ -12,7 +12,7 @@
 namespace hfr::mpi {
 
 /// The part of a mesh that one rank holds, as rank 0 hands it out: what PartHeader says, then arrays whose
-/// sizes it tells, in the order of PartArrays. 41 bytes a vertex, 45 a cell, 4 more where cells have regions,
+/// sizes it tells, in the order of PartArrays. 45 bytes a vertex, 45 a cell, 4 more where cells have regions,
 /// 4 a free slot of the whole, with handles of 32 bits. Numbers are handles in the mesh of rank 0.
 struct PartHeader {
   std::uint64_t n_slots = 0, n_free = 0, n_vertices = 0, n_cells = 0;

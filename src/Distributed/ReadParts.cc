@@ -113,6 +113,8 @@ void add_labels(const std::filesystem::path& path, const io::MeshData& data,
 std::vector<std::string> read_piece(const std::filesystem::path& path, int rank, Incoming& incoming,
                                     std::string& names) {
   io::MeshData data = io::read_mesh(path);
+  names += io::names_text(data);
+  if (data.points.empty() && data.cells.empty()) return {};  // of a rank that had nothing: it names no arrays
   const auto points = numbers_of(path, data.point_fields), cells = numbers_of(path, data.cell_fields);
   for (std::size_t i = 0; i < points.size(); ++i) incoming.add(PointRecord{points[i], data.points[i], rank});
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -124,7 +126,6 @@ std::vector<std::string> read_piece(const std::filesystem::path& path, int rank,
     incoming.add(one);
   }
   add_labels(path, data, points, incoming);
-  names += io::names_text(data);
   std::vector<std::string> notes;
   const auto note = [&](const std::vector<io::Field>& fields, const char* of) {
     for (const io::Field& field : fields)

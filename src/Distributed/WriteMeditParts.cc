@@ -207,6 +207,7 @@ std::vector<std::string> write_medit_parts(DistributedMesh& mesh, const std::fil
   const io::MeditPart part = OwnPart(mesh).make();
   io::OutputFile file(io::medit_part_path(path, comm.rank()));
   std::vector<std::string> notes = io::write_medit_part(file, part);
+  file.finish();
   comm.sum(0);  // all are written, or a rank has failed
   file.commit();
   comm.sum(0);

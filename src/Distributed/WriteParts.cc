@@ -297,8 +297,18 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const std::filesystem::path piece = path.parent_path() / piece_name(path, mesh.comm().rank());
   std::error_code error;
   std::filesystem::create_directory(piece.parent_path(), error);  // by whoever comes first
-  io::write_mesh(piece, piece_of(mesh, numbering, labels));
-  mesh.comm().sum(0);  // all pieces are there, or a rank has failed
+  // Pieces that were there before, and are read with the index, go when all new ones are whole.
+  const std::filesystem::path fresh = piece.parent_path() / ("." + piece.stem().string() + ".new.vtu");
+  try {
+    io::write_mesh(fresh, piece_of(mesh, numbering, labels));
+    mesh.comm().sum(0);  // all pieces are there, or a rank has failed
+  } catch (...) {
+    std::filesystem::remove(fresh, error);
+    throw;
+  }
+  std::filesystem::rename(fresh, piece, error);
+  if (error) throw IoError(piece.string() + ": cannot be written: " + error.message());
+  mesh.comm().sum(0);
   if (mesh.comm().rank() == 0) write_index(path, mesh.comm().size(), labels);
   mesh.comm().sum(0);
 }
