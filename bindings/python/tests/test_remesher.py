@@ -177,9 +177,10 @@ def test_a_function_carries_a_field_over(loaded):
 
 
 def test_floats_are_no_values_of_a_field_of_integers(loaded):
-    rm = hf.Remesher(loaded, trigger=0, every=1, transfer={"material": lambda old, new, edits: np.full(new.n_cells, 1.9)})
+    rm = hf.Remesher(loaded, transfer={"material": lambda old, new, edits: np.full(new.n_cells, 1.9)})
     with pytest.raises(ValueError, match="1 integer components"):
-        rm.step(np.full((rm.n_vertices, 3), 1e-6))
+        for _ in range(20):
+            rm.step(swirl(rm.points, 0.25))
 
 
 def test_a_name_of_vertices_and_of_cells_needs_of(tet):
@@ -208,7 +209,7 @@ def test_a_remesher_that_was_never_made_is_collected():
 
     def fails():
         try:
-            hf.Remesher(hf.generate.cavity(2), goal=5, trigger=10, progress=progress)
+            hf.Remesher(hf.generate.cavity((2, 2, 2)), goal=5, trigger=10, progress=progress)
         except ValueError as error:
             kept = error  # frame, error, traceback, frame
             assert kept
