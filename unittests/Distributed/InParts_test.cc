@@ -513,6 +513,40 @@ TEST(InParts, WhatIsLeftOutOfPiecesIsNamed) {
   EXPECT_EQ(notes, comm.rank() == 0 ? std::vector<std::string>{"array 'heat' of points left out"}
                                     : std::vector<std::string>{});
   EXPECT_EQ(parts.n_cells(), mesh.n_cells());
+  // All ranks but the first own nothing, and their pieces name no arrays.
+  mpi::write_pvtu(parts, folder.path() / "again.pvtu");
+  mpi::DistributedMesh again(comm);
+  mpi::read_pvtu(again, folder.path() / "again.pvtu");
+  EXPECT_EQ(again.n_cells(), mesh.n_cells());
+}
+
+TEST(InParts, NumbersThatComeTwiceAreRefused) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const TetMesh mesh = valid_box(2, 0, 1);
+  for (const bool of_cells : {true, false}) {
+    if (comm.rank() == 0) {
+      io::MeshData data = io::disassemble(mesh);
+      io::Field points{"number", 1, false, {}}, cells{"number", 1, false, {}};
+      for (std::size_t i = 0; i < data.points.size(); ++i) points.values.push_back(static_cast<double>(i));
+      for (std::size_t c = 0; c < data.cells.size(); ++c) cells.values.push_back(static_cast<double>(c));
+      if (of_cells) cells.values[3] = 4;  // as many as the largest says, but not each once
+      data.point_fields = {points};
+      data.cell_fields = {cells};
+      if (!of_cells) {
+        const auto f = mesh.halfface_vertices(*mesh.boundary_halffaces().begin());
+        data.triangles = {{f[0].idx(), f[1].idx(), f[2].idx()}};
+        data.triangle_labels = {3};
+        data.triangle_numbers = {100};
+      }
+      io::write_mesh(folder.path() / "bad.vtu", data);
+      std::ofstream(folder.path() / "bad.pvtu")
+          << "<PUnstructuredGrid><Piece Source=\"bad.vtu\"/></PUnstructuredGrid>";
+    }
+    comm.sum(0);
+    mpi::DistributedMesh parts(comm);
+    EXPECT_ANY_THROW(mpi::read_pvtu(parts, folder.path() / "bad.pvtu")) << of_cells;
+  }
 }
 
 TEST(InParts, BrokenPiecesAreRefusedOnAllRanks) {
