@@ -212,6 +212,7 @@ class OvmReader {
     }
     Field field{std::string(name), type->components, type->integer, {}};
     const std::size_t n = n_items(*entity) * static_cast<std::size_t>(field.components);
+    values_begin_ = in_.offset();
     field.values.reserve(n);
     for (std::size_t i = 0; i < n; ++i) field.values.push_back(in_.field_value());
     keep(*entity, std::move(field), what);
@@ -251,11 +252,17 @@ class OvmReader {
     }
   }
 
-  std::vector<int> labels(const Field& field) const {
+  /// Of the property that has just been read.
+  std::vector<int> labels(const Field& field) {
     std::vector<int> found;
     found.reserve(field.values.size());
     for (const double value : field.values) {
-      if (!is_label(value)) in_.fail("a value of property \"" + field.name + "\" is no integer of 32 bits");
+      if (!is_label(value)) {
+        in_.seek(values_begin_);
+        for (std::size_t i = 0; i < found.size(); ++i) in_.word();
+        in_.fail("a value of property \"" + field.name +
+                 "\" is no integer of 32 bits: " + std::string(in_.peek_word()));
+      }
       found.push_back(static_cast<int>(value));
     }
     return found;
@@ -283,6 +290,7 @@ class OvmReader {
   std::vector<int> face_labels_;
   std::vector<int> is_edge_element_;
   std::vector<int> is_face_element_;
+  std::size_t values_begin_ = 0;  ///< of the last property, in the file
 };
 
 }  // namespace

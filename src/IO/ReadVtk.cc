@@ -87,6 +87,9 @@ class LegacyReader {
 
  private:
   [[noreturn]] void fail(const std::string& message) const;
+  /// At a number of those that begin there, of `size` bytes each in a binary file.
+  [[noreturn]] void fail_at_value(std::size_t begin, std::size_t value, std::size_t size,
+                                  const std::string& message);
   [[noreturn]] void fail_at_corner(std::size_t cell, std::size_t corner, const std::string& message);
   std::string_view word(std::string_view what);
   std::size_t count(std::string_view what);
@@ -129,16 +132,21 @@ void LegacyReader::fail(const std::string& message) const {
   throw InvalidInput(scan_.name() + ": at byte " + std::to_string(scan_.offset()) + ": " + message);
 }
 
-void LegacyReader::fail_at_corner(std::size_t cell, std::size_t corner, const std::string& message) {
-  const std::size_t place = counts_between_corners_ ? corner + cell + 1 : corner;
-  scan_.seek(corners_offset_);
+void LegacyReader::fail_at_value(std::size_t begin, std::size_t value, std::size_t size,
+                                 const std::string& message) {
+  scan_.seek(begin);
   if (binary_) {
-    scan_.seek(std::min(corners_offset_ + place * corner_size_, scan_.text().size()));
+    scan_.seek(std::min(begin + value * size, scan_.text().size()));
   } else {
-    for (std::size_t i = 0; i < place && !scan_.peek_word().empty(); ++i) scan_.word();
+    for (std::size_t i = 0; i < value && !scan_.peek_word().empty(); ++i) scan_.word();
     static_cast<void>(scan_.peek_word());
   }
-  fail("cell " + std::to_string(cell) + ": " + message);
+  fail(message);
+}
+
+void LegacyReader::fail_at_corner(std::size_t cell, std::size_t corner, const std::string& message) {
+  const std::size_t place = counts_between_corners_ ? corner + cell + 1 : corner;
+  fail_at_value(corners_offset_, place, corner_size_, "cell " + std::to_string(cell) + ": " + message);
 }
 
 std::string_view LegacyReader::word(std::string_view what) {
@@ -386,17 +394,18 @@ void LegacyReader::read_new_cells(std::size_t n_offsets, std::size_t n_corners) 
 
 void LegacyReader::read_cell_types() {
   const std::size_t n = count("a number of cell types");
-  end_header_line();
   if (n != grid_.ends.size())
     fail(std::to_string(n) + " cell types for " + std::to_string(grid_.ends.size()) + " cells");
+  end_header_line();
   total(n, 1, kInt, "cell types");
+  const std::size_t begin = scan_.offset();
   std::vector<std::int64_t> types(n);
   read_values(kInt, n, types.data());
   grid_.types.reserve(n);
-  for (const std::int64_t type : types) {
-    if (type < 0 || type > std::numeric_limits<std::uint8_t>::max())
-      fail("unknown VTK cell type " + std::to_string(type));
-    grid_.types.push_back(static_cast<std::uint8_t>(type));
+  for (std::size_t i = 0; i < n; ++i) {
+    if (types[i] < 0 || types[i] > std::numeric_limits<std::uint8_t>::max())
+      fail_at_value(begin, i, size_of(kInt.number), "unknown VTK cell type " + std::to_string(types[i]));
+    grid_.types.push_back(static_cast<std::uint8_t>(types[i]));
   }
 }
 

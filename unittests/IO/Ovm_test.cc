@@ -108,8 +108,10 @@ TEST(Ovm, BrokenFilesAreRefusedWithTheirLine) {
             "a.ovm:24: the half-faces of cell 0 do not close up to a tetrahedron");
   EXPECT_EQ(message(file_of("Polyhedra\n1000000000000000000\n4 0 2 4 6\n")),
             "a.ovm:23: number of polyhedra 1000000000000000000 is more than the rest of the file can hold");
-  EXPECT_EQ(message(file_of("Polyhedra\n1\n4 0 2 4 6\nCProp int \"hfremesh:region\"\n0.5\n")).substr(0, 7),
-            "a.ovm:2");
+  EXPECT_EQ(message(file_of("Polyhedra\n1\n4 0 2 4 6\nCProp int \"hfremesh:region\"\n0.5\n")),
+            "a.ovm:26: a value of property \"hfremesh:region\" is no integer of 32 bits: 0.5");
+  EXPECT_EQ(message(file_of("Polyhedra\n1\n4 0 2 4 6\nVProp int \"hfremesh:label\"\n1\n2\n3.5\n4\n\n")),
+            "a.ovm:28: a value of property \"hfremesh:label\" is no integer of 32 bits: 3.5");
   EXPECT_EQ(message(file_of("Polyhedra\n1\n4 0 2 4 6\nCProp int \"x\"\n")).substr(0, 7), "a.ovm:2");
 }
 

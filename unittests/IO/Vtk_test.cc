@@ -282,6 +282,9 @@ TEST(Vtk, WhatIsBrokenIsNamedWithItsLine) {
   EXPECT_EQ(message(replaced(good, "10 10 5", "10 12 5")),
             ":9: cell 1: cells of type VTK_HEXAHEDRON are not supported: only tetrahedra are");
   EXPECT_EQ(message(replaced(good, "10 10 5", "10 99 5")), ":9: cell 1: unknown VTK cell type 99");
+  EXPECT_EQ(message(replaced(good, "10 10 5", "10\n10\n300\n")), ":14: unknown VTK cell type 300");
+  EXPECT_EQ(message(replaced(good, "10 10 5", "10 -1 5")), ":12: unknown VTK cell type -1");
+  EXPECT_EQ(message(replaced(good, "CELL_TYPES 3", "CELL_TYPES 2")), ":11: 2 cell types for 3 cells");
   EXPECT_EQ(message(replaced(good, "10 10 5", "10 5 5")),
             ":9: cell 1: a cell of type VTK_TRIANGLE has 4 nodes");
   EXPECT_EQ(message(replaced(good, "4 1 2 3 4", "4 1 2 3 5")),
