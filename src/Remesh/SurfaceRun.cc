@@ -64,7 +64,7 @@ struct SurfaceRun::Impl {
 };
 
 SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold,
-                       std::vector<PassReport>& passes)
+                       std::vector<PassReport>& passes, const std::function<bool()>& stopped)
     : impl_(new Impl) {
   if (options.surface.mode == SurfaceMode::kFrozen) return;
   impl_->policy = options.policy;
@@ -77,7 +77,7 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   SurfaceOptions wanted = options.surface;
   impl_->bound = SurfaceMesh::allowed_distance(mesh, wanted, options.policy);
   if (unfold) {
-    const Unfolding done = unfold_surface(mesh, options.surface, options.policy);
+    const Unfolding done = unfold_surface(mesh, options.surface, options.policy, stopped);
     PassReport pass;
     pass.stage = "unfold";
     pass.op = "surface unfold";

@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_SURFACE_RUN_HH
 #define HFR_REMESH_SURFACE_RUN_HH
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -17,7 +18,8 @@ class SurfaceRun {
  public:
   /// Throws InvalidInput where the surface is not to be frozen but the build has no OpenMesh. With `unfold`,
   /// folds of a surface that may change are spread first, which moves vertices of the mesh; see `passes`.
-  SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold, std::vector<PassReport>& passes);
+  SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold, std::vector<PassReport>& passes,
+             const std::function<bool()>& stopped);
   ~SurfaceRun();
   SurfaceRun(const SurfaceRun&) = delete;
   SurfaceRun& operator=(const SurfaceRun&) = delete;

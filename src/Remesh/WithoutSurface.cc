@@ -40,7 +40,8 @@ template class SurfacePasses<MinDihedral>;
 template class SurfacePasses<CustomMetric>;
 
 struct SurfaceRun::Impl {};
-SurfaceRun::SurfaceRun(TetMesh&, const ImproveOptions& options, bool, std::vector<PassReport>&) {
+SurfaceRun::SurfaceRun(TetMesh&, const ImproveOptions& options, bool, std::vector<PassReport>&,
+                       const std::function<bool()>&) {
   HFR_REQUIRE(options.surface.mode == SurfaceMode::kFrozen,
               "this hfremesh was built without OpenMesh and can only leave the surface as it is: "
               "use --surface frozen, or build with -DHFR_SURFACE=ON");

@@ -285,13 +285,16 @@ struct Attempt {
 /// The surface as it was, the shape to keep, and ways to unfold it.
 class Attempts {
  public:
-  Attempts(const Arrays& arrays, const SurfaceOptions& options, par::Policy policy)
+  Attempts(const Arrays& arrays, const SurfaceOptions& options, par::Policy policy,
+           const std::function<bool()>& stopped)
       : arrays_(arrays),
         options_(options),
         policy_(policy),
+        stopped_(stopped),
         before_(triangles(arrays, arrays.points)),
         shape_(before_) {}
 
+  bool stopped() const { return stopped_ && stopped_(); }
   /// Spreads the vertices round the flagged faces. `wide`: folds are counted by faces that are against all
   /// layers near to them.
   Attempt spread(const std::vector<std::uint8_t>& flagged, std::size_t n_folded, int rings, bool wide) const {
@@ -300,7 +303,7 @@ class Attempts {
     Attempt attempt{.points = {}, .n_left = n_folded, .vertices = unfolder.region(flagged, rings, wide)};
     const std::vector<std::uint32_t> faces = unfolder.faces_at(attempt.vertices);
     int idle = 0;
-    for (int pass = 0; pass < kPasses && attempt.n_left > 0 && idle < kPatience; ++pass) {
+    for (int pass = 0; pass < kPasses && attempt.n_left > 0 && idle < kPatience && !stopped(); ++pass) {
       unfolder.spread(attempt.vertices, shape_);
       std::size_t n = 0;
       if (wide)
@@ -324,13 +327,15 @@ class Attempts {
   const Arrays& arrays_;
   const SurfaceOptions& options_;
   par::Policy policy_;
+  const std::function<bool()>& stopped_;
   std::vector<Triangle> before_;
   InputSurface shape_;
 };
 
 /// The points of an unfolded surface, by vertex; nothing where no way to unfold it is any better.
 std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptions& options,
-                                        par::Policy policy, Unfolding& done) {
+                                        par::Policy policy, const std::function<bool()>& stopped,
+                                        Unfolding& done) {
   constexpr double kCoplanar = 1e-12;  // of the mean edge: what flat mode allows
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
   const Unfolder unfolder(arrays, options);
@@ -340,7 +345,7 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
   const double bound = options.mode == SurfaceMode::kFlat
                            ? kCoplanar * surface::mean_edge(arrays)
                            : kShare * surface::allowed_distance(arrays, options);
-  const Attempts attempts(arrays, options, policy);
+  const Attempts attempts(arrays, options, policy, stopped);
   const auto fits = [&](const Attempt& a) { return !a.points.empty() && a.distance <= bound; };
   std::vector<std::uint8_t> flagged = folds;
   done.n_folded += unfolder.grow(flagged);
@@ -350,6 +355,7 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
   if (!fits(best) || best.n_left > 0) {
     const std::vector<std::uint8_t> covered = unfolder.covered(flagged);
     for (int rings : kRingsOfCovered) {
+      if (attempts.stopped()) break;
       Attempt next = attempts.spread(covered, done.n_folded, rings, true);
       if (!next.points.empty() && next.n_left == 0) least = std::min(least, next.distance);
       if (!fits(next) || (fits(best) && best.n_left <= next.n_left)) continue;
@@ -371,9 +377,10 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
 
 }  // namespace
 
-Unfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
+Unfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy,
+                         const std::function<bool()>& stopped) {
   Unfolding done;
-  const auto points = unfold(surface::gather(mesh, options, policy), options, policy, done);
+  const auto points = unfold(surface::gather(mesh, options, policy), options, policy, stopped, done);
   if (!points) return done;
   for (VertexHandle v : mesh.vertices())
     if ((*points)[v.idx()] != mesh.point(v)) mesh.set_point(v, (*points)[v.idx()]);

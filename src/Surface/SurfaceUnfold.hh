@@ -3,6 +3,7 @@
 #define HFR_SURFACE_SURFACE_UNFOLD_HH
 
 #include <cstddef>
+#include <functional>
 
 #include "HalfFace/TetMesh.hh"
 #include "Surface/SurfaceOptions.hh"
@@ -21,8 +22,10 @@ struct Unfolding {
 /// put back onto it: a fold is three layers of triangles on one shape, and one of them is all that is needed.
 /// Vertices on features that are no folds stay, and so do fixed ones. Nothing moves where that does not leave
 /// fewer folds, or where the new surface would be further from the old one than options allow. Cells may
-/// become inverted by it: to be done before these are mended. Nothing is done in frozen mode.
-Unfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
+/// become inverted by it: to be done before these are mended. Nothing is done in frozen mode. `stopped`,
+/// asked often: true ends it with what fits so far.
+Unfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {},
+                         const std::function<bool()>& stopped = {});
 
 }  // namespace hfr
 

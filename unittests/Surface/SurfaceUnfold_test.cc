@@ -83,6 +83,25 @@ TEST(SurfaceUnfold, LeavesAFoldThatTheDistanceDoesNotAllowAsItIsAndSaysWhichWoul
   EXPECT_EQ(n_inwards(mesh), 0U);
 }
 
+TEST(SurfaceUnfold, EndsWhenToldToWithWhatFitsSoFar) {
+  const TetMesh folded = wrung(90);
+  std::size_t n_asked = 0;
+  TetMesh whole = folded;
+  unfold_surface(whole, within(0.04), {}, [&] { return ++n_asked == 0; });
+  ASSERT_GT(n_asked, 5U);  // once a pass
+  for (const std::size_t last : {std::size_t{1}, std::size_t{2}, n_asked / 2}) {
+    TetMesh mesh = folded;
+    std::size_t n = 0;
+    const Unfolding done = unfold_surface(mesh, within(0.04), {}, [&] { return ++n >= last; });
+    EXPECT_LE(n, last + 2) << last;  // what comes after only asks and goes
+    EXPECT_LE(done.n_left, done.n_folded) << last;
+    EXPECT_LE(done.distance, 0.04) << last;
+    if (done.n_left == done.n_folded) {
+      EXPECT_TRUE(std::ranges::equal(mesh.points(), folded.points())) << last;
+    }
+  }
+}
+
 TEST(SurfaceUnfold, RunEndsWhereTheDistanceIsTooSmall) {
   // A vertex of an inverted cell made it less so for ever, ever further away: for minutes.
   TetMesh mesh = built(generate::cylinder(4, 12, 1, 2, 0, /*wring=*/120));
