@@ -13,8 +13,10 @@ namespace hfr::fuzz {
 namespace {
 
 using testing::Contains;
+using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
+using testing::UnorderedElementsAre;
 
 /// 16 cubes; region 1 and 2, a labelled face, edge and vertex, and a fixed vertex.
 TetMesh box() {
@@ -142,6 +144,101 @@ TEST(Promises, AreBrokenByLabelsThatGo) {
     EXPECT_THAT(names, Contains(promise));
   const auto flat = broken(good, bare, SurfaceMode::kFlat);
   for (const char* promise : {"patch area", "edge length"}) EXPECT_THAT(flat, Contains(promise));
+}
+
+TEST(Promises, AreBrokenByCellsThatComeToShareNoMoreThanAnEdgeOrAVertex) {
+  Measure before = measure(box());
+  Measure after = before;
+  ++after.extra_fans;
+  ++after.extra_stars;
+  after.labels_fit = false;
+  SurfaceReport surface;
+  surface.bound = 1e-3;
+  surface.hausdorff = 2e-3;
+  std::vector<Finding> findings;
+  compare_meshes(before, after, {}, surface, findings);
+  std::vector<std::string> names;
+  for (const Finding& finding : findings) names.push_back(finding.promise);
+  EXPECT_THAT(names, UnorderedElementsAre("pinched edges", "pinched vertices", "labels", "hausdorff"));
+}
+
+/// A run that has been made, and what is found when its mesh or what it says of it is changed.
+class WhatARunSays : public testing::Test {
+ protected:
+  void SetUp() override {
+    mesh_.set_point(VertexHandle(kInside), {0.95, 0.95, 0.1});
+    options_.improve.min_dihedral = 70;  // missed
+    result_ = improve(mesh_, options_.improve);
+  }
+  std::vector<std::string> broken() const {
+    std::vector<Finding> findings;
+    compare_result(mesh_, result_, same_bits_, options_, findings);
+    std::vector<std::string> names;
+    for (const Finding& finding : findings) names.push_back(finding.promise);
+    return names;
+  }
+
+  TetMesh mesh_ = box();
+  RandomOptions options_;
+  Result result_;
+  bool same_bits_ = false;
+};
+
+TEST_F(WhatARunSays, IsKeptAsItIs) { EXPECT_THAT(broken(), IsEmpty()); }
+
+TEST_F(WhatARunSays, IsBrokenByAMeshThatInvertsAfterwards) {
+  mesh_.set_point(*mesh_.vertices().begin(), {0.95, 0.95, 0.6});
+  const auto names = broken();
+  EXPECT_THAT(names, Contains("invalid_cells"));
+  EXPECT_THAT(names, Contains("statistics"));
+}
+
+TEST_F(WhatARunSays, IsBrokenByAGoalThatWasNotReached) {
+  result_.goal_reached = true;
+  EXPECT_THAT(broken(), Contains("goal_reached"));
+}
+
+TEST_F(WhatARunSays, IsBrokenByAGoalThatWasReachedAndIsNotSaid) {
+  options_.improve.min_dihedral = 0;
+  EXPECT_THAT(broken(), Contains("goal_reached"));
+}
+
+TEST_F(WhatARunSays, IsBrokenByAChangeThatIsNotSaid) {
+  result_.changed = false;
+  EXPECT_THAT(broken(), ElementsAre("changed"));
+  same_bits_ = true;
+  EXPECT_THAT(broken(), IsEmpty());
+}
+
+TEST_F(WhatARunSays, IsBrokenByAnEndThatNobodyAskedFor) {
+  for (const Stop stop : {Stop::kGoal, Stop::kCancelled, Stop::kTimeLimit, Stop::kIterations}) {
+    result_.stop = stop;
+    EXPECT_THAT(broken(), ElementsAre("stop")) << static_cast<int>(stop);
+  }
+  options_.cancel_at = 1;
+  result_.stop = Stop::kCancelled;
+  EXPECT_THAT(broken(), IsEmpty());
+}
+
+TEST_F(WhatARunSays, IsBrokenByCellsThatAreDeletedAndLeft) {
+  mesh_.delete_cell(CellHandle(0));
+  EXPECT_THAT(broken(), Contains("dense"));
+}
+
+TEST_F(WhatARunSays, IsBrokenByStatisticsThatAreNotOfTheMesh) {
+  ASSERT_FALSE(result_.stuck.empty());
+  Result said = result_;
+  result_.after.min_dihedral.min += 1e-3;
+  EXPECT_THAT(broken(), ElementsAre("statistics"));
+  result_ = said;
+  result_.after.flat.emplace_back(0);
+  EXPECT_THAT(broken(), ElementsAre("statistics"));
+  result_ = said;
+  result_.stuck.clear();
+  EXPECT_THAT(broken(), ElementsAre("statistics"));
+  result_ = said;
+  result_.stuck.front().degrees = result_.stuck_below + 1;
+  EXPECT_THAT(broken(), ElementsAre("statistics"));
 }
 
 TEST(Measure, CountsFansRoundAnEdgeAndSetsAtAVertex) {
