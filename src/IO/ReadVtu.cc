@@ -60,7 +60,6 @@ class VtuReader {
   std::optional<std::string_view> appended_;  // what follows the underscore
   bool appended_base64_ = false;
   VtkGrid grid_;
-  std::size_t n_pieces_ = 0;
 };
 
 void VtuReader::fail_at_line(int line, const std::string& message) const {
@@ -180,14 +179,17 @@ void VtuReader::read_piece(const XMLElement& piece) {
   if (n_cells > 0) append_cells(child(piece, "Cells"), n_cells, n_points);
   std::vector<Field> of_points = read_arrays(piece.FirstChildElement("PointData"), n_points);
   std::vector<Field> of_cells = read_arrays(piece.FirstChildElement("CellData"), n_cells);
-  if (n_points == 0 && n_cells == 0) return;  // an empty piece need not name its arrays
-  if (n_pieces_++ == 0) {
-    grid_.point_arrays = std::move(of_points);
-    grid_.cell_arrays = std::move(of_cells);
-  } else {
-    merge_arrays(grid_.point_arrays, std::move(of_points), points_before);
-    merge_arrays(grid_.cell_arrays, std::move(of_cells), cells_before);
-  }
+  // A piece need not name the arrays of what it has none of.
+  const auto take = [&](std::vector<Field>& all, std::vector<Field>&& more, std::size_t n,
+                        std::size_t n_before) {
+    if (n == 0) return;
+    if (n_before == 0)
+      all = std::move(more);
+    else
+      merge_arrays(all, std::move(more), n_before);
+  };
+  take(grid_.point_arrays, std::move(of_points), n_points, points_before);
+  take(grid_.cell_arrays, std::move(of_cells), n_cells, cells_before);
 }
 
 void VtuReader::append_cells(const XMLElement& section, std::size_t n_cells, std::size_t n_points) {

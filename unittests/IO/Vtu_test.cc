@@ -408,6 +408,27 @@ TEST(Vtu, PiecesAreJoined) {
   EXPECT_TRUE(has_note(mesh, "array 'g' dropped: not all pieces have it"));
 }
 
+TEST(Vtu, APieceWithoutCellsNeedNotNameTheirArrays) {
+  const TemporaryFolder folder;
+  const std::string whole = replaced(
+      kText, "</PointData>",
+      "</PointData><CellData><DataArray type=\"Int8\" Name=\"g\" format=\"ascii\">7</DataArray></CellData>");
+  const std::size_t begin = whole.find("<Piece");
+  const std::string bare =
+      "<Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points><DataArray type=\"Float64\" "
+      "NumberOfComponents=\"3\" format=\"ascii\">5 6 7</DataArray></Points></Piece>\n";
+  for (const std::size_t at : {begin, whole.find("</Piece>") + 9}) {
+    std::string text = whole;
+    samples::write_bytes(folder / "a.vtu", text.insert(at, bare));
+    const MeshData mesh = read_mesh(folder / "a.vtu");
+    EXPECT_EQ(mesh.points.size(), 5U);
+    ASSERT_EQ(mesh.cell_fields.size(), 1U) << at;
+    EXPECT_EQ(mesh.cell_fields[0].values, std::vector<double>{7}) << at;
+    EXPECT_TRUE(mesh.point_fields.empty()) << "there is no value for the one point";
+    EXPECT_TRUE(has_note(mesh, "dropped: not all pieces have it"));
+  }
+}
+
 TEST(Vtu, AnUnknownVariantIsRefused) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_mesh(folder / "a.vtu", samples::two_cells(), {false, "lzma"}), InvalidInput);
