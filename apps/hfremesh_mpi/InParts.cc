@@ -16,6 +16,8 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -166,16 +168,41 @@ void require_sound(const PartsLine& line) {
   improve_options(line);
 }
 
+/// The file of a part: "name.7.mesh" for "name.mesh".
+std::filesystem::path part_path(std::filesystem::path path, int part) {
+  return path.replace_extension(fmt::format(".{}{}", part, path.extension().string()));
+}
+
 /// Before anything is read: a run of hours ends with files that can be written.
-void look_at_files(const PartsLine& line) {
-  std::filesystem::path first(line.output);
-  if (line.distributed_output) first.replace_extension(".0.mesh");
-  const std::string output = first.string();
-  require_apart({{FileUse::Kind::kInput, "IN", line.input},
-                 {FileUse::Kind::kMesh, "-o", output},
-                 {FileUse::Kind::kReport, "--json", line.json}},
-                {});
-  for (const std::string& path : {output, line.json})
+void look_at_files(const PartsLine& line, int n_ranks) {
+  using Kind = FileUse::Kind;
+  const std::filesystem::path output(line.output);
+  const bool in_pieces = output.extension() == ".pvtu";
+  std::vector<std::string> outputs, parts_of_output;
+  if (!line.distributed_output) outputs.push_back(line.output);
+  for (int r = 0; r < n_ranks; ++r) {
+    if (line.distributed_output) parts_of_output.push_back(part_path(output, r).string());
+    if (in_pieces) parts_of_output.push_back(mpi::piece_path(output, r).string());
+  }
+  std::vector<FileUse> uses = {{Kind::kInput, "IN", line.input}};
+  for (int r = 0; !line.input.empty() && !std::filesystem::exists(line.input); ++r) {
+    const std::string part = part_path(line.input, r).string();
+    if (!std::filesystem::exists(part)) break;
+    uses.push_back({Kind::kInput, "IN", part});
+  }
+  for (const std::string& path : outputs) uses.push_back({Kind::kMesh, "-o", path});
+  // They are apart from each other by their numbers, and what is read may be replaced.
+  for (const std::string& path : parts_of_output) uses.push_back({Kind::kInput, "-o", path});
+  uses.push_back({Kind::kReport, "--json", line.json});
+  require_apart(uses, {});
+  outputs.push_back(line.json);
+  const std::filesystem::path folder = in_pieces ? mpi::piece_path(output, 0).parent_path() : "";
+  if (in_pieces && std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
+    throw Failure(ExitCode::kUsage,
+                  fmt::format("{}: is no folder, where the pieces of {} go", folder.string(), line.output));
+  if (!in_pieces || std::filesystem::exists(folder))
+    outputs.insert(outputs.end(), parts_of_output.begin(), parts_of_output.end());
+  for (const std::string& path : outputs)
     if (!path.empty()) require_writable(path);
 }
 
@@ -233,8 +260,18 @@ class PartsRun {
     fmt::print(stderr, "hfremesh-mpi: {}: {}\n", line_.input.empty() ? "the grid" : line_.input,
                fmt::format(text, std::forward<Values>(values)...));
   }
+  /// Those of all ranks, each once: whatever rank has met it.
   void say_notes(const std::string& path, const std::vector<std::string>& notes) {
-    for (const std::string& note : notes) {
+    std::string mine;
+    for (const std::string& note : notes) mine += note + "\n";
+    const std::vector<char> all = comm_.all_gather(std::span<const char>(mine));
+    std::set<std::string> lines;
+    for (auto at = all.begin(); at != all.end();) {
+      const auto end = std::find(at, all.end(), '\n');
+      lines.emplace(at, end);
+      at = end + 1;
+    }
+    for (const std::string& note : lines) {
       say("{}: {}", path, note);
       report_["notes"].push_back(path + ": " + note);
     }
@@ -426,7 +463,7 @@ int run_in_parts(int argc, char** argv, mpi::Comm& comm) {
     int code = 0;
     if (comm.rank() == 0) try {
         line = parse(argc, argv);
-        if (line) look_at_files(*line);
+        if (line) look_at_files(*line, comm.size());
       } catch (const Failure& failure) {
         line.reset();
         fmt::print(stderr, "hfremesh-mpi: {}\n", failure.what());

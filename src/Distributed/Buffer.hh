@@ -35,6 +35,7 @@ class Packer {
 
   bool empty() const { return bytes_.empty(); }
   std::vector<std::byte>& bytes() { return bytes_; }
+  const std::vector<std::byte>& bytes() const { return bytes_; }
 
  private:
   void append(const void* from, std::size_t n) {

@@ -375,9 +375,9 @@ Block Comm::receive_block() {
 }
 
 std::vector<std::byte> told_by_first(Comm& comm, const Packer& said) {
-  std::vector<Packer> to(comm.n_ranks());
-  if (comm.rank() == 0) std::fill(to.begin(), to.end(), said);
-  return std::move(comm.exchange(to).front().bytes);
+  // Not a message to each, of which the first rank would hold as many copies.
+  const std::vector<std::byte> none;
+  return comm.all_gather(std::span<const std::byte>(comm.rank() == 0 ? said.bytes() : none));
 }
 
 }  // namespace hfr::mpi
