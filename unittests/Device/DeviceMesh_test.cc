@@ -10,6 +10,7 @@
 #include <numbers>
 #include <utility>
 
+#include "Device/HasDevice.hh"
 #include "Device/Scratch.hh"
 #include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
@@ -52,6 +53,7 @@ class OnDevice : public testing::TestWithParam<DeviceTuning> {
     try {
       device_ = std::make_unique<DeviceMesh>(DeviceChoice{DeviceChoice::Kind::kOpenCl}, GetParam());
     } catch (const DeviceError& error) {
+      expect_no_device();
       GTEST_SKIP() << error.what();
     }
   }
