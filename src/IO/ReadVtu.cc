@@ -182,7 +182,7 @@ void VtuReader::read_piece(const XMLElement& piece) {
   // A piece need not name the arrays of what it has none of.
   const auto take = [&](std::vector<Field>& all, std::vector<Field>&& more, std::size_t n,
                         std::size_t n_before) {
-    if (n == 0) return;
+    if (n == 0 && (n_before > 0 || more.empty())) return;
     if (n_before == 0)
       all = std::move(more);
     else

@@ -429,6 +429,16 @@ TEST(Vtu, APieceWithoutCellsNeedNotNameTheirArrays) {
   }
 }
 
+TEST(Vtu, FieldsOfNothingKeepTheirNames) {
+  const TemporaryFolder folder;
+  MeshData mesh;
+  mesh.points = {{1, 2, 3}};
+  mesh.point_fields = {{"f", 1, false, {4}}};
+  mesh.cell_fields = {{"g", 3, false, {}}};
+  EXPECT_EQ(write_mesh(folder / "a.vtu", mesh), std::vector<std::string>{});
+  expect_same(read_mesh(folder / "a.vtu"), mesh);
+}
+
 TEST(Vtu, AnUnknownVariantIsRefused) {
   const TemporaryFolder folder;
   EXPECT_THROW(write_mesh(folder / "a.vtu", samples::two_cells(), {false, "lzma"}), InvalidInput);
