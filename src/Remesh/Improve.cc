@@ -52,7 +52,8 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
   Run run = {mesh, work, strategy, control, findings, device, nullptr, &checkpoint, strategy.bounds};
   if (!valid) run.keep(valid);
   std::vector<PassReport> unfolding;
-  const SurfaceRun surface(mesh, options, !valid, unfolding, [&] { return control.stopped(); });
+  const SurfaceRun surface(mesh, options, !valid, unfolding,
+                           [&run_control = control] { return run_control.stopped(); });
   for (PassReport& pass : unfolding) control.add(std::move(pass));
   if (knows_stars)
     work.attach_again(mesh, policy);
