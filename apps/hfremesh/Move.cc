@@ -257,8 +257,8 @@ std::string output_name(const std::filesystem::path& collection, std::size_t i) 
   return fmt::format("{}_{:04d}.vtu", collection.stem().string(), i);
 }
 
-/// Before anything is read: no file of the series is written over, by whatever name.
-/// And all outputs can be written.
+/// Before anything is read: no file of the series is written over, by whatever name, and all outputs can be
+/// written.
 void require_outputs_apart(const MoveLine& line, const std::vector<std::string>& inputs,
                            const CommonOptions& common) {
   const std::filesystem::path collection = line.output;

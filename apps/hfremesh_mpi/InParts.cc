@@ -168,11 +168,6 @@ void require_sound(const PartsLine& line) {
   improve_options(line);
 }
 
-/// The file of a part: "name.7.mesh" for "name.mesh".
-std::filesystem::path part_path(std::filesystem::path path, int part) {
-  return path.replace_extension(fmt::format(".{}{}", part, path.extension().string()));
-}
-
 /// Before anything is read: a run of hours ends with files that can be written.
 void look_at_files(const PartsLine& line, int n_ranks) {
   using Kind = FileUse::Kind;
@@ -180,13 +175,11 @@ void look_at_files(const PartsLine& line, int n_ranks) {
   const bool in_pieces = output.extension() == ".pvtu";
   std::vector<std::string> outputs, parts_of_output;
   if (!line.distributed_output) outputs.push_back(line.output);
-  for (int r = 0; r < n_ranks; ++r) {
-    if (line.distributed_output) parts_of_output.push_back(part_path(output, r).string());
-    if (in_pieces) parts_of_output.push_back(mpi::piece_path(output, r).string());
-  }
+  for (int r = 0; r < n_ranks && (in_pieces || line.distributed_output); ++r)
+    parts_of_output.push_back(mpi::part_path(output, r).string());
   std::vector<FileUse> uses = {{Kind::kInput, "IN", line.input}};
   for (int r = 0; !line.input.empty() && !std::filesystem::exists(line.input); ++r) {
-    const std::string part = part_path(line.input, r).string();
+    const std::string part = mpi::part_path(line.input, r).string();
     if (!std::filesystem::exists(part)) break;
     uses.push_back({Kind::kInput, "IN", part});
   }
@@ -196,7 +189,7 @@ void look_at_files(const PartsLine& line, int n_ranks) {
   uses.push_back({Kind::kReport, "--json", line.json});
   require_apart(uses, {});
   outputs.push_back(line.json);
-  const std::filesystem::path folder = in_pieces ? mpi::piece_path(output, 0).parent_path() : "";
+  const std::filesystem::path folder = in_pieces ? mpi::part_path(output, 0).parent_path() : "";
   if (in_pieces && std::filesystem::exists(folder) && !std::filesystem::is_directory(folder))
     throw Failure(ExitCode::kUsage,
                   fmt::format("{}: is no folder, where the pieces of {} go", folder.string(), line.output));

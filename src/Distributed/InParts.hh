@@ -90,8 +90,9 @@ PartsCheck check(DistributedMesh& mesh, const PinchedEdges& known = {});
 /// gaps: they are those of the mesh after hfr::improve(). The index is written last; every file is whole or
 /// not there.
 void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
-/// The piece of a rank, in the folder beside the index.
-std::filesystem::path piece_path(const std::filesystem::path& index, int rank);
+/// The file of a rank: its piece of a .pvtu, in the folder beside that; otherwise "name.7.mesh" for
+/// "name.mesh", as write_medit_parts() calls it.
+std::filesystem::path part_path(const std::filesystem::path& path, int rank);
 /// One .vtu with the bytes that io::write() writes of the whole. Each rank writes its own points and cells at
 /// their offsets in one temporary file, which is renamed in the end: all ranks see one file system.
 void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);

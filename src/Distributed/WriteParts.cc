@@ -11,6 +11,7 @@
 #include "Distributed/OwnItems.hh"
 #include "Distributed/SharedFile.hh"
 #include "HalfFace/Errors.hh"
+#include "IO/MeditPart.hh"
 #include "IO/MeshFile.hh"
 #include "IO/OutputFile.hh"
 #include "IO/VtkGrid.hh"
@@ -291,14 +292,15 @@ class VtuShare {
 
 }  // namespace
 
-std::filesystem::path piece_path(const std::filesystem::path& index, int rank) {
-  return index.parent_path() / piece_name(index, rank);
+std::filesystem::path part_path(const std::filesystem::path& path, int rank) {
+  if (path.extension() != ".pvtu") return io::medit_part_path(path, rank);
+  return path.parent_path() / piece_name(path, rank);
 }
 
 void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   const Numbering numbering(mesh);
   const OwnLabels labels(mesh);
-  const std::filesystem::path piece = piece_path(path, mesh.comm().rank());
+  const std::filesystem::path piece = path.parent_path() / piece_name(path, mesh.comm().rank());
   std::error_code error;
   std::filesystem::create_directory(piece.parent_path(), error);  // by whoever comes first
   // Pieces that were there before, and are read with the index, go when all new ones are whole.

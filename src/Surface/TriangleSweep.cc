@@ -199,21 +199,29 @@ bool TriangleSweep::find_outside(VertexHandle v, Vec3 sum, Star& star) const {
   if (surface_.motion_constraint(v).kind != SurfaceKind::kCurve) return true;
   const auto next = [&](const Face& f) { return f[0] == v ? f[1] : f[1] == v ? f[2] : f[0]; };
   const auto previous = [&](const Face& f) { return f[0] == v ? f[2] : f[1] == v ? f[0] : f[1]; };
-  std::vector<std::size_t> side(star.faces.size());  // the first face of it
+  std::vector<std::pair<VertexHandle, std::size_t>> behind;  // faces by the vertex before v
+  for (std::size_t i = 0; i < star.faces.size(); ++i) behind.emplace_back(previous(star.faces[i]), i);
+  std::sort(behind.begin(), behind.end());
+  std::vector<std::size_t> side(star.faces.size());  // a face of it that comes earlier, or itself
   std::iota(side.begin(), side.end(), std::size_t{0});
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (std::size_t i = 0; i < side.size(); ++i)
-      for (std::size_t j = 0; j < side.size(); ++j) {
-        const VertexHandle w = next(star.faces[i]);
-        if (side[i] == side[j] || previous(star.faces[j]) != w || surface_.is_feature(v, w)) continue;
-        side[i] = side[j] = std::min(side[i], side[j]);
-        changed = true;
-      }
+  const auto first_of = [&](std::size_t i) {
+    while (side[i] != i) i = side[i] = side[side[i]];
+    return i;
+  };
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    const VertexHandle w = next(star.faces[i]);
+    if (surface_.is_feature(v, w)) continue;
+    for (auto at = std::lower_bound(behind.begin(), behind.end(), std::pair(w, std::size_t{0}));
+         at != behind.end() && at->first == w; ++at) {
+      const std::size_t a = first_of(i), b = first_of(at->second);
+      side[std::max(a, b)] = std::min(a, b);
+    }
   }
   std::vector<Vec3> sums(side.size());
-  for (std::size_t i = 0; i < side.size(); ++i)
+  for (std::size_t i = 0; i < side.size(); ++i) {
+    side[i] = first_of(i);
     sums[side[i]] = sums[side[i]] + scaled_normal(star.removed[i]);
+  }
   std::size_t n_sides = 0;
   for (std::size_t i = 0; i < side.size(); ++i) {
     star.outside[i] = sums[side[i]];
