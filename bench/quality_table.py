@@ -6,7 +6,7 @@ For each mesh a row before, a row after the default run and one after --min-dihe
 largest dihedral, 0.1, 1 and 5 % percentile of each cell's smallest one, user seconds of the whole program, the exit
 code of `hfremesh check`, and what keeps the cells below the first angle that was missed. Angles in degrees.
 
-usage: bench/quality_table.py TOOL MESHES [--threads N] [--only NAME,...] [--runs default,max,DEGREES]
+usage: bench/quality_table.py TOOL MESHES [--threads N] [--only NAME,...] [--runs default,passes,max,DEGREES]
                               [--surface frozen,flat,free] [--time-limit S] [--output FILE]
 MESHES is the folder of the test meshes; those that are not there are left out.
 """
@@ -83,7 +83,7 @@ def main():
     parser.add_argument("meshes", type=pathlib.Path, help="folder of the test meshes")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--only", help="names of rows, comma-separated")
-    parser.add_argument("--runs", default="default,max", help="which runs, comma-separated: default, max, or degrees of a goal")
+    parser.add_argument("--runs", default="default,max", help="which runs, comma-separated: default, passes (--passes-only), max, or degrees of a goal")
     parser.add_argument("--surface", default="frozen", help="modes, comma-separated; every run is done in each")
     parser.add_argument("--time-limit", type=float, default=600, help="seconds that max may take for a mesh")
     parser.add_argument("--output", help="Markdown file to write (default: standard output)")
@@ -104,7 +104,7 @@ def main():
             continue
         before_is_out = False
         for mode, run in itertools.product(options.surface.split(","), options.runs.split(",")):
-            arguments = {"default": [], "max": ["--min-dihedral", "max", "--time-limit", str(options.time_limit)]
+            arguments = {"default": [], "passes": ["--passes-only"], "max": ["--min-dihedral", "max", "--time-limit", str(options.time_limit)]
                          }.get(run, ["--min-dihedral", run])
             report_file, out = folder / "report.json", folder / "out.mesh"
             report_file.unlink(missing_ok=True)

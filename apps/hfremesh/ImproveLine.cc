@@ -92,6 +92,9 @@ void add_method_options(Command command, ImproveLine& line) {
   command.flag(
       "--polish-only", line.improve.polish_only,
       "With --min-dihedral: work on the cells that miss it until nothing helps any more, and no further");
+  command.flag("--passes-only", line.improve.passes_only,
+               "Passes over the mesh alone, without searching for the last few cells: less time, and a lower "
+               "worst angle on hard meshes");
   command.option("--metric", line.metric, "Quality metric of the bulk passes; an unknown name lists them")
       .type_name("NAME")
       .shows_default("volume-length");
@@ -251,6 +254,7 @@ Json options_json(const ImproveLine& line, const ImproveOptions& options) {
   json["hybrid"] = options.hybrid;
   json["bulk_nodes"] = options.bulk_nodes;
   json["polish_only"] = options.polish_only;
+  json["passes_only"] = options.passes_only;
   json["seed"] = options.seed;
   json["ignore_labels"] = line.ignore_labels;
   json["dry_run"] = line.dry_run;
@@ -295,6 +299,7 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
     left_out(!line.compat.empty(), "--compat", kSurface);
     left_out(line.improve.bulk_nodes, "--bulk-nodes", kSurface);
     left_out(line.improve.polish_only, "--polish-only", kSurface);
+    left_out(line.improve.passes_only, "--passes-only", kSurface);
     left_out(line.label_features, "--label-features", kSurface);
     left_out(line.improve.seed != ImproveOptions().seed, "--seed", kSurface);
     left_out(line.progress, "--progress", kSurface);
@@ -305,6 +310,7 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
     left_out(line.improve.coarsen, "--coarsen", "--compat");
     left_out(line.improve.bulk_nodes, "--bulk-nodes", "--compat");
     left_out(line.improve.polish_only, "--polish-only", "--compat");
+    left_out(line.improve.passes_only, "--passes-only", "--compat");
     left_out(!line.metric.empty(), "--metric", "--compat");
     left_out(!line.rounds.empty(), "--rounds", "--compat");
     left_out(!line.smoother.empty(), "--smoother", "--compat");
@@ -313,6 +319,7 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   } else if (line.improve.polish_only) {
     left_out(line.improve.bulk_nodes, "--bulk-nodes", "--polish-only");
     left_out(!line.metric.empty(), "--metric", "--polish-only");
+    left_out(line.improve.passes_only, "--passes-only", "--polish-only");
   }
   return notes;
 }

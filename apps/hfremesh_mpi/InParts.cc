@@ -46,6 +46,8 @@ struct PartsLine {
   double min_dihedral = 0;
   std::string ops, rounds;
   bool no_insert = false;
+  bool passes_only = false;
+  int iterations = 0;
   std::size_t min_cells = 0, max_cells = 0;
   std::uint64_t seed = 2013;
   int threads_each = 1;
@@ -55,12 +57,15 @@ struct PartsLine {
   bool quiet = false;
 
   bool prints() const { return !quiet && json != "-"; }
+  bool improves() const { return min_dihedral > 0 || passes_only; }
 };
 
 void add_options(Command command, PartsLine& line) {
   command.example("mpirun -n 4 hfremesh-mpi parts --generate 150 150 150 -o bad.pvtu", "20 million cells");
   command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.pvtu --min-dihedral 15",
                   "with the bits of hfremesh --polish-only");
+  command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.vtu --passes-only",
+                  "all cells, with the bits of hfremesh --passes-only");
   command.example("mpirun -n 4 hfremesh-mpi parts part.msh -o part.vtu --min-dihedral 15",
                   "a file of which no rank reads all");
   command.example("mpirun -n 3 hfremesh-mpi parts good.pvtu -o good.msh", "one file, written by all ranks");
@@ -88,6 +93,13 @@ void add_options(Command command, PartsLine& line) {
       .check(real_number(0, 70.5, false));
   add_ops_option(command, line.ops);
   add_rounds_option(command, line.rounds);
+  command.flag(
+      "--passes-only", line.passes_only,
+      "Improve all cells, or with --min-dihedral go on where the polish of the cells that miss it does "
+      "not do: the stages of hfremesh, but for the searches for the last few cells");
+  command.option("--iterations", line.iterations, "At most N iterations of each stage; 0 is no limit")
+      .type_name("N")
+      .check(whole_number(0, std::numeric_limits<int>::max()));
   command.flag("--no-insert", line.no_insert, "No new vertices");
   command.option("--min-cells", line.min_cells, "No vertex is removed below N cells; 0: 81 % of the input's")
       .type_name("N")
@@ -129,8 +141,10 @@ void add_options(Command command, PartsLine& line) {
 /// Throws Failure for a name that there is not.
 ImproveOptions improve_options(const PartsLine& line) {
   ImproveOptions options;
-  options.min_dihedral = line.min_dihedral;
-  options.polish_only = true;
+  if (line.min_dihedral > 0) options.min_dihedral = line.min_dihedral;
+  options.polish_only = !line.passes_only && line.min_dihedral > 0;
+  options.passes_only = line.passes_only;
+  options.iterations = line.iterations;
   try {
     if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
     if (!line.rounds.empty()) options.rounds = rounds_from_name(line.rounds);
@@ -221,7 +235,7 @@ class PartsRun {
       note_seconds("check");
     }
     bool goal_reached = true;
-    if (line_.min_dihedral > 0) {
+    if (line_.improves()) {
       const mpi::PartsResult result = improve();
       found = result.after;
       goal_reached = result.goal_reached;
@@ -284,6 +298,8 @@ class PartsRun {
     const ImproveOptions options = improve_options(line_);
     report_["options"] = {{"min_dihedral", line_.min_dihedral > 0 ? Json(line_.min_dihedral) : Json()},
                           {"ops", ops_to_list(options.ops)},
+                          {"passes_only", options.passes_only},
+                          {"iterations", options.iterations},
                           {"rounds", line_.rounds.empty() ? Json() : Json(line_.rounds)},
                           {"min_cells", line_.min_cells > 0 ? Json(line_.min_cells) : Json()},
                           {"max_cells", line_.max_cells > 0 ? Json(line_.max_cells) : Json()}};
@@ -354,7 +370,7 @@ class PartsRun {
                          {"has_fallen", result.has_fallen}};
     Json& passes = report_["passes"] = Json::array();
     for (const PassReport& pass : result.passes) passes.push_back(to_json(pass));
-    if (!result.goal_reached)
+    if (line_.min_dihedral > 0 && !result.goal_reached)
       say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), line_.min_dihedral);
     if (result.has_fallen) say("  the smallest angle has fallen; hfremesh would have put the input back");
     return result;

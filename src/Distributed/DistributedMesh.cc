@@ -9,6 +9,7 @@
 #include "Distributed/Cut.hh"
 #include "Distributed/PartMessage.hh"
 #include "Distributed/PartPatches.hh"
+#include "HalfFace/Reorder.hh"
 #include "HalfFace/Writer.hh"
 
 namespace hfr::mpi {
@@ -124,6 +125,28 @@ void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint6
   HFR_REQUIRE(!has_negative_component(*this),
               "most cells of a mesh in parts, and of each piece that hangs together, have to be positive; "
               "hfremesh turns such pieces");
+}
+
+std::vector<std::uint64_t> DistributedMesh::renumber(std::span<const std::uint64_t> to) {
+  std::vector<CellHandle> order;
+  for (std::size_t i = 0; i < mesh_.n_cells(); ++i) order.push_back(CellHandle(i));
+  std::sort(order.begin(), order.end(),
+            [&](CellHandle a, CellHandle b) { return to[a.idx()] < to[b.idx()]; });
+  std::vector<std::uint64_t> before, now;
+  for (CellHandle c : order) {
+    before.push_back(number(c));
+    now.push_back(to[c.idx()]);
+  }
+  order_cells(mesh_, order);
+  cell_number_ = std::move(now);
+  n_sorted_ = cell_number_.size();
+  later_.clear();
+  work_.quality.assign(mesh_.n_cells(), 0.0);
+  work_.pending.assign(mesh_.n_cells(), 0xff);
+  work_.claim.assign(mesh_.n_cells(), kUnclaimed);
+  work_.all_touched = true;
+  start_zone();
+  return before;
 }
 
 std::shared_ptr<const DistributedMesh> DistributedMesh::copy() const {

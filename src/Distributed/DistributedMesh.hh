@@ -95,6 +95,10 @@ class DistributedMesh : private detail::PartState {
   /// run goes on: clock, floor, and whether damage is held. All take part.
   void put_back(const DistributedMesh& copy);
 
+  /// Gives cells other numbers, to[slot] for each slot, and the slots the order of these; see is_dense().
+  /// What the workspace has of vertices stays. Returns the old numbers, by new slot.
+  std::vector<std::uint64_t> renumber(std::span<const std::uint64_t> to);
+
   /// What gather() brings.
   enum class Gather : std::uint8_t {
     kChanged,    ///< what has changed since scatter(), into the mesh that was handed out

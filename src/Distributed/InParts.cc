@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Untangling and the polish of hfr::improve(), run by all ranks at the same time: each has its part as the
-// mesh of the run, and what the run asks of the whole (counts, the worst cell, bounds on cells) comes from
-// reductions. So all ranks decide alike.
+// The stages of hfr::improve(), but for the searches for the last cells, run by all ranks at the same time:
+// each has its part as the mesh of the run, and what the run asks of the whole (counts, the worst cell,
+// percentiles, bounds on cells) comes from reductions. So all ranks decide alike.
 #include "Distributed/InParts.hh"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "Distributed/CellOrder.hh"
+#include "Distributed/CommonBox.hh"
+#include "Distributed/OwnItems.hh"
 #include "Distributed/PartPasses.hh"
 #include "Distributed/PartUnfolding.hh"
 #include "Quality/FoldedFaces.hh"
@@ -49,9 +57,12 @@ class Residents : public Ranks, public MeshInParts {
     const InParts found = mpi::survey(mesh_, 0, policy_);
     return {found.worst, static_cast<std::size_t>(found.n_invalid)};
   }
-  std::size_t n_below(double degrees) override {
-    return static_cast<std::size_t>(mpi::survey(mesh_, degrees, policy_).n_below_goal);
-  }
+  AngleTally tally_below(std::span<const double> degrees) override;
+  VertexTally vertices() override;
+  bool is_own(CellHandle c) const override { return mesh_.is_own(c); }
+  std::size_t sum(std::size_t mine) override { return static_cast<std::size_t>(mesh_.comm().sum(mine)); }
+  double min(double mine) override { return mesh_.comm().min(mine); }
+  double smallest(std::span<const double> mine, std::size_t rank) override;
   Standing standing() override;
   Box box() override;
   std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) override {
@@ -88,27 +99,60 @@ Standing Residents::standing() {
 }
 
 Box Residents::box() {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
   const TetMesh& part = mesh_.part();
-  Box box{{kNone, kNone, kNone}, {-kNone, -kNone, -kNone}};
-  for (std::size_t i = 0; i < part.n_vertices(); ++i) {
-    if (!mesh_.is_own(VertexHandle(i)) || !part.incident_cell(VertexHandle(i)).is_valid()) continue;
-    const Vec3 p = part.point(VertexHandle(i));
-    for (int d = 0; d < 3; ++d) {
-      box.low[d] = std::min(box.low[d], p[d]);
-      box.high[d] = std::max(box.high[d], p[d]);
-    }
+  std::vector<VertexHandle> vertices = own_vertices(mesh_);
+  std::erase_if(vertices, [&](VertexHandle v) { return !part.incident_cell(v).is_valid(); });
+  return common_box(mesh_.comm(), vertices.size(), [&](std::size_t i) { return part.point(vertices[i]); });
+}
+
+AngleTally Residents::tally_below(std::span<const double> degrees) {
+  AngleTally all =
+      hfr::tally_below(mesh_.part(), degrees, policy_, [&](CellHandle c) { return mesh_.is_own(c); });
+  all.n_cells = n_cells();
+  for (std::size_t& n : all.n_below) n = sum(n);
+  all.worst = min(all.worst);
+  all.smallest = report_value(Metric::kMinDihedral, all.worst);
+  return all;
+}
+
+VertexTally Residents::vertices() {
+  std::size_t n_movable = 0;
+  for (std::size_t i = 0; i < mesh_.part().n_vertices(); ++i)
+    n_movable += mesh_.is_own(VertexHandle(i)) && mesh_.work().frozen[i] == 0 ? 1 : 0;
+  return {static_cast<std::size_t>(mesh_.n_vertices()), sum(n_movable)};
+}
+
+/// From the first bits to the last: by the next four, of the values that begin as the one that is looked for,
+/// all ranks count how many there are of each.
+double Residents::smallest(std::span<const double> mine, std::size_t rank) {
+  constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
+  // Unsigned numbers in the order of the values.
+  const auto key_of = [](double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 as 0
+    return (bits & kSign) != 0 ? ~bits : bits | kSign;
+  };
+  std::vector<std::uint64_t> keys(mine.size());
+  par::for_each(policy_, mine.size(), [&](std::size_t i) { keys[i] = key_of(mine[i]); });
+  std::uint64_t found = 0, left = rank;
+  for (int shift = 60; shift >= 0; shift -= 4) {
+    std::array<std::uint64_t, Comm::kMostSums> counts{};
+    for (std::uint64_t key : keys) ++counts[key >> shift & 15];
+    mesh_.comm().sum(counts);
+    std::uint64_t digit = 0;
+    for (; digit < 15 && left > counts[digit]; ++digit) left -= counts[digit];
+    found |= digit << shift;
+    std::erase_if(keys, [&](std::uint64_t key) { return (key >> shift & 15) != digit; });
   }
-  for (int d = 0; d < 3; ++d) {
-    box.low[d] = mesh_.comm().min(box.low[d]);
-    box.high[d] = -mesh_.comm().min(-box.high[d]);
-  }
-  return box;
+  return std::bit_cast<double>((found & kSign) != 0 ? found & ~kSign : ~found);
 }
 
 /// What of the options is not there in parts; empty where all is.
 std::string reason_against(const ImproveOptions& options) {
-  if (!options.min_dihedral || !options.polish_only) return "runs other than the polish towards a goal";
+  if (options.raise_min_dihedral) return "runs that raise the worst angle at any cost";
+  if (!options.polish_only && !options.passes_only && options.iterations == 0)
+    return "searches for the last cells (give passes_only, or polish_only with min_dihedral)";
+  if (!options.polish_only && options.metric != Metric::kVolumeLength)
+    return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;
   if (surface.mode != SurfaceMode::kFrozen) return "surfaces that may change";
   if (!surface.fixed_patches.empty() || !surface.fixed_vertices.empty() || !surface.fixed_edges.empty() ||
@@ -213,12 +257,17 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   const std::string reason = reason_against(options);
   HFR_REQUIRE(reason.empty(), "meshes in parts do not have " + reason + " yet");
   const par::Policy policy = options.policy;
+  const double goal = options.min_dihedral.value_or(0);
   PartsResult result;
-  result.before = result.after = survey(mesh, *options.min_dihedral, policy);
-  if (result.before.n_below_goal == 0 && result.before.n_invalid == 0) {
+  result.before = result.after = survey(mesh, goal, policy);
+  if (options.min_dihedral && result.before.n_below_goal == 0 && result.before.n_invalid == 0) {
     result.goal_reached = true;
     return result;
   }
+  // As in shared memory: where the run goes over everything.
+  std::optional<std::vector<std::uint64_t>> order;
+  if (!options.min_dihedral && is_dense(mesh) && is_scattered(mesh))
+    order = mesh.renumber(numbers_along_curve(mesh));
   begin(mesh);
   const Survey found{result.before.worst, static_cast<std::size_t>(result.before.n_invalid)};
   const Strategy strategy = resolve(options, found, static_cast<std::size_t>(result.before.n_cells));
@@ -229,15 +278,16 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   Residents residents(mesh, policy);
   Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
           nullptr,     nullptr,     strategy.bounds, false,   &residents};
-  if (found.n_invalid > 0 || findings.is_folded) {
+  if (options.polish_only && found.n_invalid == 0 && !findings.is_folded) {
+    result.has_fallen = polish_valid(run, goal, result.before.worst);
+  } else {
     Checkpoint checkpoint(residents, policy);
     run.checkpoint = &checkpoint;
     run_to_the_end(run);
-  } else {
-    result.has_fallen = polish_valid(run, *options.min_dihedral, result.before.worst);
   }
-  result.after = survey(mesh, *options.min_dihedral, policy);
   result.changed = control.n_changes() > 0;
+  if (order && !result.changed) mesh.renumber(*order);
+  result.after = survey(mesh, goal, policy);
   result.goal_reached = result.after.n_below_goal == 0 && result.after.n_invalid == 0;
   result.passes = std::move(control.passes());
   result.seconds = control.seconds();

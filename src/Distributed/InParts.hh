@@ -51,21 +51,25 @@ struct PartsResult {
   InParts before, after;
   bool changed = false;
   bool goal_reached = false;
-  /// The input had positive cells, and the smallest angle is below its smallest one, for which hfr::improve()
-  /// would have put the input back. Seen only where an obtuse angle was the worst.
+  /// With polish_only: the input had positive cells, and the smallest angle is below its smallest one, for
+  /// which hfr::improve() would have put the input back. Seen only where an obtuse angle was the worst.
   bool has_fallen = false;
   std::vector<PassReport> passes;
   double seconds = 0;
 };
-/// Mends inverted and flat cells, then polishes towards options.min_dihedral: edge removal, removal of faces
-/// and of fans, vertex collapse, smoothing, insertion and cluster search on the cells that miss it, as far as
-/// options.ops has them. With options.polish_only, hfr::improve() of the whole mesh gives the same bits, for
-/// each number of ranks and threads. For insertion and cluster search rank 0 holds what the cells that are
-/// left below the goal then have round them, some hundred cells each. Where the mesh has invalid cells, or a
-/// boundary that lies on itself, each rank keeps a copy of its part, and rank 0 selects the winners of all
-/// rounds: then a run that would end worse than it began is taken back. Throws InvalidInput, naming it, for
-/// what is not there in parts: runs without polish_only, a surface that may change, fixed things, devices,
-/// time limits, callbacks, maps, other smoothers.
+/// hfr::improve() but for its searches for the last cells: with options.passes_only, with a limit on
+/// iterations, or with options.polish_only, the same bits as there, for each number of ranks and threads. With
+/// polish_only: mends inverted and flat cells, then works on those that miss options.min_dihedral by edge
+/// removal, removal of faces and of fans, vertex collapse, smoothing, insertion and cluster search, as far as
+/// options.ops has them. With the others: all stages over all cells, or after the polish towards a goal.
+///
+/// For insertion and cluster search rank 0 holds what the cells that are left below the goal then have round
+/// them, some hundred cells each. Unless it polishes a mesh of positive cells alone, each rank keeps copies of
+/// its part to go back to, and where the mesh has invalid cells, or a boundary that lies on itself, rank 0
+/// selects the winners of all rounds. Where cells of a run without a goal are scattered in memory, they are
+/// numbered anew first, as there. Throws InvalidInput, naming it, for what is not there in parts: searches for
+/// the last cells, another metric than volume-length for all cells, a surface that may change, fixed things,
+/// devices, time limits, callbacks, maps, other smoothers.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

@@ -26,7 +26,7 @@ RoundCounts with_metric(const Ranks::Look& look, Use&& use) {
     case Metric::kMinDihedral:
       return use(MinDihedral{});
     case Metric::kVolumeLength:
-      return use(look.metric.untangling);
+      return look.metric.untangles ? use(look.metric.untangling) : use(VolumeLength{});
     default:
       throw InternalError("passes over parts of a mesh do not have this metric");
   }

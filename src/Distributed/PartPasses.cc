@@ -116,7 +116,7 @@ RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
       if (parts_.comm().sum(static_cast<std::uint64_t>(n_own)) == 0) return {};
       const Comm::InPhase phase(parts_.comm(), Phase::kSmooth);
       // As smooth_pass() of PassRunner.
-      using Search = std::conditional_t<std::is_same_v<M, Untangling>, NewtonSearch, MaxMinSearch>;
+      using Search = std::conditional_t<kMeasuresAngles<M>, MaxMinSearch, NewtonSearch>;
       return smooth_parts(parts_, Search{}, metric, vertices, policy);
     }
   }
@@ -125,7 +125,7 @@ RoundCounts PartPasses::pass(const Ranks::Look& look, const M& metric) {
 /// As PassRunner has it.
 template <class M>
 RoundCounts PartPasses::mixed(const Ranks::Look& look, const M& metric, const Worklist& list) {
-  using Faces = std::conditional_t<std::is_same_v<M, Untangling>, FaceSwap<M>, MultiFaceRemoval<M>>;
+  using Faces = std::conditional_t<kMeasuresAngles<M>, MultiFaceRemoval<M>, FaceSwap<M>>;
   using Op = AnyOf<EdgeRemoval<M>, Faces, VertexCollapse<M>>;
   using Seed = typename Op::Seed;
   const Workspace& work = parts_.work();

@@ -13,8 +13,8 @@
 
 namespace hfr::mpi {
 
-/// The passes of the polish, and of untangling, over the parts of a mesh. All ranks call all of it in the
-/// same order.
+/// The passes of the polish, of the bulk stage in volume-length, and of untangling, over the parts of a mesh.
+/// All ranks call all of it in the same order.
 class PartPasses {
  public:
   /// `n_rounds`: counts rounds in which there was something to look at.

@@ -10,8 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "Distributed/CommonBox.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/Incoming.hh"
+#include "Distributed/Stretches.hh"
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Reorder.hh"
 #include "IO/MeshShare.hh"
@@ -35,41 +37,24 @@ class Slices {
   std::span<const std::uint64_t> begins_;
 };
 
-/// Of the points of all ranks.
 CurveGrid common_grid(Comm& comm, const std::vector<Vec3>& mine) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
-  for (int d = 0; d < 3; ++d) {
-    for (const Vec3& p : mine) low[d] = std::min(low[d], p[d]), high[d] = std::max(high[d], p[d]);
-    low[d] = comm.min(low[d]);
-    high[d] = -comm.min(-high[d]);
-  }
-  return {SpaceCurve::kHilbert, low, high};
+  const Box box = common_box(comm, mine.size(), [&](std::size_t i) { return mine[i]; });
+  return {SpaceCurve::kHilbert, box.low, box.high};
 }
 
 /// Who owns what: stretches of Hilbert's curve through the box of all points, about as many points on each.
 class CurveOwners {
  public:
   /// `mine`: the points that this rank has read. All take part.
-  CurveOwners(Comm& comm, const std::vector<Vec3>& mine) : grid_(common_grid(comm, mine)) {
-    constexpr std::size_t kSamples = 1024;  // of each rank
-    std::vector<std::uint64_t> sample;
-    const std::size_t step = std::max<std::size_t>(mine.size() / kSamples, 1);
-    for (std::size_t i = 0; i < mine.size(); i += step) sample.push_back(grid_.place(mine[i]));
-    sample = comm.all_gather(std::span<const std::uint64_t>(sample));
-    std::sort(sample.begin(), sample.end());
-    for (std::size_t r = 1; r < comm.n_ranks(); ++r)
-      splitters_.push_back(sample[r * sample.size() / comm.n_ranks()]);
-  }
+  CurveOwners(Comm& comm, const std::vector<Vec3>& mine)
+      : grid_(common_grid(comm, mine)),
+        stretches_(comm, mine.size(), [&](std::size_t i) { return grid_.place(mine[i]); }) {}
 
-  std::int32_t operator()(Vec3 p) const {
-    const auto at = std::upper_bound(splitters_.begin(), splitters_.end(), grid_.place(p));
-    return static_cast<std::int32_t>(at - splitters_.begin());
-  }
+  std::int32_t operator()(Vec3 p) const { return stretches_.rank_of(grid_.place(p)); }
 
  private:
   CurveGrid grid_;
-  std::vector<std::uint64_t> splitters_;
+  Stretches stretches_;
 };
 
 /// Cells on their way: a range of them at a time goes to the owners of its vertices, whose points and owners

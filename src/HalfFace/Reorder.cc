@@ -68,6 +68,11 @@ std::uint64_t CurveGrid::place(Vec3 p) const {
   return curve_place(curve_, step(0), step(1), step(2));
 }
 
+std::uint64_t CurveGrid::place(const TetMesh& mesh, CellHandle c) const {
+  const auto& v = mesh.cell(c).v;
+  return place(0.25 * ((mesh.point(v[0]) + mesh.point(v[1])) + (mesh.point(v[2]) + mesh.point(v[3]))));
+}
+
 std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   if (curve == SpaceCurve::kHilbert) {
     std::uint32_t axis[3] = {x, y, z};
@@ -95,36 +100,44 @@ std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, st
   return spread(x) << 2 | spread(y) << 1 | spread(z);
 }
 
-void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy) {
+void order_cells(TetMesh& mesh, std::span<const CellHandle> order, par::Policy policy) {
+  HFR_REQUIRE(!mesh.needs_garbage_collection() && order.size() == mesh.n_cells(),
+              "order_cells: " + std::to_string(order.size()) + " cells are named of " +
+                  std::to_string(mesh.n_cells()) + ", or some are deleted");
   GarbageMap map;
   map.vertices.resize(mesh.n_vertices());
   for (std::size_t i = 0; i < mesh.n_vertices(); ++i) map.vertices[i] = VertexHandle(i);
   map.cells.resize(mesh.n_cells());
-  std::size_t n = 0;
-  for (CellHandle c : went_to) {
-    if (!c.is_valid()) continue;
-    HFR_REQUIRE(c.idx() < map.cells.size(), "restore_cell_order: cells were deleted since");
-    map.cells[c.idx()] = CellHandle(n++);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    HFR_REQUIRE(order[i].is_valid() && order[i].idx() < map.cells.size() &&
+                    !map.cells[order[i].idx()].is_valid(),
+                "order_cells: cell " + std::to_string(i) + " in the order is none, or comes twice");
+    map.cells[order[i].idx()] = CellHandle(i);
   }
-  HFR_REQUIRE(n == mesh.n_cells(), "restore_cell_order: cells were made since");
-  mesh.renumber(map, mesh.n_vertices(), n, policy);
+  mesh.renumber(map, mesh.n_vertices(), order.size(), policy);
+}
+
+void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy) {
+  std::vector<CellHandle> order;
+  for (CellHandle c : went_to)
+    if (c.is_valid()) order.push_back(c);
+  order_cells(mesh, order, policy);
 }
 
 bool is_scattered(const TetMesh& mesh, par::Policy policy) {
-  constexpr std::size_t kFar = 16384;  // cell records: half a mebibyte, besides what else a walk reads
-  if (mesh.n_cells() <= kFar) return false;
+  if (mesh.n_cells() <= kFarInOrder) return false;
   const std::size_t n_far = par::reduce(
       policy, mesh.n_cells(), std::size_t{0},
       [&](std::size_t i) {
         std::size_t n = 0;
         for (HalfFaceHandle m : mesh.cell(CellHandle(i)).mate) {
           const std::size_t other = cell_of(m).idx();
-          n += m.is_valid() && (other > i ? other - i : i - other) >= kFar ? 1 : 0;
+          n += m.is_valid() && (other > i ? other - i : i - other) >= kFarInOrder ? 1 : 0;
         }
         return n;
       },
       std::plus<>{});
-  return n_far > mesh.n_cells() / 2;
+  return is_scattered(n_far, mesh.n_cells());
 }
 
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
@@ -140,11 +153,7 @@ GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
       });
   map.cells = sorted_places<CellHandle>(
       options.policy, mesh.n_cells(), n_cells, [&](std::size_t i) { return !mesh.is_deleted(CellHandle(i)); },
-      [&](std::size_t i) {
-        const auto& v = mesh.cell(CellHandle(i)).v;
-        return grid.place(0.25 *
-                          ((mesh.point(v[0]) + mesh.point(v[1])) + (mesh.point(v[2]) + mesh.point(v[3]))));
-      });
+      [&](std::size_t i) { return grid.place(mesh, CellHandle(i)); });
   mesh.renumber(map, n_vertices, n_cells, options.policy);
   return map;
 }

@@ -24,13 +24,24 @@ struct ReorderOptions {
 /// alone.
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options = {});
 
+/// Gives cells the handles 0, 1, 2, … in this order, which names each of a mesh without deleted cells and
+/// vertices once. Everything follows as in reorder(). Throws InvalidInput for another number of cells, or one that is
+/// not there.
+void order_cells(TetMesh& mesh, std::span<const CellHandle> order, par::Policy policy = {});
+
 /// Puts cells back into the order that they had before a reorder() of cells alone; `went_to` as that returned
 /// it. Needs that no cell was made or deleted since.
 void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy = {});
 
 /// True when walks over the mesh would often miss the cache: more than an eighth of the neighbours of
-/// cells are 16,384 or more cells away.
+/// cells are kFarInOrder or more cells away.
 bool is_scattered(const TetMesh& mesh, par::Policy policy = {});
+/// Cell records: half a mebibyte, besides what else a walk reads.
+inline constexpr std::size_t kFarInOrder = 16384;
+/// The same of a mesh of so many cells, n_far of the neighbours of which are that far away.
+inline bool is_scattered(std::size_t n_far, std::size_t n_cells) {
+  return n_cells > kFarInOrder && n_far > n_cells / 2;
+}
 
 /// Place on the curve of the point whose coordinates are x, y, z: 21 bits each.
 std::uint64_t curve_place(SpaceCurve curve, std::uint32_t x, std::uint32_t y, std::uint32_t z);
@@ -41,6 +52,8 @@ class CurveGrid {
   CurveGrid(SpaceCurve curve, Vec3 low, Vec3 high);
   /// Place on the curve of a point of the box.
   std::uint64_t place(Vec3 p) const;
+  /// Of the centre of a cell.
+  std::uint64_t place(const TetMesh& mesh, CellHandle c) const;
 
  private:
   SpaceCurve curve_;

@@ -448,7 +448,7 @@ class TetMesh : public PropertyAccess<TetMesh> {
  private:
   friend class MeshBuilder;
   friend GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options);
-  friend void restore_cell_order(TetMesh& mesh, std::span<const CellHandle> went_to, par::Policy policy);
+  friend void order_cells(TetMesh& mesh, std::span<const CellHandle> order, par::Policy policy);
   static constexpr std::size_t kHeadroom = 16;  // cells per spare slot
   enum StatusBit : std::uint8_t { kDeleted = 1, kFixed = 2, kSelected = 4, kTagged = 8 };
   static void set_bit(std::uint8_t& bits, std::uint8_t bit, bool on) {

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
-#include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/MayRise.hh"
+#include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Trial.hh"
@@ -23,39 +22,29 @@ double degrees(const Standing& standing) { return degrees(std::min(standing.wors
 constexpr std::array<double, 2> kLowShares = {0.01, 0.05};
 
 Best::Percentiles percentiles_of(const Run& run) {
-  std::vector<double> values(run.mesh.n_cells());
-  par::for_ranges(run.policy(), values.size(), [&](std::size_t begin, std::size_t end) {
-    for_decisions(run.mesh, MinDihedral{}, begin, end,
-                  [&](std::size_t i, double value) { values[i] = value; });
-  });
-  const auto n = static_cast<double>(run.mesh.n_logical_cells());
+  SmallestDihedrals angles(run);
   Best::Percentiles found{};
-  if (values.empty()) return found;
-  for (std::size_t k = 0; k < found.size(); ++k) {                    // deleted slots hold infinity
-    const double rank = std::max(std::ceil(kLowShares[k] * n), 1.0);  // counted from 1
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
-    std::nth_element(values.begin(), at, values.end());
-    found[k] = *at;
+  if (angles.n_cells() == 0) return found;
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const double rank = std::max(std::ceil(kLowShares[k] * static_cast<double>(angles.n_cells())), 1.0);
+    found[k] = angles.smallest(static_cast<std::size_t>(rank));
   }
   return found;
 }
 
 bool is_alike(double a, double b) { return std::abs(a - b) <= kLeastRise; }
 double risen_now(const Run& run) { return smallest_that_may_rise(run, kLargestGoal); }
-Standing standing_now(const Run& run) {
-  return standing_of(run.mesh, survey(run.mesh, run.policy()), run.policy());
-}
 
 }  // namespace
 
-Best::Beginning::Beginning(const Run& run) : worst(degrees(standing_now(run))), low(percentiles_of(run)) {}
+Best::Beginning::Beginning(const Run& run) : worst(degrees(run.standing())), low(percentiles_of(run)) {}
 
 Best::Best(const Run& run, double may_fall, Loss loss, const Beginning& beginning)
     : run_(run),
       loss_(loss),
       beginning_(beginning),
       least_(beginning.low),
-      standing_(standing_now(run)),
+      standing_(run.standing()),
       risen_(risen_now(run)),
       low_(percentiles_of(run)),
       mesh_(run) {
@@ -93,7 +82,7 @@ int Best::by_risen(const Standing& found, double risen) const {
 }
 
 void Best::note() {
-  const Standing found = standing_now(run_);
+  const Standing found = run_.standing();
   const double risen = risen_now(run_);
   const int by = by_risen(found, risen);
   if (by < 0 || (by == 0 && !is_better(found, standing_)) || !is_admissible(found)) return;
@@ -104,7 +93,7 @@ void Best::note() {
 }
 
 void Best::settle() {
-  Standing found = standing_now(run_);
+  Standing found = run_.standing();
   const int by = by_risen(found, risen_now(run_));
   if (is_alike(degrees(found), degrees(standing_))) found.worst = standing_.worst;
   const bool is_worse = by < 0 || (by == 0 && is_better(standing_, found));

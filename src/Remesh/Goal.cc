@@ -5,7 +5,6 @@
 #include "Remesh/MayRise.hh"
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Polish.hh"
-#include "Remesh/Survey.hh"
 #include "Remesh/Targets.hh"
 #include "Remesh/Trial.hh"
 
@@ -43,7 +42,7 @@ void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best) {
     const double now = smallest(run), degrees = all[i].degrees;
     if (now >= degrees) continue;
     const auto targets = all.first(i + 1);
-    const bool many_miss = share_below(run.mesh, degrees, run.policy()) > goal.few_miss;
+    const bool many_miss = run.share_below(degrees) > goal.few_miss;
     if (many_miss) improve_all(run, now, targets);
     attempt(run, degrees, targets);
     // What more targets bring may cost more of the other cells than it may.
@@ -57,12 +56,11 @@ bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched
   if (attempt(run, goal.degrees, strategy.targets.targets)) return true;
   CellBounds bounds = run.bounds;
   if (attempt_beyond(run, goal)) {
-    if (n_below(run.mesh, goal.degrees, run.policy()) == 0) return true;
+    if (run.n_below(goal.degrees) == 0) return true;
     bounds = strategy.bounds_asked;
   }
   if (run.control.stopped() || !goal.goes_on) return false;
-  const bool many_miss =
-      cells_are_untouched && share_below(run.mesh, goal.degrees, run.policy()) > goal.few_miss;
+  const bool many_miss = cells_are_untouched && run.share_below(goal.degrees) > goal.few_miss;
   if (!run.surface && !many_miss) return false;
   const Run further = run.within(bounds);
   Trial trial(run, goal.degrees);

@@ -9,13 +9,14 @@
 namespace hfr {
 
 bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span<const TargetAngle> targets) {
+  if (!run.strategy.patch.enabled && !run.strategy.neighbourhoods) return false;
   const auto smallest = [&] { return smallest_that_may_rise(run, kLargestGoal); };
   const double at_first = smallest();
   double now = at_first;
   for (const TargetAngle& target : targets) {
     if (target.degrees > effort.up_to || run.control.stopped()) break;
     if (now >= target.degrees) continue;
-    if (share_below(run.mesh, target.degrees, run.policy()) > target.largest_share) break;
+    if (run.share_below(target.degrees) > target.largest_share) break;
     const auto search = [&](const std::vector<PatchEffort>& efforts) {
       for (const PatchEffort& how : efforts)
         if (now < target.degrees && search_patches(run, target.degrees, how)) now = smallest();

@@ -12,10 +12,11 @@
 namespace hfr {
 namespace {
 
-/// Cells below `degrees` with the proofs of what holds them.
+/// Cells below `degrees` with the proofs of what holds them; of a mesh in parts those of this one.
 std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
-  std::vector<StuckCell> low =
-      kept_from_rising(run.mesh, cells_below(run.mesh, degrees, run.policy()), kLeastRise, run.policy());
+  std::vector<CellHandle> cells = cells_below(run.mesh, degrees, run.policy());
+  if (run.is_part()) std::erase_if(cells, [&](CellHandle c) { return !run.parts()->is_own(c); });
+  std::vector<StuckCell> low = kept_from_rising(run.mesh, cells, kLeastRise, run.policy());
   // What a feature holds, the faces at it hold as well while they stay, which is quicker to see.
   const bool is_kept =
       std::any_of(low.begin(), low.end(), [](const StuckCell& c) { return is_proof(c.reason); });
@@ -32,7 +33,7 @@ double smallest_below(const Run& run, double degrees) {
   double smallest = degrees;
   for (const StuckCell& cell : with_proofs(run, degrees))
     if (!is_at_ceiling(cell)) smallest = std::min(smallest, cell.degrees);
-  return smallest;
+  return run.is_part() ? run.parts()->min(smallest) : smallest;
 }
 
 }  // namespace
@@ -44,8 +45,13 @@ std::vector<CellHandle> cells_at_ceiling(const Run& run, double degrees) {
   return held;
 }
 
+std::size_t n_at_ceiling(const Run& run, double degrees) {
+  const std::size_t here = cells_at_ceiling(run, degrees).size();
+  return run.is_part() ? run.parts()->sum(here) : here;
+}
+
 double smallest_that_may_rise(const Run& run, double degrees) {
-  const double worst = smallest_dihedral(run.mesh, run.policy());
+  const double worst = run.smallest_dihedral();
   if (worst >= degrees) return degrees;
   // Nearly always the worst cell has no proof, and no other is looked at.
   const double near = std::min(worst + kLeastRise, degrees);

@@ -180,6 +180,8 @@ constexpr std::array kRows = std::to_array<Row<O>>({
      [](O& o, Text t) { o.bulk_nodes = flag(t); }},
     {{"polish_only", kFlag, "With min_dihedral: the polish alone, without other targets and patches.", false},
      [](O& o, Text t) { o.polish_only = flag(t); }},
+    {{"passes_only", kFlag, "Every stage but patches and neighbourhoods of the last cells.", false},
+     [](O& o, Text t) { o.passes_only = flag(t); }},
     {{"rounds", "auto, by-kind or mixed", "Kinds of operators in turn, or in one selection.", false},
      [](O& o, Text t) { o.rounds = rounds_from_name(std::string(t)); }},
     {{"smoother", "newton, candidates, laplacian or taubin", "How vertices are moved.", false},

@@ -29,6 +29,9 @@ namespace {
 // Seeds of a listed cell, about: others have a smaller listed cell, or are constrained.
 constexpr double kEdgesOfCell = 4, kFacesOfCell = 3;
 
+RankMetric rank_metric(const Untangling& metric) { return RankMetric(metric); }
+RankMetric rank_metric(VolumeLength) { return hfr::Metric::kVolumeLength; }
+
 }  // namespace
 
 // What there is in improve(), but for the surface: a new operator is its files, one row here, and one line of
@@ -68,8 +71,8 @@ PassRunner<Metric>::PassRunner(const Run& run, Metric metric, std::string stage,
     device_.emplace(*this, [this](PassKind kind, const Turn& turn) { (this->*row(kind).run)(turn); });
   if constexpr (std::is_same_v<Metric, MinSine2>) ranks_.emplace(*this, hfr::Metric::kMinSine);
   if constexpr (std::is_same_v<Metric, MinDihedral>) ranks_.emplace(*this, hfr::Metric::kMinDihedral);
-  if constexpr (std::is_same_v<Metric, Untangling>)
-    if (run.is_part()) ranks_.emplace(*this, RankMetric(metric));
+  if constexpr (std::is_same_v<Metric, Untangling> || std::is_same_v<Metric, VolumeLength>)
+    if (run.is_part()) ranks_.emplace(*this, rank_metric(metric));
   if (run.checkpoint && may_lower_angles()) run.keep(n_invalid() == 0);
 }
 

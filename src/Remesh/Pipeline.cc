@@ -88,7 +88,7 @@ void reach_claimed(const Run& run, bool met_cell_bound) {
 bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   mend_invalid(run);
   if (goal.polish_only) return polish(run, run.strategy.polish, goal.degrees);
-  if (share_below(run.mesh, goal.degrees, run.policy()) <= goal.many_miss) {
+  if (run.share_below(goal.degrees) <= goal.many_miss) {
     if (reach_goal(run, goal, /*cells_are_untouched=*/true)) return true;
   } else {
     Trial trial(run, goal.degrees);
@@ -97,7 +97,7 @@ bool run_towards_goal(const Run& run, const GoalEffort& goal) {
     trial.settle();
   }
   reach_claimed(run, run.findings.ever_met_cell_bound);
-  return n_below(run.mesh, goal.degrees, run.policy()) == 0;
+  return run.n_below(goal.degrees) == 0;
 }
 
 void mend_and_improve_all(const Run& run) {
@@ -220,8 +220,7 @@ void improve_all(const Run& run, double floor, std::span<const TargetAngle> targ
   // The worst angle rises in no case while a cell stays inverted or flat, so that vertices which are put in
   // for a target have to show in the cells below it.
   std::optional<Trial> trial;
-  if (!targets.empty() && survey(run.mesh, run.policy()).n_invalid > 0)
-    trial.emplace(run, targets.front().degrees);
+  if (!targets.empty() && run.survey().n_invalid > 0) trial.emplace(run, targets.front().degrees);
   raise_worst_angles(run, floor, targets);
   if (trial) trial->settle();
 }

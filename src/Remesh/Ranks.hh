@@ -19,14 +19,16 @@ namespace hfr {
 enum class PassKind : std::uint8_t;
 class MeshInParts;
 
-/// What passes on ranks measure cells by: kMinSine, kMinDihedral, or Untangling, whose volume-length is of
-/// positive cells and which says how the others are measured.
+/// What passes on ranks measure cells by: kMinSine, kMinDihedral, kVolumeLength, or Untangling, whose
+/// volume-length is of positive cells and which says how the others are measured.
 struct RankMetric {
   Metric metric;
-  Untangling untangling{};  ///< with kVolumeLength
+  bool untangles = false;   ///< with kVolumeLength
+  Untangling untangling{};  ///< where it does
 
-  RankMetric(Metric angles = Metric::kMinSine) : metric(angles) {}
-  explicit RankMetric(const Untangling& of) : metric(Metric::kVolumeLength), untangling(of) {}
+  RankMetric(Metric of = Metric::kMinSine) : metric(of) {}
+  explicit RankMetric(const Untangling& of)
+      : metric(Metric::kVolumeLength), untangles(true), untangling(of) {}
 };
 
 /// Other processes that can do some of the passes of a run, with the same bits: what Distributed/ has for

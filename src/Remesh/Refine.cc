@@ -5,7 +5,6 @@
 
 #include "Quality/Metrics.hh"
 #include "Remesh/PassRunner.hh"
-#include "Remesh/Survey.hh"
 #include "Remesh/Trial.hh"
 
 namespace hfr {
@@ -26,8 +25,8 @@ void insert_where_poor(const Run& run, const RefineEffort& effort) {
 }
 
 bool refine(const Run& run, const RefineEffort& effort) {
-  if (run.control.stopped() || smallest_dihedral(run.mesh, run.policy()) >= effort.below) return false;
-  const double share = share_below(run.mesh, effort.below, run.policy());
+  if (run.control.stopped() || run.smallest_dihedral() >= effort.below) return false;
+  const double share = run.share_below(effort.below);
   if (share <= effort.least_share || share >= effort.largest_share) return false;
   const bool met_before = run.findings.met_cell_bound;
   CellBounds bounds = run.bounds;

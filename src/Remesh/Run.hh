@@ -2,7 +2,11 @@
 #ifndef HFR_REMESH_RUN_HH
 #define HFR_REMESH_RUN_HH
 
+#include <algorithm>
+#include <span>
+
 #include "HalfFace/TetMesh.hh"
+#include "Quality/Metrics.hh"
 #include "Remesh/Checkpoint.hh"
 #include "Remesh/DeviceSession.hh"
 #include "Remesh/MeshInParts.hh"
@@ -58,10 +62,19 @@ struct Run {
   bool is_part() const { return ranks && ranks->keep_mesh(); }
   /// Where it is; null elsewhere.
   MeshInParts* parts() const { return is_part() ? ranks->parts() : nullptr; }
-  /// Of the whole, as the two below.
+  /// Of the whole, as what follows.
   Survey survey() const { return is_part() ? parts()->survey() : hfr::survey(mesh, policy()); }
-  std::size_t n_below(double degrees) const {
-    return is_part() ? parts()->n_below(degrees) : hfr::n_below(mesh, degrees, policy());
+  Standing standing() const {
+    return is_part() ? parts()->standing() : standing_of(mesh, survey(), policy());
+  }
+  std::size_t n_below(double degrees) const { return tally_below(std::span(&degrees, 1)).n_below[0]; }
+  double share_below(double degrees) const { return tally_below(std::span(&degrees, 1)).share(0); }
+  AngleTally tally_below(std::span<const double> degrees) const {
+    return is_part() ? parts()->tally_below(degrees) : hfr::tally_below(mesh, degrees, policy());
+  }
+  /// See smallest_dihedral().
+  double smallest_dihedral() const {
+    return report_value(Metric::kMinDihedral, std::min(survey().worst, kRegularDihedral));
   }
   std::size_t n_cells() const { return is_part() ? ranks->n_cells() : mesh.n_logical_cells(); }
   /// Whether the bound on cells leaves room for those of another vertex.

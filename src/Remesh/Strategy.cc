@@ -35,6 +35,8 @@ class Asked {
   /// Whether the surface may change its shape.
   bool is_free() const { return options_.surface.mode == SurfaceMode::kFree; }
   bool limits_iterations() const { return options_.iterations > 0; }
+  /// Whether the last few cells are searched for, each with what is round it.
+  bool searches() const { return !limits_iterations() && !options_.passes_only; }
   int iterations_or(int most) const { return limits_iterations() ? options_.iterations : most; }
   const ImproveOptions& options() const { return options_; }
 
@@ -248,11 +250,11 @@ Strategy alone(const ImproveOptions& options, const Survey& found, std::size_t n
     if (strategy.throughout.refine)
       strategy.throughout.refine->seeds_of_vertex = strategy.throughout.polish.seeds_of_vertex;
   }
-  if (!asked.limits_iterations()) {
+  if (asked.searches()) {
     strategy.neighbourhoods.emplace();
     if (asked.is_free()) strategy.neighbourhoods->few_to_dig = 300;
   }
-  strategy.patch.enabled = has(options.ops, Ops::kInsert) && !asked.limits_iterations();
+  strategy.patch.enabled = has(options.ops, Ops::kInsert) && asked.searches();
   strategy.patch.has_surface = asked.is_flat();
   strategy.last_cells = last_cells_effort(asked);
   if (asked.has_goal()) strategy.goal = goal_effort(asked);
@@ -274,6 +276,9 @@ void validate(const ImproveOptions& options) {
       "give one of them");
   HFR_REQUIRE(!options.polish_only || options.min_dihedral,
               "polish_only is for runs with a goal: give min_dihedral, too");
+  HFR_REQUIRE(
+      !options.passes_only || !options.raise_min_dihedral,
+      "raise_min_dihedral searches for the last cells, which passes_only leaves out: give one of them");
   HFR_REQUIRE(options.iterations >= 0, "the number of iterations must not be negative");
   HFR_REQUIRE(options.time_limit > 0, "the time limit must be positive");
   HFR_REQUIRE(options.ops != Ops::kNone, "there is no operator to work with");

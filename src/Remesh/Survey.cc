@@ -72,7 +72,8 @@ double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
   return report_value(Metric::kMinDihedral, std::min(survey(mesh, policy).worst, kRegularDihedral));
 }
 
-AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy) {
+AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy,
+                       const std::function<bool(CellHandle)>& counts) {
   std::vector<double> decisions;
   for (double angle : degrees) decisions.push_back(dihedral_decision(angle));
   const double largest = decisions.empty() ? 0.0 : *std::max_element(decisions.begin(), decisions.end());
@@ -87,9 +88,10 @@ AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par
     Found mine;
     mine.n_below.assign(decisions.size(), 0);
     for_decisions(mesh, MinDihedral{}, par::part_begin(n, n_parts, part),
-                  par::part_begin(n, n_parts, part + 1), [&](std::size_t, double value) {
+                  par::part_begin(n, n_parts, part + 1), [&](std::size_t i, double value) {
+                    if (!(value < largest) && !(value < mine.worst)) return;
+                    if (counts && !counts(CellHandle(i))) return;
                     mine.worst = std::min(mine.worst, value);
-                    if (!(value < largest)) return;
                     for (std::size_t k = 0; k < decisions.size(); ++k)
                       mine.n_below[k] += value < decisions[k] ? 1 : 0;
                   });
@@ -98,12 +100,12 @@ AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par
   AngleTally all;
   all.n_cells = mesh.n_logical_cells();
   all.n_below.assign(decisions.size(), 0);
-  double worst = kRegularDihedral;
+  all.worst = kRegularDihedral;
   for (const Found& part : found) {
-    worst = std::min(worst, part.worst);
+    all.worst = std::min(all.worst, part.worst);
     for (std::size_t k = 0; k < decisions.size(); ++k) all.n_below[k] += part.n_below[k];
   }
-  all.smallest = report_value(Metric::kMinDihedral, worst);
+  all.smallest = report_value(Metric::kMinDihedral, all.worst);
   return all;
 }
 

@@ -3,6 +3,7 @@
 #define HFR_REMESH_SURVEY_HH
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,7 @@ Survey survey(const TetMesh& mesh, par::Policy policy);
 double smallest_dihedral(const TetMesh& mesh, par::Policy policy);
 /// What there is below each of a few angles, from one pass over the cells.
 struct AngleTally {
+  double worst = 0;                  ///< smallest decision value of MinDihedral, kRegularDihedral at most
   double smallest = 0;               ///< see smallest_dihedral()
   std::size_t n_cells = 0;           ///< of the mesh
   std::vector<std::size_t> n_below;  ///< by angle: cells whose smallest dihedral is below
@@ -32,7 +34,9 @@ struct AngleTally {
     return static_cast<double>(n_below[angle]) / static_cast<double>(n_cells);
   }
 };
-AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy);
+/// `counts`: the cells that are looked at, but for n_cells; all where it is empty.
+AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy,
+                       const std::function<bool(CellHandle)>& counts = {});
 /// Number of cells whose smallest dihedral is below so many degrees.
 std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy);
 /// The same as a share of the cells.

@@ -37,8 +37,12 @@ void raise_throughout(const Run& run, const ThroughoutEffort& effort, double deg
 
 bool lacks_vertices(const Run& run) {
   const auto& frozen = run.work.frozen;
-  const auto n_movable = static_cast<double>(std::count(frozen.begin(), frozen.end(), 0));
-  return n_movable <= run.strategy.throughout.share * static_cast<double>(frozen.size());
+  const VertexTally vertices =
+      run.is_part()
+          ? run.parts()->vertices()
+          : VertexTally{frozen.size(), static_cast<std::size_t>(std::count(frozen.begin(), frozen.end(), 0))};
+  return static_cast<double>(vertices.n_movable) <=
+         run.strategy.throughout.share * static_cast<double>(vertices.n);
 }
 
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
@@ -47,7 +51,7 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
   std::vector<double> angles;
   for (const TargetAngle& target : targets) angles.push_back(target.degrees);
   angles.push_back(throughout.below);
-  AngleTally now = tally_below(run.mesh, angles, run.policy());
+  AngleTally now = run.tally_below(angles);
   const bool bounded = is_bounded(run),
              is_poor = bounded && is_poor_throughout(run, now.share(targets.size()));
   double last = 0;          // that was worked for
@@ -66,18 +70,17 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
       raise_throughout(run, throughout, target.degrees);
     else
       polish(run, run.strategy.polish, target.degrees);
-    now = tally_below(run.mesh, angles, run.policy());
+    now = run.tally_below(angles);
     has_brought = now.share(k) < effort.enough_left * share;
   }
 }
 
 void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngle> targets) {
   const Strategy& strategy = run.strategy;
-  if (smallest_dihedral(run.mesh, run.policy()) < floor) polish(run, strategy.polish, floor);
+  if (run.smallest_dihedral() < floor) polish(run, strategy.polish, floor);
   const ThroughoutEffort& poor = strategy.throughout;
   // Where the mesh is poor throughout, vertices go to the worst cells first.
-  const bool throughout =
-      is_bounded(run) && is_poor_throughout(run, share_below(run.mesh, poor.below, run.policy()));
+  const bool throughout = is_bounded(run) && is_poor_throughout(run, run.share_below(poor.below));
   if (strategy.refine && !throughout) refine(run, *strategy.refine);
   raise_to_targets(run, targets);
   // What was put in first is well connected by now, which shows where vertices are still missing.

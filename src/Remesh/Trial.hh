@@ -38,6 +38,7 @@ class Trial {
   double low_to_reach_ = 0;                  // for the last cell of the poorest hundredth to have risen
   std::size_t n_poorest_ = 0, n_below_ = 0;  // cells of that hundredth, and below the goal
   std::size_t n_invalid_ = 0;
+  std::size_t n_cells_;
   Snapshot before_;
 };
 

@@ -129,7 +129,19 @@ TEST(InParts, WhatIsNotThereIsNamed) {
     return {};
   };
   using testing::HasSubstr;
-  EXPECT_THAT(refusal([](auto& o) { o.polish_only = false; }), HasSubstr("runs other than the polish"));
+  EXPECT_THAT(refusal([](auto& o) { o.polish_only = false; }), HasSubstr("searches for the last cells"));
+  EXPECT_THAT(refusal([](auto& o) { o = ImproveOptions(); }), HasSubstr("searches for the last cells"));
+  EXPECT_THAT(refusal([](auto& o) {
+                o = ImproveOptions();
+                o.raise_min_dihedral = true;
+              }),
+              HasSubstr("at any cost"));
+  EXPECT_THAT(refusal([](auto& o) {
+                o = ImproveOptions();
+                o.passes_only = true;
+                o.metric = Metric::kMinSine;
+              }),
+              HasSubstr("another metric than volume-length"));
   EXPECT_THAT(refusal([](auto& o) { o.surface.mode = SurfaceMode::kFlat; }),
               HasSubstr("surfaces that may change"));
   EXPECT_THAT(refusal([](auto& o) { o.time_limit = 1; }), HasSubstr("time limits"));

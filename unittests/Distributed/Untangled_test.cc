@@ -160,35 +160,9 @@ struct Seen {
   }
 };
 
-/// By all ranks and in shared memory: the same bytes, the same passes.
 void expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const std::filesystem::path& in,
                      const ImproveOptions& options, Seen& seen) {
-  mpi::DistributedMesh parts(comm);
-  mpi::read_ranges(parts, in, 300);
-  const mpi::PinchedEdges pinched = mpi::pinched_edges(parts);
-  const mpi::PartsResult result = mpi::improve(parts, options);
-  const mpi::PartsCheck checked = mpi::check(parts, pinched);
-  EXPECT_TRUE(checked.is_good) << checked.message;
-  mpi::write_vtu(parts, folder.path() / "parts.vtu");
-  if (comm.rank() == 0) {
-    TetMesh mesh = io::read(in);
-    const Result shared = hfr::improve(mesh, options);
-    seen.add(shared);
-    EXPECT_EQ(shared.goal_reached, result.goal_reached);
-    EXPECT_EQ(shared.changed, result.changed);
-    EXPECT_EQ(shared.invalid_cells.size(), result.after.n_invalid);
-    EXPECT_EQ(shared.passes.size(), result.passes.size());
-    for (std::size_t i = 0; i < std::min(shared.passes.size(), result.passes.size()); ++i) {
-      const PassReport &a = shared.passes[i], &b = result.passes[i];
-      EXPECT_EQ(a.stage + " " + a.op, b.stage + " " + b.op) << "pass " << i;
-      EXPECT_EQ(a.winners, b.winners) << a.op << ", pass " << i;
-      EXPECT_EQ(a.n_inverted, b.n_inverted) << a.op << ", pass " << i;
-      EXPECT_EQ(a.worst, b.worst) << a.op << ", pass " << i;
-    }
-    io::write(folder.path() / "whole.vtu", mesh);
-    EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
-  }
-  comm.sum(0);
+  seen.add(expect_same_run(comm, folder, in, options));
 }
 
 TEST(UntangledParts, TangledMeshesHaveTheBytesOfSharedMemory) {

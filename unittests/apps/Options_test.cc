@@ -109,7 +109,9 @@ TEST(Options, ThoseThatCountForNothingAreNamed) {
       {"--compat jpdc2013 --surface free", "--surface does nothing with --compat"},
       {"--compat jpdc2013 --smoother taubin", "--smoother does nothing with --compat"},
       {"--compat jpdc2013 --min-dihedral 5", "--min-dihedral is not worked for with --compat"},
-      {"--polish-only --min-dihedral 5 --metric volume-length", "--metric does nothing with --polish-only"}};
+      {"--compat jpdc2013 --passes-only", "--passes-only does nothing with --compat"},
+      {"--polish-only --min-dihedral 5 --metric volume-length", "--metric does nothing with --polish-only"},
+      {"--polish-only --min-dihedral 5 --passes-only", "--passes-only does nothing with --polish-only"}};
   for (const auto& [option, note] : idle) {
     const Outcome outcome = tool.run("in.mesh -o out.mesh " + option);
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -203,10 +205,10 @@ TEST(Options, WhatDoesNothingForASurfaceIsNamed) {
   const Outcome outcome = tool.run(
       "s.off -o s2.off --surface flat --metric mean-ratio --ops edge --smoother taubin --rounds mixed "
       "--bulk-nodes "
-      "--polish-only --label-features --seed 5 --compat jpdc2013");
+      "--polish-only --passes-only --label-features --seed 5 --compat jpdc2013");
   if (outcome.code == 1) GTEST_SKIP() << outcome.err;
   for (const char* option : {"--metric", "--ops", "--smoother", "--rounds", "--bulk-nodes", "--polish-only",
-                             "--label-features", "--seed", "--compat"})
+                             "--passes-only", "--label-features", "--seed", "--compat"})
     EXPECT_THAT(outcome.err, HasSubstr(std::string(option) + " does nothing with a surface without cells"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("--surface does nothing")));
 }

@@ -263,6 +263,7 @@ def improve(
     no_insert: Optional[bool] = None,
     bulk_nodes: Optional[bool] = None,
     polish_only: Optional[bool] = None,
+    passes_only: Optional[bool] = None,
     rounds: Optional[str] = None,
     smoother: Optional[str] = None,
     compat: Optional[str] = None,
@@ -311,8 +312,8 @@ def improve(
         "min_dihedral": min_dihedral, "iterations": iterations, "time_limit": time_limit, "surface": surface,
         "hausdorff": hausdorff, "feature_angle": feature_angle, "fix": fix, "periodic": periodic,
         "min_cells": min_cells, "max_cells": max_cells, "coarsen": coarsen, "metric": metric, "ops": ops,
-        "no_insert": no_insert, "bulk_nodes": bulk_nodes, "polish_only": polish_only, "rounds": rounds, "smoother": smoother,
-        "compat": compat,
+        "no_insert": no_insert, "bulk_nodes": bulk_nodes, "polish_only": polish_only,
+        "passes_only": passes_only, "rounds": rounds, "smoother": smoother, "compat": compat,
         "seed": seed, "threads": threads, "device": device, "hybrid": hybrid, "work_group": work_group,
     })
     mesh = _mesh(points, cells, regions=regions, fields=fields, point_fields=point_fields, cell_fields=cell_fields,

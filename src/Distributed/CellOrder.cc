@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/CellOrder.hh"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "Distributed/CommonBox.hh"
+#include "Distributed/OwnItems.hh"
+#include "Distributed/Stretches.hh"
+#include "HalfFace/Reorder.hh"
+
+namespace hfr::mpi {
+namespace {
+
+/// A cell on its way to the rank that sorts its stretch of the curve.
+struct Placed {
+  std::uint64_t place = 0, number = 0;
+};
+
+/// Each of these, on its rank, is answered by the rank that it was sent to: answers come by rank, in the
+/// order of the questions. All take part.
+template <class Question, class Answer>
+std::vector<std::vector<std::uint64_t>> ask(Comm& comm, std::vector<std::vector<Question>>& questions,
+                                            Answer&& answer) {
+  std::vector<Packer> to(comm.n_ranks());
+  for (std::size_t r = 0; r < to.size(); ++r)
+    if (!questions[r].empty()) to[r].put_all(std::exchange(questions[r], {}));
+  std::vector<std::vector<Question>> asked(comm.n_ranks());
+  for (const Comm::Message& message : comm.exchange(to))
+    asked[static_cast<std::size_t>(message.from)] = Unpacker(message.bytes).get_all<Question>();
+  std::vector<std::vector<std::uint64_t>> answers = answer(std::move(asked));
+  to = std::vector<Packer>(comm.n_ranks());
+  for (std::size_t r = 0; r < to.size(); ++r)
+    if (!answers[r].empty()) to[r].put_all(std::exchange(answers[r], {}));
+  for (const Comm::Message& message : comm.exchange(to))
+    answers[static_cast<std::size_t>(message.from)] = Unpacker(message.bytes).get_all<std::uint64_t>();
+  return answers;
+}
+
+/// The place in the order of all of each, those with a smaller `place` first, then those with a smaller
+/// number.
+std::vector<std::vector<std::uint64_t>> ranked(Comm& comm, const std::vector<std::vector<Placed>>& asked) {
+  struct Item {
+    Placed placed;
+    std::size_t from, at;
+  };
+  std::vector<Item> items;
+  for (std::size_t r = 0; r < asked.size(); ++r)
+    for (std::size_t i = 0; i < asked[r].size(); ++i) items.push_back({asked[r][i], r, i});
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return std::pair(a.placed.place, a.placed.number) < std::pair(b.placed.place, b.placed.number);
+  });
+  const std::uint64_t n = items.size();
+  const auto counts = comm.all_gather(std::span<const std::uint64_t>(&n, 1));
+  std::uint64_t next = 0;
+  for (int r = 0; r < comm.rank(); ++r) next += counts[static_cast<std::size_t>(r)];
+  std::vector<std::vector<std::uint64_t>> answers(asked.size());
+  for (std::size_t r = 0; r < asked.size(); ++r) answers[r].resize(asked[r].size());
+  for (const Item& item : items) answers[item.from][item.at] = next++;
+  return answers;
+}
+
+}  // namespace
+
+bool is_dense(DistributedMesh& mesh) {
+  std::uint64_t n_deleted = 0;
+  for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i)
+    n_deleted += mesh.is_own(VertexHandle(i)) && mesh.part().is_deleted(VertexHandle(i)) ? 1 : 0;
+  for (std::size_t i = 0; i < mesh.part().n_cells(); ++i)
+    n_deleted += mesh.part().is_deleted(CellHandle(i)) ? 1 : 0;
+  return mesh.comm().sum(n_deleted) == 0 && mesh.free_slots().empty();
+}
+
+bool is_scattered(DistributedMesh& mesh) {
+  const TetMesh& part = mesh.part();
+  std::uint64_t n_far = 0;
+  for (std::size_t i = 0; i < part.n_cells(); ++i) {
+    const CellHandle c(i);
+    if (part.is_deleted(c) || !mesh.is_own(c)) continue;
+    const std::uint64_t mine = mesh.number(c);
+    for (HalfFaceHandle m : part.cell(c).mate) {
+      if (!m.is_valid()) continue;
+      const std::uint64_t other = mesh.number(cell_of(m));
+      n_far += (other > mine ? other - mine : mine - other) >= kFarInOrder ? 1 : 0;
+    }
+  }
+  return hfr::is_scattered(static_cast<std::size_t>(mesh.comm().sum(n_far)),
+                           static_cast<std::size_t>(mesh.n_cells()));
+}
+
+std::vector<std::uint64_t> numbers_along_curve(DistributedMesh& mesh) {
+  Comm& comm = mesh.comm();
+  const TetMesh& part = mesh.part();
+  const std::vector<VertexHandle> vertices = own_vertices(mesh);
+  const Box box = common_box(comm, vertices.size(), [&](std::size_t i) { return part.point(vertices[i]); });
+  const CurveGrid grid(SpaceCurve::kMorton, box.low, box.high);
+  std::vector<std::uint64_t> numbers(part.n_cells(), kNoNumber);
+  const auto take = [&](const std::vector<std::vector<CellHandle>>& cells,
+                        const std::vector<std::vector<std::uint64_t>>& answers) {
+    for (std::size_t r = 0; r < cells.size(); ++r)
+      for (std::size_t i = 0; i < cells[r].size(); ++i) numbers[cells[r][i].idx()] = answers[r][i];
+  };
+  {
+    const std::vector<CellHandle> own = own_cells(mesh);
+    const Stretches stretches(comm, own.size(), [&](std::size_t i) { return grid.place(part, own[i]); });
+    std::vector<std::vector<CellHandle>> cells(comm.n_ranks());
+    std::vector<std::vector<Placed>> placed(comm.n_ranks());
+    for (CellHandle c : own) {
+      const std::uint64_t place = grid.place(part, c);
+      const auto rank = static_cast<std::size_t>(stretches.rank_of(place));
+      cells[rank].push_back(c);
+      placed[rank].push_back({place, mesh.number(c)});
+    }
+    take(cells, ask(comm, placed, [&](const auto& asked) { return ranked(comm, asked); }));
+  }
+  std::vector<std::vector<CellHandle>> cells(comm.n_ranks());
+  std::vector<std::vector<std::uint64_t>> old(comm.n_ranks());
+  for (std::size_t i = 0; i < part.n_cells(); ++i) {
+    const CellHandle c(i);
+    if (part.is_deleted(c) || mesh.is_own(c)) continue;
+    const auto& v = part.cell(c).v;
+    const auto rank = static_cast<std::size_t>(mesh.owner(*std::min_element(v.begin(), v.end())));
+    cells[rank].push_back(c);
+    old[rank].push_back(mesh.number(c));
+  }
+  take(cells, ask(comm, old, [&](std::vector<std::vector<std::uint64_t>> asked) {
+         for (auto& of_rank : asked)
+           for (std::uint64_t& number : of_rank) number = numbers[mesh.cell_at(number).idx()];
+         return asked;
+       }));
+  return numbers;
+}
+
+}  // namespace hfr::mpi

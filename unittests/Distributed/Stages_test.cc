@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All stages of a run over a mesh in parts but the searches for the last cells, beside shared memory.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "Distributed/CellOrder.hh"
+#include "Distributed/Labelled.hh"
+#include "HalfFace/Reorder.hh"
+
+namespace hfr::test {
+namespace {
+
+ImproveOptions passes_only() {
+  ImproveOptions options;
+  options.passes_only = true;
+  options.policy = {};
+  return options;
+}
+
+/// Its points and cells, numbered in an order that has nothing to do with where they lie.
+TetMesh shuffled(const TetMesh& mesh, std::uint64_t seed) {
+  std::mt19937_64 engine(seed);
+  std::vector<Index> to(mesh.n_vertices());
+  std::iota(to.begin(), to.end(), Index{0});
+  std::shuffle(to.begin(), to.end(), engine);
+  std::vector<Vec3> points(mesh.n_vertices());
+  for (std::size_t i = 0; i < to.size(); ++i) points[to[i]] = mesh.point(V(i));
+  std::vector<std::array<Index, 4>> cells;
+  for (CellHandle c : mesh.cells()) {
+    std::array<Index, 4> corners{};
+    std::ranges::transform(mesh.cell(c).v, corners.begin(), [&](VertexHandle v) { return to[v.idx()]; });
+    cells.push_back(corners);
+  }
+  std::shuffle(cells.begin(), cells.end(), engine);
+  return build(points, cells);
+}
+
+TetMesh cavity(generate::Counts counts, double jitter, double amplitude) {
+  generate::CavityOptions options;
+  options.counts = counts;
+  options.jitter = jitter;
+  options.amplitude = amplitude;
+  const generate::Arrays arrays = generate::cavity(options);
+  return build(arrays.points, arrays.cells);
+}
+
+/// Each coordinate times a factor.
+TetMesh stretched(TetMesh mesh, Vec3 by) {
+  for (VertexHandle v : mesh.vertices()) {
+    const Vec3 p = mesh.point(v);
+    mesh.set_point(v, {p.x * by.x, p.y * by.y, p.z * by.z});
+  }
+  return mesh;
+}
+
+/// A layer of cubes: no vertex lies inside.
+TetMesh plate(Index n, std::uint64_t seed) {
+  generate::Arrays arrays = generate::box({n, n, 1}, {0, 0, 0}, {1.0 * n, 1.0 * n, 0.6});
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> by(-0.2, 0.2);
+  for (Vec3& p : arrays.points)
+    if (p.x > 0 && p.y > 0 && p.x < n && p.y < n) p = {p.x + by(engine), p.y + by(engine), p.z};
+  return build(arrays.points, arrays.cells);
+}
+
+/// What runs of a test have come to: their stages, and how many went back to what there was before.
+struct Stages {
+  std::set<std::string> names;
+  std::size_t undone = 0;
+
+  void add(const Result& result) {
+    for (const PassReport& pass : result.passes) {
+      names.insert(pass.stage);
+      undone += pass.stage == "undo" ? 1 : 0;
+    }
+  }
+};
+
+class StagesInParts : public testing::Test {
+ protected:
+  Stages run(const TetMesh& mesh, const ImproveOptions& options) {
+    if (comm.rank() == 0) io::write(path, mesh);
+    comm.sum(0);
+    Stages stages;
+    stages.add(expect_same_run(comm, folder, path, options));
+    return stages;
+  }
+
+  mpi::Comm comm{MPI_COMM_WORLD};
+  SharedFolder folder{comm};
+  std::filesystem::path path = folder.path() / "in.vtu";
+};
+
+TEST_F(StagesInParts, ARunOverAllCellsHasTheBytesOfSharedMemory) {
+  const Stages stages = run(cavity({6, 6, 6}, 0.3, 0), passes_only());
+  if (comm.rank() == 0) {
+    EXPECT_THAT(stages.names, testing::IsSupersetOf({"bulk", "polish", "finish", "refine"}));
+  }
+  run(valid_box(8, 0.3, 1), passes_only());
+}
+
+/// Some cells stay inverted, and what is done for more is put back.
+TEST_F(StagesInParts, TangledMeshesHaveTheBytesOfSharedMemory) {
+  const Stages stages = run(cavity({2, 9, 9}, 0.45, 0.05), passes_only());
+  if (comm.rank() == 0) {
+    EXPECT_THAT(stages.names, testing::IsSupersetOf({"untangle", "bulk", "refine"}));
+    EXPECT_GT(stages.undone, 0U) << "no try is put back";
+  }
+}
+
+TEST_F(StagesInParts, WhereAGoalIsMissedTheOtherStagesFollow) {
+  for (const double goal : {14.0, 33.0}) {
+    SCOPED_TRACE(goal);
+    ImproveOptions options = passes_only();
+    options.min_dihedral = goal;
+    const Stages stages = run(valid_box(7, 0.34, 3), options);
+    if (comm.rank() == 0) {
+      EXPECT_EQ(stages.names.count("bulk"), goal > 20 ? 1U : 0U);
+    }
+  }
+}
+
+/// Poor throughout, with vertices that may move and without.
+TEST_F(StagesInParts, PoorMeshesHaveTheBytesOfSharedMemory) {
+  for (const TetMesh& mesh : {stretched(valid_box(6, 0.3, 4), {1, 1, 0.12}), plate(8, 5)}) {
+    const Stages stages = run(mesh, passes_only());
+    if (comm.rank() == 0) {
+      EXPECT_EQ(stages.names.count("bulk"), 1U);
+    }
+  }
+}
+
+TEST_F(StagesInParts, OptionsHaveTheBytesOfSharedMemory) {
+  const std::vector<std::function<void(ImproveOptions&)>> changes = {
+      [](auto& o) { o.iterations = 2, o.passes_only = false, o.policy.threads = 2; },
+      [](auto& o) { o.rounds = Rounds::kMixed; },
+      [](auto& o) { o.rounds = Rounds::kByKind, o.bulk_nodes = true; },
+      [](auto& o) { o.ops = without(Ops::kDefault, Ops::kInsert) | Ops::kCluster; },
+      [](auto& o) { o.max_cells = 1100, o.seed = 7; },
+      [](auto& o) { o.ops = Ops::kSmooth; }};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    SCOPED_TRACE(i);
+    ImproveOptions options = passes_only();
+    changes[i](options);
+    run(valid_box(5, 0.33, 6), options);
+  }
+}
+
+/// With regions, labels and fixed vertices.
+TEST_F(StagesInParts, LabelledMeshesHaveTheBytesOfSharedMemory) {
+  for (const std::uint64_t seed : {1, 2, 5}) {
+    SCOPED_TRACE(seed);
+    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(5, 0.3, seed), seed, density_of(seed)));
+    comm.sum(0);
+    expect_same_run(comm, folder, path, passes_only());
+  }
+}
+
+/// Cells of which most have neighbours far away in memory are put in order first, here as there.
+TEST_F(StagesInParts, ScatteredCellsComeInOrder) {
+  const TetMesh mesh = shuffled(valid_box(17, 0.2, 7), 8);
+  ASSERT_TRUE(is_scattered(mesh));
+  if (comm.rank() == 0) io::write(path, mesh);
+  comm.sum(0);
+  {
+    mpi::DistributedMesh parts(comm);
+    mpi::read_ranges(parts, path, 300);
+    ASSERT_TRUE(mpi::is_dense(parts));
+    EXPECT_TRUE(mpi::is_scattered(parts));
+    const std::vector<std::uint64_t> old = parts.renumber(mpi::numbers_along_curve(parts));
+    EXPECT_TRUE(mpi::check(parts).is_good);
+    EXPECT_FALSE(mpi::is_scattered(parts));
+    TetMesh ordered = mesh;
+    const GarbageMap map = reorder(ordered, {.curve = SpaceCurve::kMorton, .vertices = false});
+    for (std::size_t i = 0; i < parts.part().n_cells(); ++i) {
+      const CellHandle there = map.cells[old[i]];
+      ASSERT_EQ(parts.number(C(i)), there.idx());
+      for (std::size_t k = 0; k < 4; ++k)
+        ASSERT_EQ(parts.number(parts.part().cell(C(i)).v[k]), ordered.cell(there).v[k].idx());
+      ASSERT_EQ(parts.cell_at(there.idx()), C(i));
+    }
+    const std::vector<std::uint64_t> again = parts.renumber(old);  // as it was
+    EXPECT_TRUE(mpi::check(parts).is_good);
+    EXPECT_TRUE(mpi::is_scattered(parts));
+    EXPECT_TRUE(std::ranges::is_sorted(old) || !std::ranges::equal(old, again));
+    mpi::write_vtu(parts, folder.path() / "again.vtu");
+    if (comm.rank() == 0) {
+      EXPECT_TRUE(bytes_of(folder.path() / "again.vtu") == bytes_of(path));
+    }
+    comm.sum(0);
+  }
+  ImproveOptions options = passes_only();
+  options.iterations = 1;
+  run(mesh, options);
+  // Where nothing is changed, they have their old order in the end.
+  options.ops = Ops::kInsert;
+  options.max_cells = 1;
+  EXPECT_FALSE(expect_same_run(comm, folder, path, options).changed);
+}
+
+}  // namespace
+}  // namespace hfr::test
