@@ -29,6 +29,34 @@ void sort_by_number(std::vector<Record>& records) {
                 records.end());
 }
 
+/// What lies round these vertices: their numbers, the records of all cells that have one and of the corners
+/// of these, and labels.
+void pack_round(const DistributedMesh& parts, std::span<const VertexHandle> vertices, Packer& out) {
+  const TetMesh& part = parts.part();
+  std::vector<std::uint64_t> taken;
+  std::vector<CellHandle> cells;
+  for (VertexHandle v : vertices) {
+    taken.push_back(parts.number(v));
+    for (CellHandle c : part.vertex_cells(v)) cells.push_back(c);
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::vector<CellRecord> cell_records;
+  std::vector<VertexHandle> corners;
+  for (CellHandle c : cells) {
+    cell_records.push_back(parts.record(c));
+    corners.insert(corners.end(), part.cell(c).v.begin(), part.cell(c).v.end());
+  }
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  std::vector<VertexRecord> vertex_records;
+  for (VertexHandle v : corners) vertex_records.push_back(parts.record(v));
+  out.put_all(taken);
+  out.put_all(vertex_records);
+  out.put_all(cell_records);
+  out.put_all(parts.labels_of(cells, corners));
+}
+
 }  // namespace
 
 Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cells,
@@ -38,40 +66,19 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   Spread spread(parts);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellHandle c = parts.cell_at(cells[i]);
-    if (c.is_valid() && !part.is_deleted(c) && parts.is_own(c)) spread.begin(c, depth[i]);
+    if (!c.is_valid() || part.is_deleted(c) || !parts.is_own(c)) continue;
+    spread.begin(c, depth[i], comm.rank());
+    centres_.push_back(cells[i]);
   }
   spread.run();
-  std::vector<std::uint64_t> taken;
-  std::vector<CellHandle> mine;
-  for (VertexHandle v : spread.own()) {
-    taken.push_back(parts.number(v));
-    for (CellHandle c : part.vertex_cells(v)) mine.push_back(c);
-  }
-  std::sort(mine.begin(), mine.end());
-  mine.erase(std::unique(mine.begin(), mine.end()), mine.end());
-  std::vector<CellRecord> cell_records;
-  std::vector<VertexHandle> corners;
-  for (CellHandle c : mine) {
-    cell_records.push_back(parts.record(c));
-    corners.insert(corners.end(), part.cell(c).v.begin(), part.cell(c).v.end());
-  }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
-  for (VertexHandle v : corners) vertices_.push_back(parts.record(v));
-  std::vector<LabelRecord> labels = parts.labels_of(mine, corners);
   std::vector<Packer> to(comm.n_ranks());
-  if (comm.rank() != 0) {
-    to[0].put_all(taken);
-    to[0].put_all(vertices_);
-    to[0].put_all(cell_records);
-    if (!labels.empty()) to[0].put_all(labels);
-  }
-  const std::vector<Comm::Message> came = comm.exchange(to);
-  if (comm.rank() != 0) {
-    vertices_.clear();
-    return;
-  }
-  for (const Comm::Message& message : came) {
+  const auto asked_for = spread.own();
+  for (std::size_t r = 0; r < asked_for.size(); ++r)
+    if (!asked_for[r].empty()) pack_round(parts, asked_for[r], to[r]);
+  std::vector<std::uint64_t> taken;
+  std::vector<CellRecord> cell_records;
+  std::vector<LabelRecord> labels;
+  for (const Comm::Message& message : comm.exchange(to)) {
     Unpacker in(message.bytes);
     const auto append = [&]<class T>(std::vector<T>& list) {
       const std::vector<T> theirs = in.get_all<T>();
@@ -80,7 +87,7 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
     append(taken);
     append(vertices_);
     append(cell_records);
-    if (!in.at_end()) append(labels);
+    append(labels);
   }
   std::sort(taken.begin(), taken.end());
   sort_by_number(vertices_);
@@ -88,7 +95,6 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   work_.clock = parts.work().clock;
   work_.floor = parts.work().floor;
   work_.holds_damage = parts.work().holds_damage;
-  first_new_ = parts.n_vertices();
   build(std::move(cell_records), taken);
   labels_.add(mesh_, labels, [this](std::uint64_t n) { return vertex_at(n); });
 }

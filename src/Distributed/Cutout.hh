@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
@@ -11,14 +12,15 @@
 
 namespace hfr::mpi {
 
-/// The surroundings of some cells, brought together on rank 0 as a mesh of their own, for work that reaches
-/// further than what each part holds. Vertices and cells stand in the order of their numbers in the whole.
+/// The surroundings of some cells of a rank, brought together there as a mesh of their own, for work that
+/// reaches further than what each part holds. Vertices and cells stand in the order of their numbers in the
+/// whole.
 class Cutout {
  public:
-  /// `cells`: numbers, ascending, the same on all ranks; `depth`, of each of them, at least 1: vertices are
-  /// taken that so many edges lead to, and all cells that have one of these. All take part; elsewhere than on
-  /// rank 0 nothing is there afterwards. A cell of it whose vertices are all such has all its neighbours;
-  /// others are its rim.
+  /// `cells`: numbers, ascending, the same on all ranks, of which each takes its own ones; `depth`, of each
+  /// of them, at least 1: vertices are taken that so many edges lead to, and all cells that have one of
+  /// these. All take part. A cell of it whose vertices are all such has all its neighbours; others are its
+  /// rim.
   Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cells,
          std::span<const std::uint8_t> depth);
 
@@ -26,9 +28,15 @@ class Cutout {
   Workspace& work() { return work_; }
   const CutRim& rim() const { return rim_; }
 
+  /// Of the cells those that are this rank's own, ascending.
+  const std::vector<std::uint64_t>& centres() const { return centres_; }
   std::uint64_t number(VertexHandle v) const {
-    return v.idx() < vertices_.size() ? vertices_[v.idx()].number : first_new_ + (v.idx() - vertices_.size());
+    return v.idx() < vertices_.size() ? vertices_[v.idx()].number : new_number_[v.idx() - vertices_.size()];
   }
+  /// Of the vertices that will be added, in that order: ascending, larger than those of all others.
+  void number_new_vertices(std::vector<std::uint64_t> numbers) { new_number_ = std::move(numbers); }
+  /// Number of cells of a vertex before anything was changed; 0 for one that has come since.
+  std::uint32_t star_before(VertexHandle v) const { return is_new(v) ? 0 : vertices_[v.idx()].star_size; }
   std::uint64_t number(CellHandle c) const { return cell_number_[c.idx()]; }
   /// A vertex that has come since.
   bool is_new(VertexHandle v) const { return v.idx() >= vertices_.size(); }
@@ -55,7 +63,7 @@ class Cutout {
   std::vector<DistributedMesh::VertexRecord> vertices_;  // as they were
   std::vector<std::uint64_t> cell_number_;               // by slot; the first n_sorted_ ascend
   std::size_t n_sorted_ = 0;
-  std::uint64_t first_new_ = 0;  // number of the first vertex that is added
+  std::vector<std::uint64_t> centres_, new_number_;
 };
 
 }  // namespace hfr::mpi

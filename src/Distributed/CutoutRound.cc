@@ -2,9 +2,12 @@
 #include "Distributed/CutoutRound.hh"
 
 #include <algorithm>
+#include <array>
+#include <tuple>
 #include <unordered_set>
 #include <utility>
 
+#include "Distributed/Buffer.hh"
 #include "Distributed/PartRound.hh"
 #include "Scheduler/Select.hh"
 
@@ -13,57 +16,146 @@ namespace {
 
 constexpr std::uint8_t kDeeper = 2;  // more layers round a cell from which an evaluation has come to the rim
 
+/// What is told of a candidate; its cells and what it makes follow.
+struct Announcement {
+  std::uint64_t key = 0;
+  SeedName name{};
+  std::uint64_t seed_number = 0;
+  std::uint32_t seed_place = 0, number = 0;
+  std::uint32_t n_removed = 0, n_created = 0;
+  std::uint8_t removes_vertex = 0, adds_vertex = 0;
+};
+
+/// What a winner is told; its slots follow.
+struct Award {
+  std::uint32_t number = 0;
+  std::uint64_t new_vertex = kNoNumber;
+};
+
 }  // namespace
 
-/// In rank order, a candidate wins when no cell of its scope is taken, and it makes nothing twice.
-std::vector<std::size_t> CutoutRound::independent(std::span<const Candidate> candidates,
-                                                  bool check_links) const {
-  std::vector<std::uint8_t> is_taken(cutout_.mesh().n_cells(), 0);
-  std::unordered_set<std::uint64_t> made;
-  std::vector<std::size_t> won;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const auto scope = candidates[i].scope;
-    if (std::any_of(scope.begin(), scope.end(), [&](CellHandle c) { return is_taken[c.idx()] != 0; }))
-      continue;
-    if (check_links && !add_unless_there(candidates[i].made, made)) continue;
-    for (CellHandle c : scope) is_taken[c.idx()] = 1;
-    won.push_back(i);
-  }
-  return won;
+/// A candidate as rank 0 hears of it.
+struct CutoutRound::Contender {
+  Announcement told;
+  int home = 0;
+  std::vector<std::uint64_t> cells, made;
+};
+
+/// What it says to a winner.
+struct CutoutRound::Prize {
+  Award award;
+  std::vector<std::uint64_t> fresh;
+};
+
+void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t> met,
+            std::span<std::uint8_t> depth) {
+  for (std::uint64_t number : met)
+    depth[static_cast<std::size_t>(std::ranges::lower_bound(cells, number) - cells.begin())] += kDeeper;
 }
 
-/// Nothing where an evaluation has come to the rim. Else the independent ones for which the bounds have room;
-/// slots as PartRound has them.
-auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
-                         bool check_links) -> Selected {
-  const auto& met = cutout_.rim().has_met;
-  for (std::size_t c = 0; c < met.size(); ++c)
-    if (met[c] != 0) met_.push_back(cutout_.number(CellHandle(c)));
-  Selected selected;
-  if (!met_.empty()) return selected;
+/// In rank order, a candidate wins when no cell of its scope is taken, it makes nothing twice, and the bounds
+/// have room for it; slots as PartRound has them.
+void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std::size_t may_gain,
+                         bool check_links, std::vector<std::vector<Prize>>& prizes) {
+  // Two seeds may have one name where both find the same: then the first in the order of numbers comes first,
+  // as it does where all cells are in one mesh.
+  std::sort(all.begin(), all.end(), [](const Contender& a, const Contender& b) {
+    const auto order = [](const Announcement& t) {
+      return std::tie(t.key, t.name, t.seed_number, t.seed_place);
+    };
+    return order(a.told) < order(b.told);
+  });
   const std::span<const std::uint64_t> free = parts_.free_slots();
   std::vector<std::uint64_t> back;
-  for (std::size_t i : independent(candidates, check_links)) {
-    const PlanBase& plan = *candidates[i].plan;
-    const std::size_t n_same = std::min(plan.n_removed, plan.n_created);
-    const std::size_t loss = plan.removes_vertex ? plan.n_removed - n_same : 0;
-    const std::size_t gain = plan.adds_vertex ? plan.n_created - n_same : 0;
+  std::unordered_set<std::uint64_t> taken, made;
+  for (const Contender& one : all) {
+    if (std::any_of(one.cells.begin(), one.cells.end(), [&](std::uint64_t c) { return taken.contains(c); }))
+      continue;
+    if (check_links && !add_unless_there(one.made, made)) continue;
+    taken.insert(one.cells.begin(), one.cells.end());
+    const std::size_t n_removed = one.told.n_removed, n_created = one.told.n_created;
+    const std::size_t n_same = std::min(n_removed, n_created);
+    const std::size_t loss = one.told.removes_vertex != 0 ? n_removed - n_same : 0;
+    const std::size_t gain = one.told.adds_vertex != 0 ? n_created - n_same : 0;
     if (loss > may_lose || gain > may_gain) {
-      ++selected.held_back;
+      ++slots_.n_held_back;
       continue;
     }
     may_lose -= loss;
     may_gain -= gain;
-    Winner winner{i, candidates[i].seed, {}};
-    for (std::size_t k = n_same; k < plan.n_created; ++k)
-      winner.fresh.push_back(slots_.n_taken < free.size() ? free[free.size() - ++slots_.n_taken]
-                                                          : parts_.n_slots() + slots_.n_fresh++);
-    for (std::size_t k = n_same; k < plan.n_removed; ++k)
-      back.push_back(cutout_.number(candidates[i].scope[k]));
-    if (plan.adds_vertex) ++slots_.n_vertices;
-    selected.winners.push_back(std::move(winner));
+    Prize prize;
+    prize.award.number = one.told.number;
+    for (std::size_t k = n_same; k < n_created; ++k)
+      prize.fresh.push_back(slots_.n_taken < free.size() ? free[free.size() - ++slots_.n_taken]
+                                                         : parts_.n_slots() + slots_.n_fresh++);
+    for (std::size_t k = n_same; k < n_removed; ++k) back.push_back(one.cells[k]);
+    if (one.told.adds_vertex != 0) prize.award.new_vertex = parts_.n_vertices() + slots_.n_vertices++;
+    prizes[static_cast<std::size_t>(one.home)].push_back(std::move(prize));
   }
   freed_.assign(back.rbegin(), back.rend());
+}
+
+auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+                         bool check_links) -> Selected {
+  Comm& comm = parts_.comm();
+  const Comm::InPhase phase(comm, Phase::kSelect);
+  const auto& has_met = cutout_.rim().has_met;
+  for (std::size_t c = 0; c < has_met.size(); ++c)
+    if (has_met[c] != 0) met_.push_back(cutout_.number(CellHandle(c)));
+  met_ = comm.all_gather(std::span<const std::uint64_t>(met_));
+  std::sort(met_.begin(), met_.end());
+  Selected selected;
+  if (!met_.empty()) return selected;
+  std::vector<Packer> to(comm.n_ranks());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& one = candidates[i];
+    const PlanBase& plan = *one.plan;
+    to[0].put(Announcement{
+        one.key, one.name, one.seed.cell.is_valid() ? cutout_.number(one.seed.cell) : kNoNumber,
+        one.seed.place, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(plan.n_removed),
+        static_cast<std::uint32_t>(plan.n_created), plan.removes_vertex ? std::uint8_t{1} : std::uint8_t{0},
+        plan.adds_vertex ? std::uint8_t{1} : std::uint8_t{0}});
+    std::vector<std::uint64_t> cells;
+    for (CellHandle c : one.scope) cells.push_back(cutout_.number(c));
+    to[0].put_all(cells);
+    to[0].put_all(one.made);
+  }
+  std::vector<Contender> all;
+  for (const Comm::Message& message : comm.exchange(to))
+    for (Unpacker in(message.bytes); !in.at_end();) {
+      Contender& one = all.emplace_back();
+      one.told = in.get<Announcement>();
+      one.home = message.from;
+      one.cells = in.get_all<std::uint64_t>();
+      one.made = in.get_all<std::uint64_t>();
+    }
+  to.assign(comm.n_ranks(), {});
+  Packer common;
+  if (comm.rank() == 0) {
+    std::vector<std::vector<Prize>> prizes(comm.n_ranks());
+    decide(all, may_lose, may_gain, check_links, prizes);
+    for (std::size_t r = 0; r < prizes.size(); ++r)
+      for (const Prize& prize : prizes[r]) {
+        to[r].put(prize.award);
+        to[r].put_all(prize.fresh);
+      }
+    common.put(slots_);
+    common.put_all(freed_);
+  }
+  const std::vector<std::byte> said = told_by_first(comm, common);
+  Unpacker in_said(said);
+  slots_ = in_said.get<SlotChange>();
+  freed_ = in_said.get_all<std::uint64_t>();
+  selected.held_back = static_cast<std::size_t>(slots_.n_held_back);
+  std::vector<std::uint64_t> new_vertices;
+  for (const Comm::Message& message : comm.exchange(to))
+    for (Unpacker in(message.bytes); !in.at_end();) {
+      const auto award = in.get<Award>();
+      Winner winner{award.number, candidates[award.number].seed, in.get_all<std::uint64_t>()};
+      if (award.new_vertex != kNoNumber) new_vertices.push_back(award.new_vertex);
+      selected.winners.push_back(std::move(winner));
+    }
+  cutout_.number_new_vertices(std::move(new_vertices));
   return selected;
 }
 
@@ -79,68 +171,85 @@ void CutoutRound::finish(std::span<const Commit> commits) {
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    for (VertexHandle v : vertices) change.vertices.push_back(cutout_.record(v));
+    for (VertexHandle v : vertices) change.vertices.push_back({cutout_.record(v), cutout_.star_before(v)});
     change.labels = cutout_.labels_of(commit.created, vertices);
-    if (cutout_.is_new(vertices.back())) change.vertices.back().owner = change.vertices.front().owner;
+    if (cutout_.is_new(vertices.back()))
+      change.vertices.back().record.owner = change.vertices.front().record.owner;
   }
 }
 
-Packer CutoutRound::said(const RoundCounts& counts) const {
-  Packer said;
-  said.put_all(met_);
-  if (!met_.empty()) return said;
-  said.put(counts);
-  said.put(slots_);
-  said.put_all(freed_);
-  said.put(static_cast<std::uint64_t>(changes_.size()));
+RoundCounts CutoutRound::total(RoundCounts mine) {
+  std::array<std::uint64_t, 3> sums = {mine.seeds, mine.candidates, mine.winners};
+  parts_.comm().sum(sums);
+  mine.seeds = static_cast<std::size_t>(sums[0]);
+  mine.candidates = static_cast<std::size_t>(sums[1]);
+  mine.winners = static_cast<std::size_t>(sums[2]);
+  return mine;
+}
+
+/// One record of each vertex, from those of the winners of several ranks: on each rank they count the cells
+/// that its own winners have taken and made, and have the smallest of the made ones.
+auto CutoutRound::merged(std::vector<Heard> all) -> std::vector<VertexRecord> {
+  const auto order = [](const Heard& h) { return std::pair(h.touched.record.number, h.rank); };
+  std::sort(all.begin(), all.end(), [&](const Heard& a, const Heard& b) { return order(a) < order(b); });
+  all.erase(std::unique(all.begin(), all.end(),
+                        [&](const Heard& a, const Heard& b) { return order(a) == order(b); }),
+            all.end());
+  std::vector<VertexRecord> records;
+  for (const Heard& one : all) {
+    const VertexRecord& r = one.touched.record;
+    if (records.empty() || records.back().number != r.number) {
+      records.push_back(r);
+      continue;
+    }
+    VertexRecord& sum = records.back();
+    sum.star_size += r.star_size - one.touched.star_before;  // of unsigned numbers, which go round
+    sum.incident = std::min(sum.incident, r.incident);
+  }
+  return records;
+}
+
+void CutoutRound::bring_home() {
+  if (!met_.empty()) return;
+  const Comm::InPhase phase(parts_.comm(), Phase::kBorder);
+  Packer mine;
   for (const Change& change : changes_) {
-    said.put_all(change.removed);
-    said.put_all(change.vertices);
-    said.put_all(change.cells);
-    said.put_all(change.labels);
+    mine.put(parts_.comm().rank());
+    mine.put_all(change.removed);
+    mine.put_all(change.vertices);
+    mine.put_all(change.cells);
+    mine.put_all(change.labels);
   }
-  return said;
-}
-
-std::optional<RoundCounts> follow(DistributedMesh& parts, std::span<const std::byte> said,
-                                  std::span<const std::uint64_t> cells, std::span<std::uint8_t> depth) {
-  Unpacker in(said);
-  const auto met = in.get_all<std::uint64_t>();
-  for (std::uint64_t number : met)
-    depth[static_cast<std::size_t>(std::ranges::lower_bound(cells, number) - cells.begin())] += kDeeper;
-  if (!met.empty()) return std::nullopt;
-  const auto counts = in.get<RoundCounts>();
-  const auto slots = in.get<CutoutRound::SlotChange>();
-  const auto freed = in.get_all<std::uint64_t>();
-  std::vector<std::uint64_t>& free = parts.free_slots();
-  free.resize(free.size() - slots.n_taken);
-  free.insert(free.end(), freed.begin(), freed.end());
-  parts.n_slots() += slots.n_fresh;
-  parts.add_numbers(slots.n_vertices);
-  ++parts.work().clock;
-  std::vector<DistributedMesh::VertexRecord> vertices;
+  const std::vector<std::byte> said = parts_.comm().all_gather(std::span<const std::byte>(mine.bytes()));
+  std::vector<std::uint64_t>& free = parts_.free_slots();
+  free.resize(free.size() - slots_.n_taken);
+  free.insert(free.end(), freed_.begin(), freed_.end());
+  parts_.n_slots() += slots_.n_fresh;
+  parts_.add_numbers(slots_.n_vertices);
+  ++parts_.work().clock;
+  std::vector<Heard> vertices;
   std::vector<DistributedMesh::CellRecord> created;
   std::vector<LabelRecord> labels;
   std::vector<CellHandle> gone;
-  for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
+  for (Unpacker in(said); !in.at_end();) {
+    const auto rank = in.get<int>();
     const auto removed = in.get_all<std::uint64_t>();
-    const auto v = in.get_all<DistributedMesh::VertexRecord>();
+    const auto v = in.get_all<Touched>();
     const auto c = in.get_all<DistributedMesh::CellRecord>();
     const auto l = in.get_all<LabelRecord>();
     // Whose vertices have one of the new cells holds one of those that they stand for.
     const std::size_t n_before = gone.size();
     for (std::uint64_t number : removed)
-      if (const CellHandle held = parts.cell_at(number); held.is_valid() && !parts.part().is_deleted(held))
+      if (const CellHandle held = parts_.cell_at(number); held.is_valid() && !parts_.part().is_deleted(held))
         gone.push_back(held);
     if (gone.size() == n_before) continue;
-    vertices.insert(vertices.end(), v.begin(), v.end());
+    for (const Touched& one : v) vertices.push_back({one, rank});
     created.insert(created.end(), c.begin(), c.end());
     labels.insert(labels.end(), l.begin(), l.end());
   }
-  for (CellHandle c : gone) parts.detach(c);
-  if (!gone.empty()) parts.apply(vertices, created, labels);
-  PartRound(parts).bring_near(!gone.empty(), {}, /*is_far=*/true);
-  return counts;
+  for (CellHandle c : gone) parts_.detach(c);
+  if (!gone.empty()) parts_.apply(merged(std::move(vertices)), created, labels);
+  PartRound(parts_).bring_near(!gone.empty(), {}, /*is_far=*/true);
 }
 
 }  // namespace hfr::mpi

@@ -48,7 +48,7 @@ std::vector<VertexHandle> PartUnfolding::own_within(int layers) const {
   Spread spread(parts_);
   for (CellHandle c : invalid_) spread.begin(c, static_cast<std::uint32_t>(layers));
   spread.run();
-  return spread.own();
+  return std::move(spread.own().front());
 }
 
 std::size_t PartUnfolding::n_within(int layers) {

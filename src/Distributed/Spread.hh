@@ -13,14 +13,14 @@
 
 namespace hfr::mpi {
 
-/// Marks the own vertices of each rank that few enough edges lead to from some cells. Each step goes one edge
-/// further; what it comes to of other ranks is told to them.
+/// Marks the own vertices of each rank that few enough edges lead to from some cells, for each rank that
+/// asks. Each step goes one edge further; what it comes to of other ranks is told to them.
 class Spread {
  public:
   explicit Spread(const DistributedMesh& parts) : parts_(parts), to_(parts.comm().n_ranks()) {}
 
-  void begin(CellHandle c, std::uint32_t depth) {
-    for (VertexHandle v : parts_.part().cell(c).v) reach(v, depth);
+  void begin(CellHandle c, std::uint32_t depth, int for_whom = 0) {
+    for (VertexHandle v : parts_.part().cell(c).v) reach({v, for_whom}, depth);
   }
   void run() {
     for (bool is_done = false; !is_done;) {
@@ -29,46 +29,59 @@ class Spread {
       for (const Comm::Message& message : came.messages)
         for (Unpacker in(message.bytes); !in.at_end();) {
           const auto told = in.get<Told>();
-          reach(parts_.vertex_at(told.number), told.left);
+          reach({parts_.vertex_at(told.number), told.for_whom}, told.left);
         }
       is_done = came.sum + came.n_messages == 0;
-      for (VertexHandle v : std::exchange(next_, {})) go_on_from(v);
+      for (const Mark& mark : std::exchange(next_, {})) go_on_from(mark);
     }
   }
-  /// Ascending.
-  std::vector<VertexHandle> own() const {
-    std::vector<VertexHandle> vertices;
-    for (const auto& [v, left] : left_)
-      if (parts_.is_own(VertexHandle(v))) vertices.push_back(VertexHandle(v));
-    std::sort(vertices.begin(), vertices.end());
+  /// By the rank that they are marked for, ascending.
+  std::vector<std::vector<VertexHandle>> own() const {
+    std::vector<std::vector<VertexHandle>> vertices(parts_.comm().n_ranks());
+    for (const auto& [key, left] : left_)
+      if (const Mark mark = mark_of(key); parts_.is_own(mark.v))
+        vertices[static_cast<std::size_t>(mark.for_whom)].push_back(mark.v);
+    for (auto& of_rank : vertices) std::sort(of_rank.begin(), of_rank.end());
     return vertices;
   }
 
  private:
+  struct Mark {
+    VertexHandle v;
+    int for_whom = 0;
+  };
   struct Told {
     std::uint64_t number = 0;
     std::uint32_t left = 0;
+    std::int32_t for_whom = 0;
   };
+  static std::uint64_t key_of(const Mark& mark) {
+    return static_cast<std::uint64_t>(mark.for_whom) << 32U | mark.v.idx();
+  }
+  static Mark mark_of(std::uint64_t key) {
+    return {VertexHandle(static_cast<Index>(key & 0xffffffffU)), static_cast<int>(key >> 32U)};
+  }
 
-  void reach(VertexHandle v, std::uint32_t left) {
-    const auto [at, is_first] = left_.emplace(v.idx(), left);
+  void reach(const Mark& mark, std::uint32_t left) {
+    const auto [at, is_first] = left_.emplace(key_of(mark), left);
     if (!is_first && at->second >= left) return;
     at->second = left;
-    if (parts_.is_own(v))
-      next_.push_back(v);
+    if (parts_.is_own(mark.v))
+      next_.push_back(mark);
     else
-      to_[static_cast<std::size_t>(parts_.owner(v))].put(Told{parts_.number(v), left});
+      to_[static_cast<std::size_t>(parts_.owner(mark.v))].put(
+          Told{parts_.number(mark.v), left, mark.for_whom});
   }
-  void go_on_from(VertexHandle v) {
-    const std::uint32_t left = left_.at(v.idx());
+  void go_on_from(const Mark& mark) {
+    const std::uint32_t left = left_.at(key_of(mark));
     if (left == 0) return;
-    for (CellHandle c : parts_.part().vertex_cells(v))
-      for (VertexHandle u : parts_.part().cell(c).v) reach(u, static_cast<std::uint32_t>(left - 1));
+    for (CellHandle c : parts_.part().vertex_cells(mark.v))
+      for (VertexHandle u : parts_.part().cell(c).v) reach({u, mark.for_whom}, left - 1);
   }
 
   const DistributedMesh& parts_;
-  std::unordered_map<Index, std::uint32_t> left_;  // edges to go, by vertex
-  std::vector<VertexHandle> next_;                 // own ones to go on from
+  std::unordered_map<std::uint64_t, std::uint32_t> left_;  // edges to go, by vertex and rank
+  std::vector<Mark> next_;                                 // own ones to go on from
   std::vector<Packer> to_;
 };
 
