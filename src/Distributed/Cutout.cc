@@ -2,9 +2,7 @@
 #include "Distributed/Cutout.hh"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-#include <utility>
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/Spread.hh"
@@ -16,17 +14,36 @@ namespace {
 using VertexRecord = DistributedMesh::VertexRecord;
 using CellRecord = DistributedMesh::CellRecord;
 
+/// Each once, in the order of numbers.
 template <class Record>
 void sort_by_number(std::vector<Record>& records) {
-  std::sort(records.begin(), records.end(), [](const Record& a, const Record& b) {
+  const auto order = [](const Record& a, const Record& b) {
     if constexpr (requires { a.of_owner; })
       return a.number != b.number ? a.number < b.number : a.of_owner > b.of_owner;
     else
       return a.number < b.number;
-  });
+  };
+  if (!std::is_sorted(records.begin(), records.end(), order))  // as from one rank
+    std::sort(records.begin(), records.end(), order);
   records.erase(std::unique(records.begin(), records.end(),
                             [](const Record& a, const Record& b) { return a.number == b.number; }),
                 records.end());
+}
+
+/// Each once, ascending; of a part that has n of them.
+template <class Handle>
+void sort_and_unite(std::vector<Handle>& handles, std::size_t n) {
+  constexpr std::size_t kFew = 64;  // one in so many is quicker sorted than looked for among all
+  if (handles.size() < n / kFew) {
+    std::sort(handles.begin(), handles.end());
+    handles.erase(std::unique(handles.begin(), handles.end()), handles.end());
+    return;
+  }
+  std::vector<std::uint8_t> is_in(n, 0);
+  for (Handle h : handles) is_in[h.idx()] = 1;
+  handles.clear();
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_in[i] != 0) handles.push_back(Handle(i));
 }
 
 /// What lies round these vertices: their numbers, the records of all cells that have one and of the corners
@@ -39,16 +56,14 @@ void pack_round(const DistributedMesh& parts, std::span<const VertexHandle> vert
     taken.push_back(parts.number(v));
     for (CellHandle c : part.vertex_cells(v)) cells.push_back(c);
   }
-  std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  sort_and_unite(cells, part.n_cells());
   std::vector<CellRecord> cell_records;
   std::vector<VertexHandle> corners;
   for (CellHandle c : cells) {
     cell_records.push_back(parts.record(c));
     corners.insert(corners.end(), part.cell(c).v.begin(), part.cell(c).v.end());
   }
-  std::sort(corners.begin(), corners.end());
-  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  sort_and_unite(corners, part.n_vertices());
   std::vector<VertexRecord> vertex_records;
   for (VertexHandle v : corners) vertex_records.push_back(parts.record(v));
   out.put_all(taken);
@@ -95,28 +110,31 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   work_.clock = parts.work().clock;
   work_.floor = parts.work().floor;
   work_.holds_damage = parts.work().holds_damage;
-  build(std::move(cell_records), taken);
+  build(cell_records, taken);
   labels_.add(mesh_, labels, [this](std::uint64_t n) { return vertex_at(n); });
 }
 
 /// `taken`: numbers of vertices, ascending.
-void Cutout::build(std::vector<CellRecord> cells, const std::vector<std::uint64_t>& taken) {
+void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::uint64_t>& taken) {
   TetMesh::Writer writer(mesh_);
   mesh_.reserve_vertices(vertices_.size());
+  vertex_index_ = NumberIndex(vertices_.size());
   std::vector<std::uint8_t> is_taken;
   for (const VertexRecord& r : vertices_) {
-    mesh_.add_vertex(r.point);
+    vertex_index_.insert(r.number, mesh_.add_vertex(r.point).idx());
     work_.star_size.push_back(r.star_size);
     work_.changed.push_back(r.changed);
     work_.frozen.push_back(r.frozen);
     is_taken.push_back(std::binary_search(taken.begin(), taken.end(), r.number) ? 1 : 0);
   }
-  n_sorted_ = cells.size();
-  writer.resize_cells(n_sorted_);
-  work_.claim.assign(n_sorted_, kUnclaimed);
-  rim_.is_rim.assign(n_sorted_, 0);
-  rim_.has_met.assign(n_sorted_, 0);
-  for (std::size_t i = 0; i < n_sorted_; ++i) {
+  const std::size_t n = cells.size();
+  writer.resize_cells(n);
+  work_.claim.assign(n, kUnclaimed);
+  rim_.is_rim.assign(n, 0);
+  rim_.has_met.assign(n, 0);
+  cell_index_ = NumberIndex(n);
+  for (std::size_t i = 0; i < n; ++i) cell_index_.insert(cells[i].number, static_cast<Index>(i));
+  for (std::size_t i = 0; i < n; ++i) {
     const CellRecord& r = cells[i];
     const CellHandle c(i);
     cell_number_.push_back(r.number);
@@ -125,47 +143,27 @@ void Cutout::build(std::vector<CellRecord> cells, const std::vector<std::uint64_
     for (std::size_t k = 0; k < 4; ++k) {
       const VertexHandle v = vertex_at(r.v[k]);
       writer.cell(c).v[k] = v;
-      writer.cell(c).mate[k] = HalfFaceHandle();
+      // Who sends a cell has all its neighbours; those that are not here lie behind the rim.
+      const CellHandle there = r.mate[k] == kNoNumber ? CellHandle() : cell_at(r.mate[k] / 4);
+      writer.cell(c).mate[k] =
+          there.is_valid() ? halfface_of(there, static_cast<int>(r.mate[k] % 4)) : HalfFaceHandle();
       if (!is_taken[v.idx()]) rim_.is_rim[i] = 1;
       if (!mesh_.incident_cell(v).is_valid() || vertices_[v.idx()].incident == r.number)
         writer.set_incident_cell(v, c);
     }
     mesh_.set_region(c, r.region);
   }
-  match_faces();
-}
-
-void Cutout::match_faces() {
-  using Face = std::pair<std::array<VertexHandle, 3>, HalfFaceHandle>;
-  std::vector<Face> faces;
-  faces.reserve(4 * n_sorted_);
-  for (std::size_t i = 0; i < n_sorted_; ++i)
-    for (HalfFaceHandle h : mesh_.cell_halffaces(CellHandle(i))) {
-      std::array<VertexHandle, 3> key = mesh_.halfface_vertices(h);
-      std::sort(key.begin(), key.end());
-      faces.emplace_back(key, h);
-    }
-  std::sort(faces.begin(), faces.end());
-  TetMesh::Writer writer(mesh_);
-  for (std::size_t i = 1; i < faces.size(); ++i) {
-    if (faces[i].first != faces[i - 1].first) continue;
-    writer.set_mate(faces[i].second, faces[i - 1].second);
-    writer.set_mate(faces[i - 1].second, faces[i].second);
-  }
 }
 
 /// Of those that it was built with.
 VertexHandle Cutout::vertex_at(std::uint64_t number) const {
-  const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), number,
-                                   [](const VertexRecord& v, std::uint64_t n) { return v.number < n; });
-  return at != vertices_.end() && at->number == number ? VertexHandle(at - vertices_.begin())
-                                                       : VertexHandle();
+  const Index at = vertex_index_[number];
+  return at == NumberIndex::kNone ? VertexHandle() : VertexHandle(at);
 }
 
 CellHandle Cutout::cell_at(std::uint64_t number) const {
-  const auto end = cell_number_.begin() + static_cast<std::ptrdiff_t>(n_sorted_);
-  const auto at = std::lower_bound(cell_number_.begin(), end, number);
-  return at != end && *at == number ? CellHandle(at - cell_number_.begin()) : CellHandle();
+  const Index at = cell_index_[number];
+  return at == NumberIndex::kNone ? CellHandle() : CellHandle(at);
 }
 
 CellHandle Cutout::add_slot(std::uint64_t number) {

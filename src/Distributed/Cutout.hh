@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
+#include "Distributed/NumberIndex.hh"
 #include "Operators/GrownCells.hh"
 
 namespace hfr::mpi {
@@ -52,17 +53,16 @@ class Cutout {
   }
 
  private:
-  void build(std::vector<DistributedMesh::CellRecord> cells, const std::vector<std::uint64_t>& taken);
+  void build(const std::vector<DistributedMesh::CellRecord>& cells, const std::vector<std::uint64_t>& taken);
   VertexHandle vertex_at(std::uint64_t number) const;
-  void match_faces();
 
   TetMesh mesh_;
   Workspace work_;
   CutRim rim_;
   PartLabels labels_;
   std::vector<DistributedMesh::VertexRecord> vertices_;  // as they were
-  std::vector<std::uint64_t> cell_number_;               // by slot; the first n_sorted_ ascend
-  std::size_t n_sorted_ = 0;
+  std::vector<std::uint64_t> cell_number_;               // by slot
+  NumberIndex vertex_index_, cell_index_;                // of what it was built with
   std::vector<std::uint64_t> centres_, new_number_;
 };
 

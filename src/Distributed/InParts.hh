@@ -64,13 +64,13 @@ struct PartsResult {
 /// far as options.ops has them. With the others: all stages over all cells, or after the polish towards a
 /// goal.
 ///
-/// For insertion and cluster search rank 0 holds what the cells that are left below the goal then have round
-/// them, some hundred cells each. Unless it polishes a mesh of positive cells alone, each rank keeps copies
-/// of its part to go back to, and where the mesh has invalid cells, or a boundary that lies on itself, rank 0
-/// selects the winners of all rounds. Where cells of a run without a goal are scattered in memory, they are
-/// numbered anew first, as there. Throws InvalidInput, naming it, for what is not there in parts: searches
-/// for the last cells, another metric than volume-length for all cells, a surface that may change, fixed
-/// things, devices, time limits, callbacks, maps, other smoothers.
+/// Candidates for new vertices and searched clusters come together on rank 0, some 300 bytes each. Unless it
+/// polishes a mesh of positive cells alone, each rank keeps copies of its part to go back to, and where the
+/// mesh has invalid cells, or a boundary that lies on itself, rank 0 selects the winners of all rounds. Where
+/// cells of a run without a goal are scattered in memory, they are numbered anew first, as there. Throws
+/// InvalidInput, naming it, for what is not there in parts: searches for the last cells, another metric than
+/// volume-length for all cells, a surface that may change, fixed things, devices, time limits, callbacks,
+/// maps, other smoothers.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

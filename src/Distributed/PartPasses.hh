@@ -22,7 +22,7 @@ class PartPasses {
 
   static bool can_do(PassKind kind, const RankMetric& metric);
   RoundCounts run(const Ranks::Look& look);
-  /// A round of insertion, on rank 0: see PartInsertion.
+  /// A round of insertion: see PartInsertion.
   RoundCounts dig(const Ranks::Dig& dig, std::vector<std::uint64_t>& waiting);
   /// A round of cluster search, likewise: see PartSearch.
   RoundCounts search(const Ranks::Search& search);

@@ -55,11 +55,11 @@ class Spread {
     std::uint32_t left = 0;
     std::int32_t for_whom = 0;
   };
-  static std::uint64_t key_of(const Mark& mark) {
-    return static_cast<std::uint64_t>(mark.for_whom) << 32U | mark.v.idx();
+  std::uint64_t key_of(const Mark& mark) const {
+    return mark.v.idx() * static_cast<std::uint64_t>(to_.size()) + static_cast<std::uint64_t>(mark.for_whom);
   }
-  static Mark mark_of(std::uint64_t key) {
-    return {VertexHandle(static_cast<Index>(key & 0xffffffffU)), static_cast<int>(key >> 32U)};
+  Mark mark_of(std::uint64_t key) const {
+    return {VertexHandle(static_cast<Index>(key / to_.size())), static_cast<int>(key % to_.size())};
   }
 
   void reach(const Mark& mark, std::uint32_t left) {
