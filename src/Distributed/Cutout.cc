@@ -75,16 +75,17 @@ void pack_round(const DistributedMesh& parts, std::span<const VertexHandle> vert
 }  // namespace
 
 Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cells,
-               std::span<const std::uint8_t> depth) {
+               std::span<const std::uint8_t> depth, Where where) {
   const TetMesh& part = parts.part();
   Comm& comm = parts.comm();
   Spread spread(parts);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellHandle c = parts.cell_at(cells[i]);
     if (!c.is_valid() || part.is_deleted(c) || !parts.is_own(c)) continue;
-    spread.begin(c, depth[i], comm.rank());
-    centres_.push_back(cells[i]);
+    spread.begin(c, depth[i], where == Where::kOnFirst ? 0 : comm.rank());
+    if (where == Where::kOnOwners) centres_.push_back(cells[i]);
   }
+  if (where == Where::kOnFirst && comm.rank() == 0) centres_.assign(cells.begin(), cells.end());
   spread.run();
   std::vector<Packer> to(comm.n_ranks());
   const auto asked_for = spread.own();

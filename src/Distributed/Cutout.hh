@@ -13,23 +13,24 @@
 
 namespace hfr::mpi {
 
-/// The surroundings of some cells of a rank, brought together there as a mesh of their own, for work that
+/// The surroundings of some cells, brought together on a rank as a mesh of their own, for work that
 /// reaches further than what each part holds. Vertices and cells stand in the order of their numbers in the
 /// whole.
 class Cutout {
  public:
-  /// `cells`: numbers, ascending, the same on all ranks, of which each takes its own ones; `depth`, of each
-  /// of them, at least 1: vertices are taken that so many edges lead to, and all cells that have one of
+  enum class Where : std::uint8_t { kOnOwners, kOnFirst };
+  /// `cells`: numbers, ascending, the same on all ranks, of which each takes its own ones, or rank 0 all;
+  /// `depth`, of each of them: vertices are taken that so many edges lead to, and all cells that have one of
   /// these. All take part. A cell of it whose vertices are all such has all its neighbours; others are its
   /// rim.
   Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cells,
-         std::span<const std::uint8_t> depth);
+         std::span<const std::uint8_t> depth, Where where = Where::kOnOwners);
 
   TetMesh& mesh() { return mesh_; }
   Workspace& work() { return work_; }
   const CutRim& rim() const { return rim_; }
 
-  /// Of the cells those that are this rank's own, ascending.
+  /// Of the cells those whose surroundings are here, ascending.
   const std::vector<std::uint64_t>& centres() const { return centres_; }
   std::uint64_t number(VertexHandle v) const {
     return v.idx() < vertices_.size() ? vertices_[v.idx()].number : new_number_[v.idx() - vertices_.size()];

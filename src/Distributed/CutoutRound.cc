@@ -9,6 +9,7 @@
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/PartRound.hh"
+#include "HalfFace/Writer.hh"
 #include "Scheduler/Select.hh"
 
 namespace hfr::mpi {
@@ -46,6 +47,31 @@ struct CutoutRound::Prize {
   Award award;
   std::vector<std::uint64_t> fresh;
 };
+
+void change_slots(DistributedMesh& parts, const SlotChange& slots, std::span<const std::uint64_t> freed) {
+  std::vector<std::uint64_t>& free = parts.free_slots();
+  free.resize(free.size() - slots.n_taken);
+  free.insert(free.end(), freed.begin(), freed.end());
+  parts.n_slots() += slots.n_fresh;
+  parts.add_numbers(slots.n_vertices);
+}
+
+bool NearChange::remove(const DistributedMesh& parts, std::span<const std::uint64_t> numbers) {
+  const std::size_t n_before = gone.size();
+  for (std::uint64_t number : numbers)
+    if (const CellHandle held = parts.cell_at(number); held.is_valid() && !parts.part().is_deleted(held))
+      gone.push_back(held);
+  return gone.size() > n_before;
+}
+
+void write_home(DistributedMesh& parts, const NearChange& change) {
+  for (CellHandle c : change.gone) parts.detach(c);
+  if (!change.gone.empty()) parts.apply(change.vertices, change.created, change.labels);
+  for (std::uint64_t number : change.deleted)
+    if (const VertexHandle v = parts.vertex_at(number); v.is_valid())
+      TetMesh::Writer(parts.part()).mark_deleted(v);
+  PartRound(parts).bring_near(!change.gone.empty(), {}, /*is_far=*/true);
+}
 
 void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t> met,
             std::span<std::uint8_t> depth) {
@@ -221,35 +247,23 @@ void CutoutRound::bring_home() {
     mine.put_all(change.labels);
   }
   const std::vector<std::byte> said = parts_.comm().all_gather(std::span<const std::byte>(mine.bytes()));
-  std::vector<std::uint64_t>& free = parts_.free_slots();
-  free.resize(free.size() - slots_.n_taken);
-  free.insert(free.end(), freed_.begin(), freed_.end());
-  parts_.n_slots() += slots_.n_fresh;
-  parts_.add_numbers(slots_.n_vertices);
+  change_slots(parts_, slots_, freed_);
   ++parts_.work().clock;
   std::vector<Heard> vertices;
-  std::vector<DistributedMesh::CellRecord> created;
-  std::vector<LabelRecord> labels;
-  std::vector<CellHandle> gone;
+  NearChange near;
   for (Unpacker in(said); !in.at_end();) {
     const auto rank = in.get<int>();
     const auto removed = in.get_all<std::uint64_t>();
     const auto v = in.get_all<Touched>();
     const auto c = in.get_all<DistributedMesh::CellRecord>();
     const auto l = in.get_all<LabelRecord>();
-    // Whose vertices have one of the new cells holds one of those that they stand for.
-    const std::size_t n_before = gone.size();
-    for (std::uint64_t number : removed)
-      if (const CellHandle held = parts_.cell_at(number); held.is_valid() && !parts_.part().is_deleted(held))
-        gone.push_back(held);
-    if (gone.size() == n_before) continue;
+    if (!near.remove(parts_, removed)) continue;
     for (const Touched& one : v) vertices.push_back({one, rank});
-    created.insert(created.end(), c.begin(), c.end());
-    labels.insert(labels.end(), l.begin(), l.end());
+    near.created.insert(near.created.end(), c.begin(), c.end());
+    near.labels.insert(near.labels.end(), l.begin(), l.end());
   }
-  for (CellHandle c : gone) parts_.detach(c);
-  if (!gone.empty()) parts_.apply(merged(std::move(vertices)), created, labels);
-  PartRound(parts_).bring_near(!gone.empty(), {}, /*is_far=*/true);
+  near.vertices = merged(std::move(vertices));
+  write_home(parts_, near);
 }
 
 }  // namespace hfr::mpi

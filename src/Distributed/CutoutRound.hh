@@ -17,6 +17,31 @@
 
 namespace hfr::mpi {
 
+/// What is done to the slots and vertices of the whole.
+struct SlotChange {
+  std::uint64_t n_taken = 0;     ///< from the back of the free list
+  std::uint64_t n_fresh = 0;     ///< beyond it, at the end of all slots
+  std::uint64_t n_vertices = 0;  ///< that come
+  std::uint64_t n_held_back = 0;
+};
+/// On every rank. `freed`: in the order in which they go to the free list.
+void change_slots(DistributedMesh& parts, const SlotChange& slots, std::span<const std::uint64_t> freed);
+
+/// What of a change lies near a part.
+struct NearChange {
+  std::vector<CellHandle> gone;
+  std::vector<std::uint64_t> deleted;  ///< vertices
+  std::vector<DistributedMesh::VertexRecord> vertices;
+  std::vector<DistributedMesh::CellRecord> created;
+  std::vector<LabelRecord> labels;
+
+  /// The cells of these numbers go that the part has; false where it has none: whose vertices have one of the
+  /// cells that stand for them has one of these.
+  bool remove(const DistributedMesh& parts, std::span<const std::uint64_t> numbers);
+};
+/// Into the part, and then what has come near it by that. All take part.
+void write_home(DistributedMesh& parts, const NearChange& change);
+
 /// The place of a round on cutouts, one on each rank: seeds are evaluated, and winners committed, where they
 /// are. Slots and new vertices are those of the whole. What lies near a winner of another rank is not brought
 /// up to date here, but in the parts, by bring_home(). All ranks take part in what all of them are asked for.
@@ -43,13 +68,6 @@ class CutoutRound : public RoundPlace {
  private:
   using VertexRecord = DistributedMesh::VertexRecord;
 
-  /// What a round does to the slots and vertices of the whole.
-  struct SlotChange {
-    std::uint64_t n_taken = 0;     ///< from the back of the free list
-    std::uint64_t n_fresh = 0;     ///< beyond it, at the end of all slots
-    std::uint64_t n_vertices = 0;  ///< that come
-    std::uint64_t n_held_back = 0;
-  };
   /// A vertex of a cell that a winner has made.
   struct Touched {
     VertexRecord record;

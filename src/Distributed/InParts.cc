@@ -17,6 +17,7 @@
 #include "Distributed/CommonBox.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/PartPasses.hh"
+#include "Distributed/PartPatchSearch.hh"
 #include "Distributed/PartUnfolding.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
@@ -63,6 +64,13 @@ class Residents : public Ranks, public MeshInParts {
   std::size_t sum(std::size_t mine) override { return static_cast<std::size_t>(mesh_.comm().sum(mine)); }
   double min(double mine) override { return mesh_.comm().min(mine); }
   double smallest(std::span<const double> mine, std::size_t rank) override;
+  void mark_round(double degrees, int layers) override { passes_.mark_round(degrees, layers); }
+  std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,
+                                               std::span<const CellHandle> but) override;
+  PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers,
+                             const std::function<PatchesDone(PatchPlace&)>& search) override {
+    return search_patches_in_parts(mesh_, cells, layers, search);
+  }
   Standing standing() override;
   Box box() override;
   std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) override {
@@ -122,6 +130,30 @@ VertexTally Residents::vertices() {
   return {static_cast<std::size_t>(mesh_.n_vertices()), sum(n_movable)};
 }
 
+/// Each rank's own n worst ones come together on all ranks.
+std::vector<std::uint64_t> Residents::worst_cells_below(double degrees, std::size_t n,
+                                                        std::span<const CellHandle> but) {
+  const TetMesh& part = mesh_.part();
+  std::vector<Numbered> worst;
+  const auto keep_worst = [&] {
+    const auto order = [](const Numbered& a) { return std::pair(a.value, a.number); };
+    std::ranges::sort(worst, {}, order);
+    worst.resize(std::min(n, worst.size()));
+  };
+  for (CellHandle c : cells_below(part, degrees, policy_)) {
+    if (!mesh_.is_own(c) || std::binary_search(but.begin(), but.end(), c)) continue;
+    const auto& v = part.cell(c).v;
+    worst.push_back({mesh_.number(c),
+                     MinDihedral{}(part.point(v[0]), part.point(v[1]), part.point(v[2]), part.point(v[3]))});
+  }
+  keep_worst();
+  worst = mesh_.comm().all_gather(std::span<const Numbered>(worst));
+  keep_worst();
+  std::vector<std::uint64_t> numbers;
+  for (const Numbered& one : worst) numbers.push_back(one.number);
+  return numbers;
+}
+
 /// From the first bits to the last: by the next four, of the values that begin as the one that is looked for,
 /// all ranks count how many there are of each.
 double Residents::smallest(std::span<const double> mine, std::size_t rank) {
@@ -149,8 +181,6 @@ double Residents::smallest(std::span<const double> mine, std::size_t rank) {
 /// What of the options is not there in parts; empty where all is.
 std::string reason_against(const ImproveOptions& options) {
   if (options.raise_min_dihedral) return "runs that raise the worst angle at any cost";
-  if (!options.polish_only && !options.passes_only && options.iterations == 0)
-    return "searches for the last cells (give passes_only, or polish_only with min_dihedral)";
   if (!options.polish_only && options.metric != Metric::kVolumeLength)
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;

@@ -13,6 +13,7 @@
 #include "Distributed/PartSearch.hh"
 #include "Distributed/PartSeeds.hh"
 #include "Distributed/PartSmoothing.hh"
+#include "Distributed/Spread.hh"
 #include "Operators/AnyOf.hh"
 #include "Operators/EdgeRemoval.hh"
 #include "Operators/FaceSwap.hh"
@@ -21,6 +22,7 @@
 #include "Operators/SmoothMaxMin.hh"
 #include "Operators/SmoothNewton.hh"
 #include "Operators/VertexCollapse.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr::mpi {
 bool PartPasses::can_do(PassKind kind, const RankMetric& metric) {
@@ -77,8 +79,27 @@ Worklist PartPasses::listed(const Ranks::Look& look) {
   return Worklist(part, policy, poor_.below(look.below, work, policy), [&](CellHandle c) {
     const auto& v = part.cell(c).v;
     return std::any_of(v.begin(), v.end(),
-                       [&](VertexHandle u) { return work.changed[u.idx()] > look.since; });
+                       [&](VertexHandle u) { return work.changed[u.idx()] > look.since; }) &&
+           (!look.is_marked || std::any_of(v.begin(), v.end(), [&](VertexHandle u) { return is_marked(u); }));
   });
+}
+
+bool PartPasses::is_marked(VertexHandle v) const {
+  const std::uint64_t number = parts_.number(v);
+  return number >= newer_from_ || std::binary_search(marked_.begin(), marked_.end(), number);
+}
+
+void PartPasses::mark_round(double degrees, int layers) {
+  Spread spread(parts_);
+  for (CellHandle c : cells_below(parts_.part(), degrees, {}))
+    if (parts_.is_own(c)) spread.begin(c, static_cast<std::uint32_t>(layers));
+  spread.run();
+  marked_.clear();
+  const std::vector<VertexHandle> own = std::move(spread.own().front());
+  for (VertexHandle v : own) marked_.push_back(parts_.number(v));
+  marked_ = parts_.comm().all_gather(std::span<const std::uint64_t>(marked_));
+  std::sort(marked_.begin(), marked_.end());
+  newer_from_ = parts_.n_vertices();
 }
 
 template <class M>

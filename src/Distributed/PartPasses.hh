@@ -28,9 +28,13 @@ class PartPasses {
   RoundCounts search(const Ranks::Search& search);
   /// Of all cells of the whole.
   Ranks::Tally tally(double below);
+  /// For looks that are marked: vertices of the cells of the whole below so many degrees, and of so many
+  /// layers round them.
+  void mark_round(double degrees, int layers);
 
  private:
   Worklist listed(const Ranks::Look& look);
+  bool is_marked(VertexHandle v) const;
   template <class M>
   RoundCounts pass(const Ranks::Look& look, const M& metric);
   template <class M>
@@ -39,6 +43,8 @@ class PartPasses {
   RoundCounts round(const Ranks::Look& look, const Op& op, const Worklist& list, bool first_does = false);
   std::uint64_t n_own(std::span<const Index> cells) const;
 
+  std::vector<std::uint64_t> marked_;  // numbers of vertices, ascending
+  std::uint64_t newer_from_ = 0;       // and these, which have come since
   DistributedMesh& parts_;
   std::uint64_t& n_rounds_;
   PoorCells poor_;  // of the part

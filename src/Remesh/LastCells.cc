@@ -4,9 +4,21 @@
 #include "Remesh/MayRise.hh"
 #include "Remesh/Neighbourhoods.hh"
 #include "Remesh/PatchSearch.hh"
+#include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
+namespace {
+
+/// As degrees_with_few_below(), of the whole.
+double few_below(const Run& run, double degrees, std::size_t n) {
+  if (!run.is_part()) return degrees_with_few_below(run.mesh, degrees, n, run.policy());
+  SmallestDihedrals angles(run);
+  if (angles.n_below(dihedral_decision(degrees)) <= n) return degrees;
+  return report_value(Metric::kMinDihedral, angles.smallest(n + 1));
+}
+
+}  // namespace
 
 bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span<const TargetAngle> targets) {
   if (!run.strategy.patch.enabled && !run.strategy.neighbourhoods) return false;
@@ -26,8 +38,7 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
       before = now;
       const auto& neighbourhoods = run.strategy.neighbourhoods;
       const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
-      improve_neighbourhoods(run, neighbourhoods,
-                             degrees_with_few_below(run.mesh, target.degrees, few, run.policy()));
+      improve_neighbourhoods(run, neighbourhoods, few_below(run, target.degrees, few));
       now = smallest();
     }
     if (target.degrees <= effort.patches_up_to) search(effort.patches);

@@ -3,11 +3,15 @@
 #define HFR_REMESH_MESH_IN_PARTS_HH
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Remesh/PatchPlace.hh"
 #include "Remesh/Standing.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Unfolding.hh"
@@ -39,6 +43,16 @@ class MeshInParts {
   virtual double smallest(std::span<const double> mine, std::size_t rank) = 0;
   /// Of all its points.
   virtual Box box() = 0;
+  /// For Focus::is_marked: the vertices of the cells below so many degrees, and of so many layers round them.
+  virtual void mark_round(double degrees, int layers) = 0;
+  /// The numbers of the n worst cells below so many degrees, of which at most that many, the worst first; of
+  /// two that are alike the one with the smaller number. `but`: own ones that do not count, ascending.
+  virtual std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,
+                                                       std::span<const CellHandle> but) = 0;
+  /// Brings together, in one process, what lies within so many layers of these cells, and lets that one
+  /// search there. All processes have what it has made of it, and get what it says.
+  virtual PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers,
+                                     const std::function<PatchesDone(PatchPlace&)>& search) = 0;
   virtual std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) = 0;
   /// Of the part, to come back to.
   virtual std::shared_ptr<const void> copy() const = 0;

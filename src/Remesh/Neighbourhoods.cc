@@ -16,11 +16,18 @@ void improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
   if (!effort) return;
   const double decision = dihedral_decision(degrees);
   for (const NeighbourhoodEffort::Try& attempt : effort->tries) {
-    const std::vector<CellHandle> left = cells_below(run.mesh, degrees, run.policy());
-    if (left.empty() || left.size() > effort->few || run.control.stopped()) return;
-    const auto around = vertices_within(run.mesh, left, attempt.layers);
+    std::vector<CellHandle> left;
+    if (!run.is_part()) left = cells_below(run.mesh, degrees, run.policy());
+    const std::size_t n_left = run.is_part() ? run.n_below(degrees) : left.size();
+    if (n_left == 0 || n_left > effort->few || run.control.stopped()) return;
+    std::vector<std::uint8_t> around;
+    if (run.is_part())
+      run.parts()->mark_round(degrees, attempt.layers);
+    else
+      around = vertices_within(run.mesh, left, attempt.layers);
     PassRunner<MinSine2> runner(run, MinSine2{}, "neighbourhoods");
-    const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, kLargestGoal)), around};
+    const Focus focus{dihedral_decision(std::min(degrees + attempt.degrees, kLargestGoal)), around,
+                      run.is_part()};
     for (int i = 1; i <= effort->iterations && !run.control.stopped(); ++i) {
       const Turn turn{i, focus};
       std::size_t changes = runner.iterate(turn);

@@ -26,6 +26,8 @@ struct Focus {
   double below = std::numeric_limits<double>::infinity();
   /// Unless empty, only cells with a vertex that is marked here, or that is newer.
   std::span<const std::uint8_t> around = {};
+  /// In a mesh in parts the same, by what MeshInParts::mark_round() has marked last.
+  bool is_marked = false;
   bool everything() const { return below == std::numeric_limits<double>::infinity(); }
 };
 

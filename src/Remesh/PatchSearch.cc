@@ -20,6 +20,7 @@
 #include "Quality/Metrics.hh"
 #include "Remesh/MayRise.hh"
 #include "Remesh/Patch.hh"
+#include "Remesh/PatchPlace.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
@@ -48,8 +49,9 @@ struct Room {
   }
 };
 
-Room room_of(const Patch& patch, const TetMesh& mesh, const CellBounds& bounds) {
-  const std::size_t others = mesh.n_logical_cells() - patch.cells().size();
+/// `n_cells`: of the whole.
+Room room_of(const Patch& patch, std::size_t n_cells, const CellBounds& bounds) {
+  const std::size_t others = n_cells - patch.cells().size();
   const auto above_others = [&](std::size_t n) { return std::max(n, others) - others; };
   return {above_others(bounds.min), bounds.max > 0 ? above_others(bounds.max) : kNoLimit};
 }
@@ -276,13 +278,13 @@ class PatchTries {
 
 /// What the tries bring to each patch. Tries and patches share nothing, so all of them may run at once: the
 /// first try of each patch, then the second of each …, because one that helps saves those after it.
-std::vector<Outcome> search(const Run& run, std::span<const Patch> patches, double goal,
+std::vector<Outcome> search(const Run& run, std::size_t n_cells, std::span<const Patch> patches, double goal,
                             const PatchEffort& effort) {
   const std::vector<Try> tries = tries_of(effort, run.strategy.pass.sites_of_many);
   std::deque<PatchTries> all;
   std::vector<std::size_t> open;  // numbers of those that are tried on
   for (const Patch& patch : patches) {
-    all.emplace_back(patch, run, room_of(patch, run.mesh, run.bounds), goal, tries);
+    all.emplace_back(patch, run, room_of(patch, n_cells, run.bounds), goal, tries);
     if (all.back().is_worth_trying(effort.few)) open.push_back(all.size() - 1);
   }
   par::for_each_dynamic(run.policy().for_items_of(kTryNanoseconds), open.size() * tries.size(), 1,
@@ -293,9 +295,8 @@ std::vector<Outcome> search(const Run& run, std::span<const Patch> patches, doub
 }
 
 /// Patches round the worst of the cells that share none.
-std::vector<Patch> disjoint_patches(const Run& run, std::span<const CellHandle> worst,
+std::vector<Patch> disjoint_patches(const Run& run, const TetMesh& mesh, std::span<const CellHandle> worst,
                                     const PatchEffort& effort) {
-  const TetMesh& mesh = run.mesh;
   std::vector<Patch> patches;
   std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
   for (CellHandle c : worst) {
@@ -310,60 +311,94 @@ std::vector<Patch> disjoint_patches(const Run& run, std::span<const CellHandle> 
   return patches;
 }
 
-struct PutBack {
-  std::size_t n_candidates = 0, n_changed = 0;  // patches
-  bool worst_rose = false;
-};
 /// Puts back what has got better, as far as the bounds on cells let it and no edge or face comes twice.
-PutBack put_back(const Run& run, std::span<const Patch> patches, std::span<const Outcome> outcomes) {
+void put_back(const Run& run, PatchPlace& place, std::span<const Patch> patches,
+              std::span<const Outcome> outcomes, PatchesDone& done) {
   const bool may_overlap = run.findings.is_folded || !run.work.pinched.empty() || run.surface;
-  PutBack done;
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (outcomes[i].held_back) run.findings.note_cell_bound(run.bounds);
+    done.met_bound = done.met_bound || outcomes[i].held_back;
     if (!outcomes[i].mesh) continue;
     ++done.n_candidates;
-    if (!room_of(patches[i], run.mesh, run.bounds).holds(*outcomes[i].mesh)) {  // the others have had theirs
-      run.findings.note_cell_bound(run.bounds);
+    if (!room_of(patches[i], place.n_cells(), run.bounds)
+             .holds(*outcomes[i].mesh)) {  // the others have had theirs
+      done.met_bound = true;
       continue;
     }
-    if (may_overlap && !patches[i].fits(run.mesh, *outcomes[i].mesh)) continue;
-    patches[i].put_back(run.mesh, *outcomes[i].mesh);
-    run.findings.is_folded = run.findings.is_folded || outcomes[i].is_folded;
+    if (may_overlap && !patches[i].fits(place.mesh(), *outcomes[i].mesh)) continue;
+    place.put_back(patches[i], *outcomes[i].mesh);
+    done.is_folded = done.is_folded || outcomes[i].is_folded;
     ++done.n_changed;
     done.worst_rose = done.worst_rose || i == 0;
   }
+}
+
+PatchesDone search_at(const Run& run, PatchPlace& place, double goal, const PatchEffort& effort) {
+  const std::vector<Patch> patches = disjoint_patches(run, place.mesh(), place.worst(), effort);
+  PatchesDone done;
+  done.n_patches = patches.size();
+  if (!patches.empty())
+    put_back(run, place, patches, search(run, place.n_cells(), patches, goal, effort), done);
   return done;
+}
+
+/// The mesh itself.
+class WholeMesh : public PatchPlace {
+ public:
+  WholeMesh(TetMesh& mesh, std::span<const CellHandle> worst) : mesh_(mesh), worst_(worst) {}
+  TetMesh& mesh() override { return mesh_; }
+  std::span<const CellHandle> worst() const override { return worst_; }
+  std::size_t n_cells() const override { return mesh_.n_logical_cells(); }
+  void put_back(const Patch& patch, const TetMesh& changed) override { patch.put_back(mesh_, changed); }
+
+ private:
+  TetMesh& mesh_;
+  std::span<const CellHandle> worst_;
+};
+
+/// A turn round the worst cells below `degrees`; nothing where these are too many.
+std::optional<PatchesDone> take_turn(const Run& run, double degrees, const PatchEffort& effort) {
+  const std::size_t n_centres = 4 * effort.patches;  // most patches hold several of the worst cells
+  const std::size_t n = std::max(effort.few + 1, n_centres);
+  const std::vector<CellHandle> held = cells_at_ceiling(run, degrees);
+  if (run.is_part()) {
+    std::vector<std::uint64_t> worst = run.parts()->worst_cells_below(degrees, n, held);
+    if (worst.size() > effort.few) return std::nullopt;
+    worst.resize(std::min(n_centres, worst.size()));
+    return run.parts()->search_patches(
+        worst, effort.layers, [&](PatchPlace& place) { return search_at(run, place, degrees, effort); });
+  }
+  std::vector<CellHandle> worst = worst_cells_below(run.mesh, degrees, n, run.policy(), held);
+  if (worst.size() > effort.few) return std::nullopt;
+  worst.resize(std::min(n_centres, worst.size()));
+  WholeMesh place(run.mesh, worst);
+  return search_at(run, place, degrees, effort);
 }
 
 }  // namespace
 
 bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
-  if (!run.strategy.patch.enabled || !(survey(run.mesh, run.policy()).worst > 0)) return false;
+  if (!run.strategy.patch.enabled || !(run.survey().worst > 0)) return false;
   PassReport pass;
   pass.stage = "patches";
   pass.op = "insert";
   const double start = run.control.seconds();
   for (int turn = 0; turn < effort.turns && !run.control.stopped(); ++turn) {
     const double next = std::min(degrees, smallest_that_may_rise(run, degrees) + effort.degrees);
-    const std::size_t n_centres = 4 * effort.patches;  // most patches hold several of the worst cells
-    const auto worst = worst_cells_below(run.mesh, next, std::max(effort.few + 1, n_centres), run.policy(),
-                                         cells_at_ceiling(run, next));
-    if (worst.size() > effort.few) break;
-    const std::vector<Patch> patches =
-        disjoint_patches(run, std::span(worst).first(std::min(n_centres, worst.size())), effort);
-    if (patches.empty()) break;
-    const PutBack done = put_back(run, patches, search(run, patches, next, effort));
+    const std::optional<PatchesDone> done = take_turn(run, next, effort);
+    if (!done || done->n_patches == 0) break;
     ++pass.rounds;
-    pass.seeds += patches.size();
-    pass.candidates += done.n_candidates;
-    pass.winners += done.n_changed;
-    if (done.n_changed > 0) {
-      run.work.attach(run.mesh, run.policy());
+    pass.seeds += done->n_patches;
+    pass.candidates += done->n_candidates;
+    pass.winners += done->n_changed;
+    if (done->met_bound) run.findings.note_cell_bound(run.bounds);
+    run.findings.is_folded = run.findings.is_folded || done->is_folded;
+    if (done->n_changed > 0) {
+      if (!run.is_part()) run.work.attach(run.mesh, run.policy());
       if (run.strategy.patch.has_surface) rebuild(run.surface, run.mesh, run.policy());
     }
-    if (!done.worst_rose) break;
+    if (!done->worst_rose) break;
   }
-  pass.worst = survey(run.mesh, run.policy()).worst;
+  pass.worst = run.survey().worst;
   pass.seconds = run.control.seconds() - start;
   const bool changed = pass.winners > 0;
   run.control.add(std::move(pass));

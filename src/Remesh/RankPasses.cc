@@ -30,12 +30,13 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
          run.ranks->can_take(run.mesh, run.work);
 }
 
-void RankPasses::renew(Ranks::Look& look) {
+void RankPasses::renew(Ranks::Look& look, const Turn& turn) {
   const Run& run = state_.run_;
   look.since = std::exchange(state_.looked_[static_cast<std::size_t>(look.kind)], run.work.clock);
   look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
   look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
   look.check_links = state_.n_invalid() > 0 || run.findings.is_folded;
+  look.is_marked = turn.focus.is_marked;
 }
 
 void RankPasses::count(const Turn& turn) {
@@ -65,7 +66,7 @@ std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, cons
   std::size_t first = 0;
   const int most = kind == PassKind::kSmooth ? 1 : effort.rounds;
   for (int r = 0; r < most && (kind == PassKind::kSmooth || !run.control.stopped()); ++r) {
-    renew(look);
+    renew(look, turn);
     const RoundCounts counts =
         kind == PassKind::kCluster
             ? run.ranks->search({look, effort.least_gain, effort.search_points, effort.search_nodes})
@@ -101,7 +102,7 @@ std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) 
   RoundCounts total;
   std::size_t first = 0;
   for (int r = 0; r < effort.insert_rounds && !run.control.stopped(); ++r) {
-    renew(dig.look);
+    renew(dig.look, turn);
     const RoundCounts counts = run.ranks->dig(dig, waiting_);
     if (counts.rounds == 0) break;
     if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);

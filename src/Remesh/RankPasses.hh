@@ -36,7 +36,7 @@ class RankPasses {
  private:
   bool takes(PassKind kind, const Turn& turn);
   /// What the next round of a pass has to know.
-  void renew(Ranks::Look& look);
+  void renew(Ranks::Look& look, const Turn& turn);
   /// Brings the counts of the stage up to date.
   void count(const Turn& turn);
 

@@ -52,6 +52,8 @@ class Ranks {
     Ops ops = Ops::kNone;
     /// See RoundOptions::check_links.
     bool check_links = false;
+    /// See Focus::is_marked.
+    bool is_marked = false;
   };
   /// One round of insertion over such cells and those that wait from the round before.
   struct Dig {

@@ -129,8 +129,6 @@ TEST(InParts, WhatIsNotThereIsNamed) {
     return {};
   };
   using testing::HasSubstr;
-  EXPECT_THAT(refusal([](auto& o) { o.polish_only = false; }), HasSubstr("searches for the last cells"));
-  EXPECT_THAT(refusal([](auto& o) { o = ImproveOptions(); }), HasSubstr("searches for the last cells"));
   EXPECT_THAT(refusal([](auto& o) {
                 o = ImproveOptions();
                 o.raise_min_dihedral = true;

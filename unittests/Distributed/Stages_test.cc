@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All stages of a run over a mesh in parts but the searches for the last cells, beside shared memory.
+// All stages of a run over a mesh in parts, beside shared memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,6 +21,12 @@ namespace {
 ImproveOptions passes_only() {
   ImproveOptions options;
   options.passes_only = true;
+  options.policy = {};
+  return options;
+}
+
+ImproveOptions all_stages() {
+  ImproveOptions options;
   options.policy = {};
   return options;
 }
@@ -74,12 +80,13 @@ TetMesh plate(Index n, std::uint64_t seed) {
 /// What runs of a test have come to: their stages, and how many went back to what there was before.
 struct Stages {
   std::set<std::string> names;
-  std::size_t undone = 0;
+  std::size_t undone = 0, n_patched = 0;
 
   void add(const Result& result) {
     for (const PassReport& pass : result.passes) {
       names.insert(pass.stage);
       undone += pass.stage == "undo" ? 1 : 0;
+      n_patched += pass.stage == "patches" ? pass.winners : 0;
     }
   }
 };
@@ -135,6 +142,42 @@ TEST_F(StagesInParts, PoorMeshesHaveTheBytesOfSharedMemory) {
     if (comm.rank() == 0) {
       EXPECT_EQ(stages.names.count("bulk"), 1U);
     }
+  }
+}
+
+/// The searches for the last cells as well.
+TEST_F(StagesInParts, WholeRunsHaveTheBytesOfSharedMemory) {
+  std::vector<TetMesh> meshes = {cavity({6, 6, 6}, 0.3, 0), cavity({2, 9, 9}, 0.3, 0.05),
+                                 valid_box(7, 0.34, 3), plate(8, 5)};
+  Stages all;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    SCOPED_TRACE(i);
+    const Stages stages = run(meshes[i], all_stages());
+    all.names.insert(stages.names.begin(), stages.names.end());
+    all.n_patched += stages.n_patched;
+  }
+  ImproveOptions options = all_stages();
+  options.min_dihedral = 24;
+  run(meshes[2], options);
+  if (comm.rank() == 0) {
+    EXPECT_THAT(all.names, testing::IsSupersetOf({"neighbourhoods", "patches"}));
+    EXPECT_GT(all.n_patched, 5U);
+  }
+}
+
+TEST_F(StagesInParts, WholeRunsOverTangledMeshesHaveTheBytesOfSharedMemory) {
+  run(cavity({2, 9, 9}, 0.45, 0.05), all_stages());
+  ImproveOptions options = all_stages();
+  options.max_cells = 700;
+  run(cavity({4, 5, 5}, 0.3, 0.2), options);
+}
+
+TEST_F(StagesInParts, WholeRunsOverLabelledMeshesHaveTheBytesOfSharedMemory) {
+  for (const std::uint64_t seed : {1, 4}) {
+    SCOPED_TRACE(seed);
+    if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(5, 0.33, seed), seed, density_of(seed)));
+    comm.sum(0);
+    expect_same_run(comm, folder, path, all_stages());
   }
 }
 

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/PartPatchSearch.hh"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "Distributed/Buffer.hh"
+#include "Distributed/Cutout.hh"
+#include "Distributed/CutoutRound.hh"
+#include "HalfFace/Writer.hh"
+#include "Remesh/Patch.hh"
+
+namespace hfr::mpi {
+namespace {
+
+/// The cutout as the place of a search, on rank 0. Its list of free slots is the end of the whole's.
+class CutoutPatches : public PatchPlace {
+ public:
+  CutoutPatches(Cutout& cutout, const DistributedMesh& parts, std::span<const std::uint64_t> worst)
+      : cutout_(cutout), parts_(parts), n_cells_(static_cast<std::size_t>(parts.n_cells())) {
+    for (std::uint64_t number : worst) worst_.push_back(cutout.cell_at(number));
+  }
+
+  TetMesh& mesh() override { return cutout_.mesh(); }
+  std::span<const CellHandle> worst() const override { return worst_; }
+  std::size_t n_cells() const override { return n_cells_; }
+  void put_back(const Patch& patch, const TetMesh& changed) override;
+
+  /// Adds what all ranks have to know of it.
+  void say(Packer& said);
+
+ private:
+  /// What of one patch the other ranks need.
+  struct Change {
+    std::vector<std::uint64_t> removed;
+    std::vector<VertexHandle> vertices;  // what there was, and what has come
+    std::vector<CellHandle> cells;
+  };
+
+  void make_room(std::size_t n);
+  void own_new_vertices(const Change& change);
+
+  Cutout& cutout_;
+  const DistributedMesh& parts_;
+  std::vector<CellHandle> worst_;
+  std::size_t n_cells_;
+  SlotChange slots_;
+  std::vector<int> new_owner_;  // of the vertices that have come
+  std::vector<Change> changes_;
+};
+
+/// So many slots that are free, in the order in which the whole would hand them out.
+void CutoutPatches::make_room(std::size_t n) {
+  std::vector<CellHandle>& free = TetMesh::Writer(mesh()).free_cells();
+  const std::span<const std::uint64_t> all = parts_.free_slots();
+  std::vector<CellHandle> more;
+  while (free.size() + more.size() < n)
+    more.push_back(cutout_.add_slot(slots_.n_taken < all.size() ? all[all.size() - ++slots_.n_taken]
+                                                                : parts_.n_slots() + slots_.n_fresh++));
+  free.insert(free.begin(), more.rbegin(), more.rend());
+}
+
+void CutoutPatches::put_back(const Patch& patch, const TetMesh& changed) {
+  TetMesh& mesh = cutout_.mesh();
+  const std::size_t n_old = patch.cells().size(), n_new = changed.n_logical_cells();
+  const std::size_t n_same = std::min(n_old, n_new), n_vertices = mesh.n_vertices();
+  make_room(n_new - n_same);
+  Change change;
+  for (CellHandle c : patch.cells()) change.removed.push_back(cutout_.number(c));
+  change.cells.assign(patch.cells().begin(), patch.cells().begin() + static_cast<std::ptrdiff_t>(n_same));
+  const std::vector<CellHandle>& free = TetMesh::Writer(mesh).free_cells();
+  change.cells.insert(change.cells.end(), free.end() - static_cast<std::ptrdiff_t>(n_new - n_same),
+                      free.end());
+  patch.put_back(mesh, changed);
+  cutout_.work().grow(mesh);
+  change.vertices = patch.vertices();
+  for (std::size_t v = n_vertices; v < mesh.n_vertices(); ++v) change.vertices.push_back(VertexHandle(v));
+  slots_.n_vertices += mesh.n_vertices() - n_vertices;
+  std::vector<std::uint64_t> numbers(static_cast<std::size_t>(slots_.n_vertices));
+  std::iota(numbers.begin(), numbers.end(), parts_.n_vertices());
+  cutout_.number_new_vertices(std::move(numbers));
+  own_new_vertices(change);
+  n_cells_ = n_cells_ - n_old + n_new;
+  changes_.push_back(std::move(change));
+}
+
+/// The owner of the neighbour with the smallest number, of those that have one.
+void CutoutPatches::own_new_vertices(const Change& change) {
+  constexpr int kNobody = -1;
+  new_owner_.resize(static_cast<std::size_t>(slots_.n_vertices), kNobody);
+  const TetMesh& mesh = cutout_.mesh();
+  const std::size_t n_before = mesh.n_vertices() - new_owner_.size();
+  const auto owner = [&](VertexHandle v) {
+    return cutout_.is_new(v) ? new_owner_[v.idx() - n_before] : cutout_.record(v).owner;
+  };
+  for (bool is_left = true; is_left;) {
+    is_left = false;
+    for (VertexHandle v : change.vertices) {
+      if (!cutout_.is_new(v) || owner(v) != kNobody) continue;
+      VertexHandle first;
+      for (CellHandle c : change.cells)
+        for (VertexHandle u : mesh.cell(c).v)
+          if (mesh.cell(c).has(v) && owner(u) != kNobody && (!first.is_valid() || u < first)) first = u;
+      if (first.is_valid())
+        new_owner_[v.idx() - n_before] = owner(first);
+      else
+        is_left = true;
+    }
+  }
+}
+
+void CutoutPatches::say(Packer& said) {
+  TetMesh& mesh = cutout_.mesh();
+  Workspace& work = cutout_.work();
+  const std::size_t n_before = mesh.n_vertices() - new_owner_.size();
+  work.star_size = star_sizes(mesh);
+  const std::vector<std::uint8_t> constrained = constrained_vertices(mesh, {});
+  for (std::size_t v = n_before; v < mesh.n_vertices(); ++v) work.frozen[v] = constrained[v];
+  said.put(slots_);
+  std::vector<std::uint64_t> freed;
+  for (CellHandle c : TetMesh::Writer(mesh).free_cells()) freed.push_back(cutout_.number(c));
+  said.put_all(freed);
+  for (const Change& change : changes_) {
+    std::vector<std::uint64_t> deleted;
+    std::vector<VertexHandle> vertices;
+    std::vector<DistributedMesh::VertexRecord> records;
+    for (VertexHandle v : change.vertices) {
+      if (mesh.is_deleted(v)) {
+        deleted.push_back(cutout_.number(v));
+        continue;
+      }
+      vertices.push_back(v);
+      DistributedMesh::VertexRecord& r = records.emplace_back(cutout_.record(v));
+      if (cutout_.is_new(v)) r.owner = new_owner_[v.idx() - n_before];
+    }
+    std::vector<DistributedMesh::CellRecord> cells;
+    for (CellHandle c : change.cells) cells.push_back(cutout_.record(c));
+    said.put_all(change.removed);
+    said.put_all(deleted);
+    said.put_all(records);
+    said.put_all(cells);
+    said.put_all(cutout_.labels_of(change.cells, vertices));
+  }
+}
+
+}  // namespace
+
+PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std::uint64_t> cells, int layers,
+                                    const std::function<PatchesDone(PatchPlace&)>& search) {
+  std::vector<std::uint64_t> ascending(cells.begin(), cells.end());
+  std::ranges::sort(ascending);
+  const std::vector<std::uint8_t> depth(cells.size(), static_cast<std::uint8_t>(layers));
+  Packer first;
+  {
+    Cutout cutout(parts, ascending, depth, Cutout::Where::kOnFirst);
+    if (parts.comm().rank() == 0) {
+      CutoutPatches place(cutout, parts, cells);
+      first.put(search(place));
+      place.say(first);
+    }
+  }
+  const std::vector<std::byte> said = told_by_first(parts.comm(), first);
+  Unpacker in(said);
+  const auto done = in.get<PatchesDone>();
+  const auto slots = in.get<SlotChange>();
+  change_slots(parts, slots, in.get_all<std::uint64_t>());
+  if (done.n_changed == 0) return done;
+  NearChange near;
+  const auto append = [&]<class T>(std::vector<T>& list, bool is_near) {
+    const std::vector<T> more = in.get_all<T>();
+    if (is_near) list.insert(list.end(), more.begin(), more.end());
+  };
+  while (!in.at_end()) {
+    const bool is_near = near.remove(parts, in.get_all<std::uint64_t>());
+    append(near.deleted, is_near);
+    append(near.vertices, is_near);
+    append(near.created, is_near);
+    append(near.labels, is_near);
+  }
+  write_home(parts, near);
+  // As Workspace::attach() has it in shared memory.
+  Workspace& work = parts.work();
+  std::fill(work.changed.begin(), work.changed.end(), work.clock);
+  std::fill(work.pending.begin(), work.pending.end(), 0xff);
+  std::fill(work.claim.begin(), work.claim.end(), kUnclaimed);
+  work.all_touched = true;
+  return done;
+}
+
+}  // namespace hfr::mpi

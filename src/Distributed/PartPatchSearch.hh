@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef HFR_DISTRIBUTED_PART_PATCH_SEARCH_HH
+#define HFR_DISTRIBUTED_PART_PATCH_SEARCH_HH
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "Distributed/DistributedMesh.hh"
+#include "Remesh/PatchPlace.hh"
+
+namespace hfr::mpi {
+
+/// See MeshInParts::search_patches(): rank 0 searches, on a cutout of what lies within so many layers of
+/// these cells, the worst first. Patches that it puts back go to all ranks. All take part.
+PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std::uint64_t> cells, int layers,
+                                    const std::function<PatchesDone(PatchPlace&)>& search);
+
+}  // namespace hfr::mpi
+
+#endif
