@@ -180,7 +180,6 @@ double Residents::smallest(std::span<const double> mine, std::size_t rank) {
 
 /// What of the options is not there in parts; empty where all is.
 std::string reason_against(const ImproveOptions& options) {
-  if (options.raise_min_dihedral) return "runs that raise the worst angle at any cost";
   if (!options.polish_only && options.metric != Metric::kVolumeLength)
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;

@@ -8,7 +8,7 @@
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Refine.hh"
-#include "Remesh/Survey.hh"
+#include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Trial.hh"
 
 namespace hfr {
@@ -30,8 +30,7 @@ class Climb {
       over_targets();
       if (run_.control.stopped()) return;
       const std::size_t few = run_.strategy.neighbourhoods ? run_.strategy.neighbourhoods->few : 0;
-      const double last =
-          degrees_with_few_below(run_.mesh, effort_.targets.back().degrees, few, run_.policy());
+      const double last = degrees_with_few_below(run_, effort_.targets.back().degrees, few);
       Trial trial(run_, last);
       improve_neighbourhoods(run_, run_.strategy.neighbourhoods, last);
       trial.settle();
@@ -43,12 +42,12 @@ class Climb {
   }
   /// Of cells that came to be below that, on the way to what is larger.
   void mend(double degrees) {
-    if (smallest_dihedral(run_.mesh, run_.policy()) < degrees) polish(run_, run_.strategy.mending(), degrees);
+    if (run_.smallest_dihedral() < degrees) polish(run_, run_.strategy.mending(), degrees);
   }
   double smallest() const { return smallest_that_may_rise(run_, kLargestGoal); }
 
  private:
-  std::size_t n_poor(double degrees) const { return n_below(run_.mesh, degrees, run_.policy()); }
+  std::size_t n_poor(double degrees) const { return run_.n_below(degrees); }
 
   void over_targets() {
     int n_missed = 0;
@@ -74,7 +73,7 @@ class Climb {
 
 void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort, Best& best) {
   CellBounds bounds = effort.bounds;
-  if (effort.most_of_hundred > 0) bounds.max = whole.mesh.n_logical_cells() * effort.most_of_hundred / 100;
+  if (effort.most_of_hundred > 0) bounds.max = whole.n_cells() * effort.most_of_hundred / 100;
   whole.findings.forget_cell_bound();
   Run run = whole.within(bounds);
   run.may_add_poor_cells = true;

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/LastCells.hh"
 
+#include <algorithm>
+
 #include "Remesh/MayRise.hh"
 #include "Remesh/Neighbourhoods.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/SmallestDihedrals.hh"
-#include "Remesh/Survey.hh"
 
 namespace hfr {
-namespace {
-
-/// As degrees_with_few_below(), of the whole.
-double few_below(const Run& run, double degrees, std::size_t n) {
-  if (!run.is_part()) return degrees_with_few_below(run.mesh, degrees, n, run.policy());
-  SmallestDihedrals angles(run);
-  if (angles.n_below(dihedral_decision(degrees)) <= n) return degrees;
-  return report_value(Metric::kMinDihedral, angles.smallest(n + 1));
-}
-
-}  // namespace
 
 bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span<const TargetAngle> targets) {
   if (!run.strategy.patch.enabled && !run.strategy.neighbourhoods) return false;
@@ -38,15 +28,14 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
       before = now;
       const auto& neighbourhoods = run.strategy.neighbourhoods;
       const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
-      improve_neighbourhoods(run, neighbourhoods, few_below(run, target.degrees, few));
+      improve_neighbourhoods(run, neighbourhoods, degrees_with_few_below(run, target.degrees, few));
       now = smallest();
     }
     if (target.degrees <= effort.patches_up_to) search(effort.patches);
     if (now < target.degrees) break;
   }
-  // An invalid cell that cannot become valid has not risen by staying what it is.
-  if (run.findings.is_unfillable && at_first <= 0) return now > at_first;
-  return now > effort.rise * at_first;
+  // An invalid cell has not risen by staying what it is.
+  return now > std::max(at_first, effort.rise * at_first);
 }
 
 }  // namespace hfr

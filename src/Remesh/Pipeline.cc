@@ -7,8 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "Quality/FoldedFaces.hh"
-#include "Quality/UnfillableFaces.hh"
 #include "Remesh/AnyCost.hh"
 #include "Remesh/Best.hh"
 #include "Remesh/Bulk.hh"
@@ -31,16 +29,9 @@ namespace {
 constexpr double kUntangled = 0.1;
 constexpr double kBulkDone = 0.5;
 
-/// Mends what is inverted or flat, and finds out whether what is left can be mended at all.
+/// Mends what is inverted or flat.
 void mend_invalid(const Run& run) {
-  if (run.strategy.untangle && !untangle(run, *run.strategy.untangle)) {
-    // In parts nothing asks about that.
-    const std::vector<CellHandle> left =
-        run.is_part() ? std::vector<CellHandle>() : invalid_cells(run.mesh, run.policy());
-    if (!run.surface && !left.empty())
-      run.findings.is_unfillable =
-          !unfillable_faces(run.mesh, left, folded_faces(run.mesh, run.policy()), run.policy()).empty();
-  }
+  if (run.strategy.untangle) untangle(run, *run.strategy.untangle);
   run.control.set_fraction(kUntangled);
 }
 

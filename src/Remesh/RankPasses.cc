@@ -96,6 +96,7 @@ std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) 
   const PassEffort& effort = run.strategy.pass;
   Ranks::Dig dig{{PassKind::kInsert, metric_, turn.focus.below, 0, effort.seed, 0, 0, run.policy().threads},
                  gain,
+                 run.may_add_poor_cells,
                  effort.few_seeds,
                  effort.sites_of_many,
                  effort.promise_of_many};

@@ -58,7 +58,9 @@ class Ranks {
   /// One round of insertion over such cells and those that wait from the round before.
   struct Dig {
     Look look;
-    double gain = 1;  ///< VertexInsertion::gain; its poor_below is look.below
+    double gain = 1;  ///< VertexInsertion::gain
+    /// Whether its poor_below is not look.below; see Run::may_add_poor_cells.
+    bool may_add_poor_cells = false;
     /// With more cells than `many`, these hold in place of VertexInsertion's own.
     std::uint64_t many = 0, sites_of_many = 0;
     double promise_of_many = 0;

@@ -24,8 +24,6 @@ struct Findings {
   /// The boundary lies on or goes through itself somewhere: then positive cells may overlap, too, and rounds
   /// hold the link condition throughout.
   bool is_folded = false;
-  /// Every mesh with this boundary has an invalid cell: see unfillable_faces().
-  bool is_unfillable = false;
   /// Something was left undone for the number of cells; and the bound on more of them at that time, 0: none.
   bool met_cell_bound = false;
   std::size_t max_cells_met = 0;

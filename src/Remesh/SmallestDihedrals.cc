@@ -7,6 +7,7 @@
 
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 
@@ -42,6 +43,13 @@ double SmallestDihedrals::smallest(std::size_t rank) {
   const auto at = values_.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
   std::nth_element(values_.begin(), at, values_.end());
   return *at;
+}
+
+double degrees_with_few_below(const Run& run, double degrees, std::size_t n) {
+  if (!run.is_part()) return degrees_with_few_below(run.mesh, degrees, n, run.policy());
+  SmallestDihedrals angles(run);
+  if (angles.n_below(dihedral_decision(degrees)) <= n) return degrees;
+  return report_value(Metric::kMinDihedral, angles.smallest(n + 1));
 }
 
 }  // namespace hfr

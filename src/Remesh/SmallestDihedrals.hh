@@ -31,6 +31,9 @@ class SmallestDihedrals {
   std::vector<double> values_;  // infinity in deleted slots, and for cells of other parts
 };
 
+/// At most `degrees`, such that no more than n cells of the whole are below.
+double degrees_with_few_below(const Run& run, double degrees, std::size_t n);
+
 }  // namespace hfr
 
 #endif

@@ -164,7 +164,8 @@ TEST(Cutout, InsertionIsTheSameHoweverManyLayersAreTriedFirst) {
     std::vector<Index> all(sides.parts.part().n_cells());
     std::iota(all.begin(), all.end(), Index{0});
     const double below = dihedral_decision(14);
-    const Ranks::Dig dig{{PassKind::kInsert, Metric::kMinSine, below, 0, 1, kNoLimit, kNoLimit}, 1, kNoLimit};
+    const Ranks::Dig dig{
+        {PassKind::kInsert, Metric::kMinSine, below, 0, 1, kNoLimit, kNoLimit}, 1, false, kNoLimit};
     std::vector<std::uint64_t> waiting;
     std::size_t n_winners = 0;
     for (int i = 0; i < 3; ++i) {

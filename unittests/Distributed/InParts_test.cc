@@ -131,11 +131,6 @@ TEST(InParts, WhatIsNotThereIsNamed) {
   using testing::HasSubstr;
   EXPECT_THAT(refusal([](auto& o) {
                 o = ImproveOptions();
-                o.raise_min_dihedral = true;
-              }),
-              HasSubstr("at any cost"));
-  EXPECT_THAT(refusal([](auto& o) {
-                o = ImproveOptions();
                 o.passes_only = true;
                 o.metric = Metric::kMinSine;
               }),

@@ -181,6 +181,12 @@ TEST_F(StagesInParts, WholeRunsOverLabelledMeshesHaveTheBytesOfSharedMemory) {
   }
 }
 
+TEST_F(StagesInParts, AnyCostHasTheBytesOfSharedMemory) {
+  ImproveOptions options = all_stages();
+  options.raise_min_dihedral = true;
+  for (const TetMesh& mesh : {cavity({3, 4, 4}, 0.25, 0.05), plate(4, 6)}) run(mesh, options);
+}
+
 TEST_F(StagesInParts, OptionsHaveTheBytesOfSharedMemory) {
   const std::vector<std::function<void(ImproveOptions&)>> changes = {
       [](auto& o) { o.iterations = 2, o.passes_only = false, o.policy.threads = 2; },
