@@ -38,12 +38,9 @@ void add_examples(Command command) {
 /// What is wanted.
 void add_goal_options(Command command, ImproveLine& line) {
   command.group("Goal");
-  command
-      .option("--min-dihedral", line.min_dihedral,
-              "Goal for the smallest dihedral angle; only cells that miss it are worked on. 'max': as large "
-              "as can be had")
-      .type_name("DEG")
-      .check(degrees_or_max);
+  add_min_dihedral_option(command, line.min_dihedral,
+                          "Goal for the smallest dihedral angle; only cells that miss it are worked on. "
+                          "'max': as large as can be had");
   command
       .option("--min-angle", line.min_angle,
               "For a surface without tetrahedra: goal for the smallest angle of its triangles")
@@ -163,6 +160,17 @@ void add_device_options(Command command, ImproveLine& line) {
 }
 }  // namespace
 
+void add_min_dihedral_option(Command command, std::string& degrees, const std::string& what) {
+  command.option("--min-dihedral", degrees, what).type_name("DEG").check(degrees_or_max);
+}
+
+void set_min_dihedral(const std::string& degrees, ImproveOptions& options) {
+  if (degrees == "max")
+    options.raise_min_dihedral = true;
+  else if (!degrees.empty())
+    options.min_dihedral = real_of(degrees);
+}
+
 void add_ops_option(Command command, std::string& ops) {
   command.option("--ops", ops, "Operators, comma-separated: edge, face, node, smooth, insert, cluster")
       .type_name("LIST")
@@ -213,10 +221,7 @@ void add_improve_options(Command command, ImproveLine& line, CommonOptions& comm
 ImproveOptions improve_options(const ImproveLine& line, const CommonOptions& common) {
   ImproveOptions options = line.improve;
   if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
-  if (line.min_dihedral == "max")
-    options.raise_min_dihedral = true;
-  else if (!line.min_dihedral.empty())
-    options.min_dihedral = real_of(line.min_dihedral);
+  set_min_dihedral(line.min_dihedral, options);
   if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
   if (!line.metric.empty()) options.metric = metric_from_name(line.metric);
   if (!line.smoother.empty()) options.smoother = smoother_from_name(line.smoother);

@@ -41,6 +41,10 @@ struct ImproveLine {
   ImproveOptions improve;
 };
 
+/// The goal of a run, degrees or "max"; `degrees` must outlive the parser's run.
+void add_min_dihedral_option(Command command, std::string& degrees, const std::string& what);
+/// Into the options; nothing where none is given.
+void set_min_dihedral(const std::string& degrees, ImproveOptions& options);
 /// The operators of a run and how they take turns; `ops` and `rounds` must outlive the parser's run.
 void add_ops_option(Command command, std::string& ops);
 void add_rounds_option(Command command, std::string& rounds);

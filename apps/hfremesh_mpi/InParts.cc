@@ -43,10 +43,10 @@ struct PartsLine {
   std::vector<Index> counts;  ///< of the grid, where one is to be generated
   double jitter = 0.2;
   double amplitude = 0;
-  double min_dihedral = 0;
+  std::string min_dihedral;  ///< degrees or "max"
   std::string ops, rounds;
   bool no_insert = false;
-  bool passes_only = false;
+  bool all_stages = false, passes_only = false, coarsen = false, bulk_nodes = false;
   int iterations = 0;
   std::size_t min_cells = 0, max_cells = 0;
   std::uint64_t seed = 2013;
@@ -57,15 +57,16 @@ struct PartsLine {
   bool quiet = false;
 
   bool prints() const { return !quiet && json != "-"; }
-  bool improves() const { return min_dihedral > 0 || passes_only; }
+  bool goes_over_all() const { return all_stages || passes_only || coarsen || min_dihedral == "max"; }
+  bool improves() const { return !min_dihedral.empty() || goes_over_all(); }
 };
 
 void add_options(Command command, PartsLine& line) {
   command.example("mpirun -n 4 hfremesh-mpi parts --generate 150 150 150 -o bad.pvtu", "20 million cells");
   command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.pvtu --min-dihedral 15",
                   "with the bits of hfremesh --polish-only");
-  command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.vtu --passes-only",
-                  "all cells, with the bits of hfremesh --passes-only");
+  command.example("mpirun -n 4 hfremesh-mpi parts bad.pvtu -o good.vtu --all-stages",
+                  "all cells, with the bits of hfremesh");
   command.example("mpirun -n 4 hfremesh-mpi parts part.msh -o part.vtu --min-dihedral 15",
                   "a file of which no rank reads all");
   command.example("mpirun -n 3 hfremesh-mpi parts good.pvtu -o good.msh", "one file, written by all ranks");
@@ -83,20 +84,22 @@ void add_options(Command command, PartsLine& line) {
       .type_name("FILE");
   command.flag("--distributed-output", line.distributed_output,
                "With -o name.mesh: a file for each rank, name.0.mesh and so on, as ParMmg reads them");
-  command
-      .option(
-          "--min-dihedral", line.min_dihedral,
-          "Goal for the smallest dihedral angle: the cells that miss it are worked on by edge removal, face "
-          "swaps, vertex collapse, smoothing and new vertices, and where --ops has it by cluster search; "
-          "inverted and flat cells are mended first")
-      .type_name("DEG")
-      .check(real_number(0, 70.5, false));
+  add_min_dihedral_option(
+      command, line.min_dihedral,
+      "Goal for the smallest dihedral angle: the cells that miss it are worked on by edge removal, face "
+      "swaps, vertex collapse, smoothing and new vertices, and where --ops has it by cluster search; "
+      "inverted and flat cells are mended first. 'max': all stages, and as large as can be had");
+  command.flag(
+      "--all-stages", line.all_stages,
+      "Improve all cells, or with --min-dihedral go on where the work on the cells that miss it does "
+      "not do, as hfremesh does");
+  command.flag("--passes-only", line.passes_only,
+               "The same without the searches for the last few cells, as hfremesh --passes-only");
+  command.flag("--coarsen", line.coarsen,
+               "All stages, and remove vertices wherever that makes the worst angles there better");
+  command.flag("--bulk-nodes", line.bulk_nodes, "Remove vertices where all cells are worked on, too");
   add_ops_option(command, line.ops);
   add_rounds_option(command, line.rounds);
-  command.flag(
-      "--passes-only", line.passes_only,
-      "Improve all cells, or with --min-dihedral go on where the polish of the cells that miss it does "
-      "not do: the stages of hfremesh, but for the searches for the last few cells");
   command.option("--iterations", line.iterations, "At most N iterations of each stage; 0 is no limit")
       .type_name("N")
       .check(whole_number(0, std::numeric_limits<int>::max()));
@@ -141,9 +144,11 @@ void add_options(Command command, PartsLine& line) {
 /// Throws Failure for a name that there is not.
 ImproveOptions improve_options(const PartsLine& line) {
   ImproveOptions options;
-  if (line.min_dihedral > 0) options.min_dihedral = line.min_dihedral;
-  options.polish_only = !line.passes_only && line.min_dihedral > 0;
+  set_min_dihedral(line.min_dihedral, options);
+  options.polish_only = !line.goes_over_all() && options.min_dihedral;
   options.passes_only = line.passes_only;
+  options.coarsen = line.coarsen;
+  options.bulk_nodes = line.bulk_nodes;
   options.iterations = line.iterations;
   try {
     if (!line.ops.empty()) options.ops = ops_from_list(line.ops);
@@ -223,7 +228,7 @@ class PartsRun {
     begin_report();
     begin();
     const char* const step = line_.input.empty() ? "generate" : "read";
-    mpi::InParts found = mpi::survey(mesh_, line_.min_dihedral, policy());
+    mpi::InParts found = mpi::survey(mesh_, goal(), policy());
     say_found(line_.input.empty() ? "generated" : "read", found, note_seconds(step));
     report_["before"] = json_of(found);
     report_["after"] = json_of(found);
@@ -248,13 +253,14 @@ class PartsRun {
       return ExitCode::kInvalidCells;
     }
     if (goal_reached) return ExitCode::kDone;
-    complain("the smallest dihedral angle is {:.4f}, below the goal of {:g}", found.min_dihedral,
-             line_.min_dihedral);
+    complain("the smallest dihedral angle is {:.4f}, below the goal of {:g}", found.min_dihedral, goal());
     return ExitCode::kGoalMissed;
   }
 
  private:
   par::Policy policy() const { return par::Policy{line_.threads_each}; }
+  /// Degrees; 0 where there is none.
+  double goal() const { return improve_options(line_).min_dihedral.value_or(0); }
   template <class... Values>
   void say(fmt::format_string<Values...> text, Values&&... values) const {
     if (comm_.rank() != 0 || !line_.prints()) return;
@@ -296,9 +302,14 @@ class PartsRun {
                          {"amplitude", line_.amplitude},
                          {"seed", line_.seed}};
     const ImproveOptions options = improve_options(line_);
-    report_["options"] = {{"min_dihedral", line_.min_dihedral > 0 ? Json(line_.min_dihedral) : Json()},
+    Json wanted = options.raise_min_dihedral ? Json("max") : Json();
+    if (options.min_dihedral) wanted = *options.min_dihedral;
+    report_["options"] = {{"min_dihedral", std::move(wanted)},
                           {"ops", ops_to_list(options.ops)},
+                          {"polish_only", options.polish_only},
                           {"passes_only", options.passes_only},
+                          {"coarsen", options.coarsen},
+                          {"bulk_nodes", options.bulk_nodes},
                           {"iterations", options.iterations},
                           {"rounds", line_.rounds.empty() ? Json() : Json(line_.rounds)},
                           {"min_cells", line_.min_cells > 0 ? Json(line_.min_cells) : Json()},
@@ -370,8 +381,8 @@ class PartsRun {
                          {"has_fallen", result.has_fallen}};
     Json& passes = report_["passes"] = Json::array();
     for (const PassReport& pass : result.passes) passes.push_back(to_json(pass));
-    if (line_.min_dihedral > 0 && !result.goal_reached)
-      say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), line_.min_dihedral);
+    if (goal() > 0 && !result.goal_reached)
+      say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), goal());
     if (result.has_fallen) say("  the smallest angle has fallen; hfremesh would have put the input back");
     return result;
   }

@@ -189,7 +189,6 @@ std::string reason_against(const ImproveOptions& options) {
     return "fixed patches, faces, edges and vertices";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
-  if (options.coarsen) return "coarsening";
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
   if (options.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
   if (options.progress || options.cancel) return "callbacks";

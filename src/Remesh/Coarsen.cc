@@ -11,9 +11,9 @@ void coarsen(const Run& run, const CoarsenEffort& effort) {
   PassRunner<MinSine2> runner(run, MinSine2{}, "coarsen");
   const Focus focus{dihedral_decision(effort.below)};
   for (int i = 1; i <= effort.iterations && !run.control.stopped(); ++i) {
-    const auto n_before = static_cast<double>(run.mesh.n_logical_cells());
+    const auto n_before = static_cast<double>(run.n_cells());
     if (runner.iterate({i, focus}) == 0) break;
-    if (static_cast<double>(run.mesh.n_logical_cells()) > effort.still * n_before) break;
+    if (static_cast<double>(run.n_cells()) > effort.still * n_before) break;
   }
   runner.to_host();
 }

@@ -184,7 +184,7 @@ TEST_F(StagesInParts, WholeRunsOverLabelledMeshesHaveTheBytesOfSharedMemory) {
 TEST_F(StagesInParts, AnyCostHasTheBytesOfSharedMemory) {
   ImproveOptions options = all_stages();
   options.raise_min_dihedral = true;
-  for (const TetMesh& mesh : {cavity({3, 4, 4}, 0.25, 0.05), plate(4, 6)}) run(mesh, options);
+  for (const TetMesh& mesh : {cavity({2, 3, 3}, 0.25, 0.05), plate(3, 6)}) run(mesh, options);
 }
 
 TEST_F(StagesInParts, OptionsHaveTheBytesOfSharedMemory) {
@@ -194,6 +194,7 @@ TEST_F(StagesInParts, OptionsHaveTheBytesOfSharedMemory) {
       [](auto& o) { o.rounds = Rounds::kByKind, o.bulk_nodes = true; },
       [](auto& o) { o.ops = without(Ops::kDefault, Ops::kInsert) | Ops::kCluster; },
       [](auto& o) { o.max_cells = 1100, o.seed = 7; },
+      [](auto& o) { o.coarsen = true; },
       [](auto& o) { o.ops = Ops::kSmooth; }};
   for (std::size_t i = 0; i < changes.size(); ++i) {
     SCOPED_TRACE(i);
