@@ -95,7 +95,7 @@ void DistributedMesh::build_part(Block& block, par::Policy policy) {
       if (!mesh_.incident_cell(v).is_valid()) writer.set_incident_cell(v, CellHandle(c));
 }
 
-void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells) {
+Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells) {
   n_slots_ = n_cells;
   n_vertices_ = n_vertices;
   free_.clear();
@@ -122,9 +122,7 @@ void DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint6
                 "vertex " + std::to_string(vertex_number_[v]) +
                     ": its cells do not connect through faces, or are more than " +
                     std::to_string(Star::kCapacity) + "; a mesh in parts cannot have that yet");
-  HFR_REQUIRE(!has_negative_component(*this),
-              "most cells of a mesh in parts, and of each piece that hangs together, have to be positive; "
-              "hfremesh turns such pieces");
+  return turn_negative_components(*this);
 }
 
 std::vector<std::uint64_t> DistributedMesh::renumber(std::span<const std::uint64_t> to) {

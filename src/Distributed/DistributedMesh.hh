@@ -43,6 +43,12 @@ struct PartState {
 
 }  // namespace detail
 
+/// What of a mesh was written the other way round.
+struct Turned {
+  bool whole = false;         ///< first all of it was turned
+  std::uint64_t n_alone = 0;  ///< cells that were turned and not with the whole, or the other way round
+};
+
 /// A mesh that is cut among the ranks. Each vertex has an owner, for good; a cell belongs to the owner of its
 /// vertex with the smallest number. A rank holds the cells with a vertex of its own and two layers of cells
 /// round them: all that have a vertex within two edges of its own ones. That is what it takes to evaluate
@@ -77,8 +83,9 @@ class DistributedMesh : private detail::PartState {
     std::vector<int> owner;  ///< of each vertex
   };
   /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
-  /// qualities yet. Throws InvalidInput where cells of a vertex do not connect through faces.
-  void assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
+  /// qualities yet. Cells are turned as build() does. Throws InvalidInput where cells of a vertex do not
+  /// connect through faces.
+  Turned assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
   /// After assemble(), for what a file says of vertices, edges and faces: each on the rank that owns its
   /// smallest vertex, with its place in the file as its number, maybe several times. Of several labels of a
   /// vertex the first one counts, of an edge or a face the last one, which has the place and the order of the

@@ -27,7 +27,7 @@ struct GridOptions {
 };
 /// Makes the parts, each on its rank: the points, cells and numbers of the mesh that the function for shared
 /// memory makes, which may have more cells here than an index can count. `how`: kNumbers are slices, all else
-/// blocks. Throws InvalidInput for what that function refuses, and where most cells are inverted.
+/// blocks. Throws InvalidInput for what that function refuses.
 void generate_in_parts(DistributedMesh& mesh, const GridOptions& options,
                        Partition how = Partition::kCoordinates);
 
@@ -57,20 +57,15 @@ struct PartsResult {
   std::vector<PassReport> passes;
   double seconds = 0;
 };
-/// hfr::improve() but for its searches for the last cells: with options.passes_only, with a limit on
-/// iterations, or with options.polish_only, the same bits as there, for each number of ranks and threads.
-/// With polish_only: mends inverted and flat cells, then works on those that miss options.min_dihedral by
-/// edge removal, removal of faces and of fans, vertex collapse, smoothing, insertion and cluster search, as
-/// far as options.ops has them. With the others: all stages over all cells, or after the polish towards a
-/// goal.
+/// hfr::improve() with a frozen surface: the same bits, for each number of ranks and threads. Where cells of
+/// a run without a goal are scattered in memory, they are numbered anew first, as there.
 ///
-/// Candidates for new vertices and searched clusters come together on rank 0, some 300 bytes each. Unless it
-/// polishes a mesh of positive cells alone, each rank keeps copies of its part to go back to, and where the
-/// mesh has invalid cells, or a boundary that lies on itself, rank 0 selects the winners of all rounds. Where
-/// cells of a run without a goal are scattered in memory, they are numbered anew first, as there. Throws
-/// InvalidInput, naming it, for what is not there in parts: searches for the last cells, another metric than
-/// volume-length for all cells, a surface that may change, fixed things, devices, time limits, callbacks,
-/// maps, other smoothers.
+/// Candidates for new vertices and searched clusters come together on rank 0, some 300 bytes each, and the
+/// surroundings of the last few cells, up to 32 patches. Unless it polishes a mesh of positive cells alone
+/// (options.polish_only), each rank keeps copies of its part to go back to; where the mesh has invalid cells,
+/// or a boundary that lies on itself, rank 0 selects the winners of all rounds. Throws InvalidInput, naming
+/// it, for what is not there in parts: another metric than volume-length for all cells, a surface that may
+/// change, fixed things, published pipelines, devices, time limits, callbacks, maps, other smoothers.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

@@ -294,12 +294,19 @@ std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::
         },
         *this);
   }
+  std::vector<std::string> notes;
   try {
-    mesh.assemble(piece(), n_points_, n_cells_);
+    const Turned turned = mesh.assemble(piece(), n_points_, n_cells_);
+    if (turned.whole) notes.push_back("orders all cells the other way round; they were flipped as a whole");
+    if (turned.n_alone > 0)
+      notes.push_back(std::to_string(turned.n_alone) +
+                      " cells were written the other way round than the rest and were turned");
   } catch (const InvalidInput& error) {
     throw InvalidInput(file.string() + ": " + error.what());
   }
-  return mesh.attach_labels(std::exchange(labels_, {}));
+  const std::vector<std::string> others = mesh.attach_labels(std::exchange(labels_, {}));
+  notes.insert(notes.end(), others.begin(), others.end());
+  return notes;
 }
 
 }  // namespace hfr::mpi

@@ -73,7 +73,7 @@ struct ImproveOptions {
   bool polish_only = false;
   /// Passes over the mesh alone: every stage but the searches for the last few cells, which are patches and
   /// work on the neighbourhoods of single cells. Less time, and a lower worst angle on hard meshes; not with
-  /// raise_min_dihedral. hfr::mpi::improve() of a mesh in parts does the same with the same bits.
+  /// raise_min_dihedral.
   bool passes_only = false;
   double time_limit = std::numeric_limits<double>::infinity();  ///< seconds, for improve() alone
   Ops ops = Ops::kDefault;
