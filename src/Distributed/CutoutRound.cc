@@ -128,10 +128,12 @@ auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_
   const auto& has_met = cutout_.rim().has_met;
   for (std::size_t c = 0; c < has_met.size(); ++c)
     if (has_met[c] != 0) met_.push_back(cutout_.number(CellHandle(c)));
+  if (!candidates.empty()) met_.push_back(kNoNumber);  // the same call tells that there are any
   met_ = comm.all_gather(std::span<const std::uint64_t>(met_));
+  has_candidates_ = std::erase(met_, kNoNumber) > 0;
   std::sort(met_.begin(), met_.end());
   Selected selected;
-  if (!met_.empty()) return selected;
+  if (!met_.empty() || !has_candidates_) return selected;
   std::vector<Packer> to(comm.n_ranks());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& one = candidates[i];
@@ -237,6 +239,8 @@ auto CutoutRound::merged(std::vector<Heard> all) -> std::vector<VertexRecord> {
 
 void CutoutRound::bring_home() {
   if (!met_.empty()) return;
+  ++parts_.work().clock;
+  if (!has_candidates_) return;
   const Comm::InPhase phase(parts_.comm(), Phase::kBorder);
   Packer mine;
   for (const Change& change : changes_) {
@@ -248,7 +252,6 @@ void CutoutRound::bring_home() {
   }
   const std::vector<std::byte> said = parts_.comm().all_gather(std::span<const std::byte>(mine.bytes()));
   change_slots(parts_, slots_, freed_);
-  ++parts_.work().clock;
   std::vector<Heard> vertices;
   NearChange near;
   for (Unpacker in(said); !in.at_end();) {

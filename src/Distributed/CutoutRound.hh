@@ -94,6 +94,7 @@ class CutoutRound : public RoundPlace {
   Cutout& cutout_;
   DistributedMesh& parts_;
   std::vector<std::uint64_t> met_;
+  bool has_candidates_ = false;  // on any rank
   SlotChange slots_;
   std::vector<std::uint64_t> freed_;  // in the order in which they go to the free list
   std::vector<Change> changes_;       // of this rank's winners

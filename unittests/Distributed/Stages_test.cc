@@ -184,7 +184,7 @@ TEST_F(StagesInParts, WholeRunsOverLabelledMeshesHaveTheBytesOfSharedMemory) {
 TEST_F(StagesInParts, AnyCostHasTheBytesOfSharedMemory) {
   ImproveOptions options = all_stages();
   options.raise_min_dihedral = true;
-  for (const TetMesh& mesh : {cavity({2, 3, 3}, 0.25, 0.05), plate(3, 6)}) run(mesh, options);
+  run(cavity({2, 2, 3}, 0.25, 0.05), options);
 }
 
 TEST_F(StagesInParts, OptionsHaveTheBytesOfSharedMemory) {
