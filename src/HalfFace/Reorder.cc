@@ -109,9 +109,9 @@ void order_cells(TetMesh& mesh, std::span<const CellHandle> order, par::Policy p
   for (std::size_t i = 0; i < mesh.n_vertices(); ++i) map.vertices[i] = VertexHandle(i);
   map.cells.resize(mesh.n_cells());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    HFR_REQUIRE(order[i].is_valid() && order[i].idx() < map.cells.size() &&
-                    !map.cells[order[i].idx()].is_valid(),
-                "order_cells: cell " + std::to_string(i) + " in the order is none, or comes twice");
+    HFR_REQUIRE(
+        order[i].is_valid() && order[i].idx() < map.cells.size() && !map.cells[order[i].idx()].is_valid(),
+        "order_cells: cell " + std::to_string(i) + " in the order is none, or comes twice");
     map.cells[order[i].idx()] = CellHandle(i);
   }
   mesh.renumber(map, mesh.n_vertices(), order.size(), policy);

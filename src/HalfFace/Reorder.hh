@@ -25,8 +25,8 @@ struct ReorderOptions {
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options = {});
 
 /// Gives cells the handles 0, 1, 2, … in this order, which names each of a mesh without deleted cells and
-/// vertices once. Everything follows as in reorder(). Throws InvalidInput for another number of cells, or one that is
-/// not there.
+/// vertices once. Everything follows as in reorder(). Throws InvalidInput for another number of cells, or one
+/// that is not there.
 void order_cells(TetMesh& mesh, std::span<const CellHandle> order, par::Policy policy = {});
 
 /// Puts cells back into the order that they had before a reorder() of cells alone; `went_to` as that returned
