@@ -214,6 +214,31 @@ TEST_F(StagesInParts, LabelledMeshesHaveTheBytesOfSharedMemory) {
   }
 }
 
+/// Cutouts, patches, percentiles and tries that are put back included.
+TEST_F(StagesInParts, ARankThatFailsAnywhereEndsAll) {
+  if (comm.rank() == 0) io::write(path, cavity({2, 9, 9}, 0.45, 0.05));
+  comm.sum(0);
+  const auto run = [&](int bad, std::uint64_t call) -> std::uint64_t {
+    mpi::Comm own(MPI_COMM_WORLD);
+    if (own.rank() == bad) own.fail_at_call(call);
+    try {
+      mpi::DistributedMesh parts(own);
+      mpi::read_ranges(parts, path);
+      mpi::improve(parts, all_stages());
+      EXPECT_EQ(call, 0U);
+    } catch (const mpi::RankFailed& failed) {
+      EXPECT_EQ(failed.rank(), bad);
+    } catch (const ResourceLimit& error) {
+      EXPECT_EQ(own.rank(), bad);
+      EXPECT_EQ(own.fail(5, error.what()).rank(), bad);
+    }
+    return own.n_calls();
+  };
+  const std::uint64_t n_calls = run(0, 0);
+  if (comm.size() == 1) return;
+  for (std::uint64_t k = 0; k < 8; ++k) run(k % 2 == 0 ? 0 : comm.size() - 1, n_calls / 16 + n_calls * k / 8);
+}
+
 /// Cells of which most have neighbours far away in memory are put in order first, here as there.
 TEST_F(StagesInParts, ScatteredCellsComeInOrder) {
   const TetMesh mesh = shuffled(valid_box(17, 0.2, 7), 8);
