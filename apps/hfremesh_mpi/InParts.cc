@@ -59,6 +59,11 @@ struct PartsLine {
   bool prints() const { return !quiet && json != "-"; }
   bool goes_over_all() const { return all_stages || passes_only || coarsen || min_dihedral == "max"; }
   bool improves() const { return !min_dihedral.empty() || goes_over_all(); }
+  /// Options of a run, where there is none.
+  bool has_idle_options() const {
+    return !improves() && (!ops.empty() || !rounds.empty() || no_insert || bulk_nodes || iterations > 0 ||
+                           min_cells > 0 || max_cells > 0);
+  }
 };
 
 void add_options(Command command, PartsLine& line) {
@@ -240,6 +245,14 @@ class PartsRun {
       note_seconds("check");
     }
     bool goal_reached = true;
+    if (line_.has_idle_options()) {
+      constexpr const char* kIdle =
+          "nothing is improved: the options of a run count with --min-dihedral, --all-stages, --passes-only "
+          "or "
+          "--coarsen";
+      say("{}", kIdle);
+      report_["notes"].push_back(kIdle);
+    }
     if (line_.improves()) {
       const mpi::PartsResult result = improve();
       found = result.after;

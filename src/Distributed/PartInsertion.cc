@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 #include <unordered_set>
+#include <utility>
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/CutoutRound.hh"
@@ -20,9 +21,13 @@ struct Poor {
   std::array<std::uint64_t, 4> v{};
 };
 
+struct Gathered {
+  std::vector<Poor> poor;
+  std::uint64_t n_listed = 0;  ///< by all ranks, also those that are not poor any more
+};
 /// The listed and the waiting cells that are still poor, on rank 0, in the order of numbers.
-std::vector<Poor> gather_poor(DistributedMesh& parts, double below, const Worklist& list,
-                              std::span<const std::uint64_t> waiting) {
+Gathered gather_poor(DistributedMesh& parts, double below, const Worklist& list,
+                     std::span<const std::uint64_t> waiting) {
   const TetMesh& part = parts.part();
   std::vector<Poor> poor;
   const auto add = [&](CellHandle c) {
@@ -33,10 +38,13 @@ std::vector<Poor> gather_poor(DistributedMesh& parts, double below, const Workli
   for (Index c : list.cells()) add(CellHandle(c));
   for (std::uint64_t number : waiting)
     if (const CellHandle c = parts.cell_at(number); c.is_valid()) add(c);
+  const auto n_own =
+      std::ranges::count_if(list.cells(), [&](Index c) { return parts.is_own(CellHandle(c)); });
   std::vector<Packer> to(parts.comm().n_ranks());
-  to[0].put_all(poor);
+  if (!poor.empty()) to[0].put_all(poor);
   poor.clear();
-  for (const Comm::Message& message : parts.comm().exchange(to)) {
+  const Comm::Exchanged came = parts.comm().exchange(to, static_cast<std::uint64_t>(n_own));
+  for (const Comm::Message& message : came.messages) {
     const auto theirs = Unpacker(message.bytes).get_all<Poor>();
     poor.insert(poor.end(), theirs.begin(), theirs.end());
   }
@@ -44,7 +52,7 @@ std::vector<Poor> gather_poor(DistributedMesh& parts, double below, const Workli
   std::ranges::sort(poor, {}, number);
   const auto rest = std::ranges::unique(poor, {}, number);
   poor.erase(rest.begin(), rest.end());
-  return poor;
+  return {std::move(poor), came.sum};
 }
 
 /// The worst cells of which no two share a vertex get their turn now; the others wait. Both ascending.
@@ -92,10 +100,9 @@ RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& t
 
 RoundCounts insert_in_parts(DistributedMesh& parts, const Ranks::Dig& dig, const Worklist& list,
                             std::vector<std::uint64_t>& waiting, std::uint8_t depth) {
-  const auto n_own = static_cast<std::uint64_t>(
-      std::ranges::count_if(list.cells(), [&](Index c) { return parts.is_own(CellHandle(c)); }));
-  if (parts.comm().sum(n_own) == 0 && waiting.empty()) return {};
-  Turns turns = take_turns(parts.comm(), gather_poor(parts, dig.look.below, list, waiting));
+  Gathered gathered = gather_poor(parts, dig.look.below, list, waiting);
+  if (gathered.n_listed == 0 && waiting.empty()) return {};
+  const Turns turns = take_turns(parts.comm(), std::move(gathered.poor));
   waiting = turns.waiting;
   return with_metric(dig.look, [&](const auto& metric) { return insert(parts, dig, turns, depth, metric); });
 }

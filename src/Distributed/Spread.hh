@@ -22,17 +22,19 @@ class Spread {
   void begin(CellHandle c, std::uint32_t depth, int for_whom = 0) {
     for (VertexHandle v : parts_.part().cell(c).v) reach({v, for_whom}, depth);
   }
+  /// Each rank goes as far as it comes by itself before it asks others.
   void run() {
     for (bool is_done = false; !is_done;) {
-      const Comm::Exchanged came = parts_.comm().exchange(to_, next_.size());
+      while (!next_.empty())
+        for (const Mark& mark : std::exchange(next_, {})) go_on_from(mark);
+      const Comm::Exchanged came = parts_.comm().exchange(to_, 0);
       to_.assign(parts_.comm().n_ranks(), {});
       for (const Comm::Message& message : came.messages)
         for (Unpacker in(message.bytes); !in.at_end();) {
           const auto told = in.get<Told>();
           reach({parts_.vertex_at(told.number), told.for_whom}, told.left);
         }
-      is_done = came.sum + came.n_messages == 0;
-      for (const Mark& mark : std::exchange(next_, {})) go_on_from(mark);
+      is_done = came.n_messages == 0;
     }
   }
   /// By the rank that they are marked for, ascending.

@@ -49,6 +49,20 @@ std::set<std::uint64_t> cells_round(const TetMesh& mesh, CellHandle first, int d
   return cells;
 }
 
+TEST(NumberIndex, FindsWhatWasPutInHoweverNumbersFall) {
+  for (const std::uint64_t step :
+       {std::uint64_t{1}, std::uint64_t{1} << 32U, std::uint64_t{0x9e3779b97f4a7c15}})
+    for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{1000}}) {
+      mpi::NumberIndex index(n);
+      for (std::size_t i = 0; i < n; ++i) {
+        EXPECT_TRUE(index.insert(i * step, static_cast<Index>(i)));
+        EXPECT_FALSE(index.insert(i * step, 7));
+      }
+      for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(index[i * step], i);
+      EXPECT_EQ(index[n * step], mpi::NumberIndex::kNone);
+    }
+}
+
 TEST(Cutout, HasTheLayersAskedForRoundACell) {
   mpi::Comm comm(MPI_COMM_WORLD);
   Sides sides(comm);

@@ -212,6 +212,28 @@ TEST(Reorder, CellsAloneLeaveVerticesWhereTheyAreAndCanBePutBack) {
   EXPECT_THROW(restore_cell_order(mesh, map.cells), InvalidInput);
 }
 
+TEST(OrderCells, GivesThemTheHandlesOfTheirPlaces) {
+  TetMesh mesh = test::kuhn_box(2);
+  const TetMesh before = mesh;
+  std::vector<CellHandle> order;
+  for (std::size_t i = mesh.n_cells(); i-- > 0;) order.push_back(CellHandle(i));
+  order_cells(mesh, order);
+  EXPECT_EQ(check(mesh, {.last = Rule::kDuplicateEdge}), Ok);
+  for (std::size_t i = 0; i < order.size(); ++i)
+    EXPECT_EQ(mesh.cell(CellHandle(i)).v, before.cell(order[i]).v);
+  const auto is_refused = [&](std::vector<CellHandle> other) {
+    EXPECT_THROW(order_cells(mesh, other), InvalidInput);
+    return mesh.cell(CellHandle(0)).v == before.cell(order[0]).v;
+  };
+  EXPECT_TRUE(is_refused({order.begin(), order.end() - 1}));
+  order[1] = order[2];
+  EXPECT_TRUE(is_refused(order));
+  order[1] = CellHandle(order.size());
+  EXPECT_TRUE(is_refused(order));
+  mesh.delete_cell(CellHandle(0));
+  EXPECT_THROW(order_cells(mesh, order), InvalidInput);
+}
+
 TEST(IsScattered, TellsARandomOrderFromThatOfACurve) {
   generate::Arrays box = generate::box({40, 40, 40});
   EXPECT_FALSE(is_scattered(build(box.points, box.cells)));
