@@ -66,7 +66,7 @@ const std::map<std::string, std::string> kGood = {
     {"hausdorff", "0.1"},   {"feature_angle", "30"}, {"fix", "patch:1"},     {"periodic", "1:2"},
     {"min_cells", "10"},    {"max_cells", "20"},     {"coarsen", "1"},       {"metric", "mean-ratio"},
     {"ops", "edge"},        {"no_insert", "on"},     {"bulk_nodes", "true"}, {"polish_only", "true"},
-    {"passes_only", "yes"}, {"rounds", "mixed"},     {"smoother", "taubin"}, {"compat", "jpdc2013"},
+    {"passes_only", "on"},  {"rounds", "mixed"},     {"smoother", "taubin"}, {"compat", "jpdc2013"},
     {"seed", "5"},          {"threads", "2"},        {"device", "auto"},     {"hybrid", "true"},
     {"work_group", "64"}};
 
