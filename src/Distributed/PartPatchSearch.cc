@@ -2,6 +2,7 @@
 #include "Distributed/PartPatchSearch.hh"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "Distributed/Buffer.hh"
 #include "Distributed/Cutout.hh"
 #include "Distributed/CutoutRound.hh"
+#include "HalfFace/Errors.hh"
 #include "HalfFace/Writer.hh"
 #include "Remesh/Patch.hh"
 
@@ -95,19 +97,25 @@ void CutoutPatches::own_new_vertices(const Change& change) {
   const auto owner = [&](VertexHandle v) {
     return cutout_.is_new(v) ? new_owner_[v.idx() - n_before] : cutout_.record(v).owner;
   };
-  for (bool is_left = true; is_left;) {
-    is_left = false;
-    for (VertexHandle v : change.vertices) {
-      if (!cutout_.is_new(v) || owner(v) != kNobody) continue;
-      VertexHandle first;
-      for (CellHandle c : change.cells)
+  const auto first_neighbour = [&](VertexHandle v) {
+    VertexHandle first;
+    for (CellHandle c : change.cells)
+      if (mesh.cell(c).has(v))
         for (VertexHandle u : mesh.cell(c).v)
-          if (mesh.cell(c).has(v) && owner(u) != kNobody && (!first.is_valid() || u < first)) first = u;
-      if (first.is_valid())
-        new_owner_[v.idx() - n_before] = owner(first);
-      else
-        is_left = true;
-    }
+          if (owner(u) != kNobody && (!first.is_valid() || u < first)) first = u;
+    return first;
+  };
+  std::vector<VertexHandle> left;
+  std::copy_if(change.vertices.begin(), change.vertices.end(), std::back_inserter(left),
+               [&](VertexHandle v) { return cutout_.is_new(v); });
+  while (!left.empty()) {
+    const std::size_t n_left = left.size();
+    std::erase_if(left, [&](VertexHandle v) {
+      const VertexHandle first = first_neighbour(v);
+      if (first.is_valid()) new_owner_[v.idx() - n_before] = owner(first);
+      return first.is_valid();
+    });
+    if (left.size() == n_left) throw InternalError("a patch has a vertex that hangs on nothing");
   }
 }
 
