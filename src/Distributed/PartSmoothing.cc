@@ -2,6 +2,7 @@
 #include "Distributed/PartSmoothing.hh"
 
 #include <bit>
+#include <utility>
 
 namespace hfr::mpi {
 namespace {
@@ -19,9 +20,12 @@ struct Colour {
 PartSmoothing::PartSmoothing(DistributedMesh& mesh, std::span<const VertexHandle> vertices,
                              par::Policy policy)
     : mesh_(mesh), colour_(mesh.part().n_vertices(), kNone) {
+  place_.resize(colour_.size());
   for (VertexHandle v : vertices) {
     colour_[v.idx()] = kWaiting;
-    if (mesh.is_own(v)) own_.push_back(v);
+    if (!mesh.is_own(v)) continue;
+    place_[v.idx()] = static_cast<Index>(own_.size());
+    own_.push_back(v);
   }
   const StarTable stars(mesh.part(), own_, mesh.work().star_size, policy);
   begin_.push_back(0);
@@ -55,48 +59,97 @@ void PartSmoothing::find_links(std::vector<Come>& came) {
 }
 
 std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
-  const auto i = static_cast<std::size_t>(std::lower_bound(own_.begin(), own_.end(), own) - own_.begin());
+  const std::size_t i = place_[own.idx()];
   return {links_.data() + begin_[i], links_.data() + begin_[i + 1]};
 }
 
-/// A vertex is coloured once all its smaller neighbours are; so all ranks together colour in the order of
-/// numbers, as far as neighbours go.
+/// Own vertices that can be coloured: each once all its smaller neighbours are.
+class PartSmoothing::Ready {
+ public:
+  Ready(const PartSmoothing& pass)
+      : pass_(pass), n_waits_for_(pass.colour_.size(), 0), seen_(pass.colour_.size(), 0) {
+    for (VertexHandle v : pass_.own_) {
+      if (!is_waiting(v)) continue;
+      ++n_left_;
+      for_neighbours(v, [&](VertexHandle u) {
+        if (u < v && is_waiting(u)) ++n_waits_for_[v.idx()];
+      });
+      if (n_waits_for_[v.idx()] == 0) ready_.push_back(v);
+    }
+  }
+
+  std::size_t n_left() const { return n_left_; }
+  bool is_empty() const { return ready_.empty(); }
+  VertexHandle take() {
+    const VertexHandle v = ready_.back();
+    ready_.pop_back();
+    --n_left_;
+    return v;
+  }
+  /// A vertex within one edge of own ones has its colour.
+  void note_coloured(VertexHandle v) {
+    for_neighbours(v, [&](VertexHandle w) {
+      if (v < w && pass_.mesh_.is_own(w) && is_waiting(w) && --n_waits_for_[w.idx()] == 0)
+        ready_.push_back(w);
+    });
+  }
+
+ private:
+  bool is_waiting(VertexHandle v) const { return pass_.colour_[v.idx()] == kWaiting; }
+  /// Each once. All cells of such a vertex are here.
+  template <class Visit>
+  void for_neighbours(VertexHandle v, Visit&& visit) {
+    const TetMesh& part = pass_.mesh_.part();
+    ++look_;
+    for (CellHandle c : part.vertex_cells(v))
+      for (VertexHandle u : part.cell(c).v)
+        if (std::exchange(seen_[u.idx()], look_) != look_ && u != v) visit(u);
+  }
+
+  const PartSmoothing& pass_;
+  std::vector<std::uint32_t> n_waits_for_;  // by vertex: smaller neighbours without a colour
+  std::vector<std::uint32_t> seen_;         // by vertex: the last look that came to it
+  std::uint32_t look_ = 0;
+  std::vector<VertexHandle> ready_;
+  std::size_t n_left_ = 0;
+};
+
+std::uint8_t PartSmoothing::first_fit(VertexHandle v) const {
+  std::uint64_t used = 0;
+  for (HalfFaceHandle h : link(v))
+    for (VertexHandle u : mesh_.part().cell(cell_of(h)).v)
+      if (u < v) used |= std::uint64_t{1} << colour_[u.idx()];
+  return static_cast<std::uint8_t>(std::countr_one(used & ~(std::uint64_t{1} << kNone)));
+}
+
+/// All ranks together colour in the order of numbers, as far as neighbours go.
 std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
-  const TetMesh& part = mesh_.part();
   Comm& comm = mesh_.comm();
-  std::vector<VertexHandle> left;
   std::vector<std::uint64_t> alone;  // what would need a 64th colour has a group each, after the others
-  for (VertexHandle v : own_)
-    if (colour_[v.idx()] == kWaiting) left.push_back(v);
-  std::uint64_t n_left = 0;
-  do {
+  Ready ready(*this);
+  for (bool is_done = false; !is_done;) {
     std::vector<Packer> to(comm.n_ranks());
-    std::erase_if(left, [&](VertexHandle v) {
-      std::uint64_t used = 0;
-      for (HalfFaceHandle h : link(v))
-        for (VertexHandle u : part.cell(cell_of(h)).v) {
-          if (!(u < v)) continue;
-          if (colour_[u.idx()] == kWaiting) return false;
-          used |= std::uint64_t{1} << colour_[u.idx()];
-        }
-      const auto colour = static_cast<std::uint8_t>(std::countr_one(used & ~(std::uint64_t{1} << kNone)));
+    while (!ready.is_empty()) {
+      const VertexHandle v = ready.take();
+      const std::uint8_t colour = first_fit(v);
       if (colour == kNone) alone.push_back(mesh_.number(v));
       colour_[v.idx()] = colour;
+      ready.note_coloured(v);
       for_ranks(mesh_.near(v), [&](int r) {
         if (r != comm.rank()) to[static_cast<std::size_t>(r)].put(Colour{mesh_.number(v), colour});
       });
-      return true;
-    });
-    n_left = comm.sum(left.size());
-    for (const Comm::Message& message : comm.exchange(to)) {
-      Unpacker in(message.bytes);
-      while (!in.at_end()) {
+    }
+    const Comm::Exchanged came = comm.exchange(to, ready.n_left());
+    for (const Comm::Message& message : came.messages)
+      for (Unpacker in(message.bytes); !in.at_end();) {
         const auto news = in.get<Colour>();
         const VertexHandle v = mesh_.vertex_at(news.number);
-        if (v.is_valid()) colour_[v.idx()] = static_cast<std::uint8_t>(news.colour);
+        if (!v.is_valid()) continue;
+        colour_[v.idx()] = static_cast<std::uint8_t>(news.colour);
+        ready.note_coloured(v);
       }
-    }
-  } while (n_left > 0);
+    is_done = came.sum == 0;
+  }
   std::vector<std::vector<VertexHandle>> groups;
   for (VertexHandle v : own_) {
     const std::uint8_t colour = colour_[v.idx()];
@@ -122,7 +175,8 @@ auto PartSmoothing::tell_points(std::span<const VertexHandle> moved) -> std::vec
   for (VertexHandle v : moved) {
     set.clear();  // ranks within three edges: those that hold a cell of v
     for (HalfFaceHandle h : link(v))
-      for (VertexHandle u : mesh_.part().cell(cell_of(h)).v) set.add(mesh_.within_two(u));
+      for (VertexHandle u : mesh_.part().cell(cell_of(h)).v)
+        if (!mesh_.is_inside(u)) set.add(mesh_.within_two(u));
     set.remove(comm.rank());
     for_ranks(set.bits(), [&](int r) {
       to[static_cast<std::size_t>(r)].put(MovedVertex{mesh_.number(v), mesh_.part().point(v)});

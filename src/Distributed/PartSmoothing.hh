@@ -40,10 +40,14 @@ class PartSmoothing {
   std::vector<Come> tell_points(std::span<const VertexHandle> moved);
 
  private:
+  class Ready;
+
+  std::uint8_t first_fit(VertexHandle v) const;
   void find_links(std::vector<Come>& came);
 
   DistributedMesh& mesh_;
   std::vector<VertexHandle> own_;
+  std::vector<Index> place_;          // of own ones in own_, by vertex of the part
   std::vector<std::uint8_t> colour_;  // by vertex of the part
   std::vector<std::size_t> begin_;    // by own_
   std::vector<HalfFaceHandle> links_;
