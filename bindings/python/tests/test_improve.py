@@ -88,7 +88,7 @@ def test_stuck_cells_say_why():
 def test_options_are_those_of_the_table():
     parameters = inspect.signature(hf.improve).parameters
     names = [name for name, *_ in _core.options()]
-    assert len(names) == 24 and set(names) <= set(parameters)
+    assert len(names) == 25 and set(names) <= set(parameters)
     own = {"points", "cells", "regions", "fields", "point_fields", "cell_fields", "triangles", "triangle_labels",
            "fixed_vertices", "progress", "cancel", "statistics", "maps", "transfer"}
     assert set(parameters) == set(names) | own
