@@ -189,6 +189,9 @@ void require_sound(const PartsLine& line) {
   if (!line.output.empty() && !is_known(out))
     refuse(line.output + ": meshes in parts are written as .pvtu, .vtu, .mesh, .meshb or .msh");
   if (line.distributed_output && out != ".mesh") refuse("--distributed-output is for -o FILE.mesh");
+  if (line.passes_only && line.min_dihedral == "max")
+    refuse(
+        "--min-dihedral max searches for the last cells, which --passes-only leaves out: give one of them");
   improve_options(line);
 }
 
@@ -247,9 +250,7 @@ class PartsRun {
     bool goal_reached = true;
     if (line_.has_idle_options()) {
       constexpr const char* kIdle =
-          "nothing is improved: the options of a run count with --min-dihedral, --all-stages, --passes-only "
-          "or "
-          "--coarsen";
+          "nothing is improved: give --min-dihedral, --all-stages, --passes-only or --coarsen";
       say("{}", kIdle);
       report_["notes"].push_back(kIdle);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stages of hfr::improve(), but for the searches for the last cells, run by all ranks at the same time:
-// each has its part as the mesh of the run, and what the run asks of the whole (counts, the worst cell,
-// percentiles, bounds on cells) comes from reductions. So all ranks decide alike.
+// The stages of hfr::improve(), run by all ranks at the same time: each has its part as the mesh of the run,
+// and what the run asks of the whole (counts, the worst cell, percentiles, bounds on cells) comes from
+// reductions. So all ranks decide alike.
 #include "Distributed/InParts.hh"
 
 #include <algorithm>

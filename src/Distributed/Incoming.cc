@@ -300,7 +300,7 @@ std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::
     if (turned.whole) notes.push_back("orders all cells the other way round; they were flipped as a whole");
     if (turned.n_alone > 0)
       notes.push_back(std::to_string(turned.n_alone) +
-                      " cells were written the other way round than the rest and were turned");
+                      " cells were written the other way round than the rest, and are as it now");
   } catch (const InvalidInput& error) {
     throw InvalidInput(file.string() + ": " + error.what());
   }

@@ -264,13 +264,15 @@ TEST_F(StagesInParts, ScatteredCellsComeInOrder) {
     TetMesh ordered = *whole;
     const GarbageMap map = reorder(ordered, {.curve = SpaceCurve::kMorton, .vertices = false});
     EXPECT_EQ(mpi::is_scattered(parts), is_scattered(ordered));
+    std::size_t n_others = 0;  // all ranks go on together, whatever one has found
     for (std::size_t i = 0; i < parts.part().n_cells(); ++i) {
       const CellHandle there = map.cells[old[i]];
-      ASSERT_EQ(parts.number(C(i)), there.idx());
+      bool is_other = parts.number(C(i)) != there.idx() || parts.cell_at(there.idx()) != C(i);
       for (std::size_t k = 0; k < 4; ++k)
-        ASSERT_EQ(parts.number(parts.part().cell(C(i)).v[k]), ordered.cell(there).v[k].idx());
-      ASSERT_EQ(parts.cell_at(there.idx()), C(i));
+        is_other |= parts.number(parts.part().cell(C(i)).v[k]) != ordered.cell(there).v[k].idx();
+      n_others += is_other ? 1 : 0;
     }
+    EXPECT_EQ(n_others, 0U);
     parts.renumber(old);  // as it was
     EXPECT_TRUE(mpi::check(parts).is_good);
     mpi::write_vtu(parts, folder.path() / "again.vtu");
