@@ -381,6 +381,7 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> records) {
   for (std::size_t v = 0; v < n; ++v) {
     one.set_only(v, owners[v]);
     two.set_only(v, owners[v]);
+    known.set_only(v, owners[v]);
   }
   for (std::size_t i = 0; i < n_old; ++i) {
     known.set(to[i].idx(), told_[i]);

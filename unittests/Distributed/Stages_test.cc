@@ -14,7 +14,10 @@
 
 #include "Distributed/CellOrder.hh"
 #include "Distributed/Labelled.hh"
+#include "Distributed/PartPatchSearch.hh"
 #include "HalfFace/Reorder.hh"
+#include "Operators/VertexCollapse.hh"
+#include "Remesh/Patch.hh"
 
 namespace hfr::test {
 namespace {
@@ -212,6 +215,59 @@ TEST_F(StagesInParts, LabelledMeshesHaveTheBytesOfSharedMemory) {
     if (comm.rank() == 0) io::write_mesh(path, labelled(valid_box(5, 0.3, seed), seed, density_of(seed)));
     comm.sum(0);
     expect_same_run(comm, folder, path, passes_only());
+  }
+}
+
+/// With the slots, numbers and vertices that shared memory gives them: the first patch leaves slots, which
+/// the second takes, and more; vertices come and go.
+TEST(PartPatchSearch, PatchesThatShrinkAndGrowComeHome) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  Whole whole(valid_box(7, 0.3, 5), MinSine2{});
+  Whole cut = whole;
+  const auto owner =
+      mpi::partition(comm, comm.rank() == 0 ? &cut.mesh : nullptr, mpi::Partition::kCoordinates);
+  mpi::DistributedMesh parts(comm);
+  parts.scatter(&cut.mesh, &cut.work, owner);
+  const std::vector<std::uint64_t> centres = {whole.mesh.n_cells() - 150, 150};
+  const auto shrunk = [](TetMesh mesh) {
+    const std::vector<std::uint8_t> frozen = constrained_vertices(mesh, {});
+    const std::vector<double> nothing_to_lose(mesh.n_cells(), 0);
+    for (std::size_t v = 0, n = 0; v < mesh.n_vertices() && n < 1; ++v)
+      if (frozen[v] == 0 && apply(VertexCollapse<MinSine2>{MinSine2{}, nothing_to_lose, frozen}, mesh, V(v)))
+        ++n;
+    return mesh;
+  };
+  const auto grown = [](TetMesh mesh) {
+    for (std::size_t i = 0; i < 9; ++i) mesh.split_cell(C(i));
+    return mesh;
+  };
+  const auto change = [&](const TetMesh& mesh, std::span<const CellHandle> worst, const auto& put) {
+    const Patch first(mesh, worst[0], 1), second(mesh, worst[1], 1);
+    const TetMesh small = shrunk(first.mesh()), large = grown(second.mesh());
+    EXPECT_LT(small.n_logical_cells(), first.cells().size());
+    EXPECT_GT(large.n_logical_cells() - second.cells().size(),
+              first.cells().size() - small.n_logical_cells() + 2);
+    put(first, small);
+    put(second, large);
+  };
+  const auto done = mpi::search_patches_in_parts(parts, centres, 1, [&](PatchPlace& place) {
+    change(place.mesh(), place.worst(),
+           [&](const Patch& patch, const TetMesh& changed) { place.put_back(patch, changed); });
+    return PatchesDone{2, 2, 2, true, false, false};
+  });
+  EXPECT_EQ(done.n_changed, 2U);
+  const std::vector<CellHandle> worst = {C(centres[0]), C(centres[1])};
+  change(whole.mesh, worst,
+         [&](const Patch& patch, const TetMesh& changed) { patch.put_back(whole.mesh, changed); });
+  whole.work.attach(whole.mesh, {});
+  whole.work.set_qualities(whole.mesh, MinSine2{}, {});
+  parts.work().set_qualities(parts.part(), MinSine2{}, {});
+  EXPECT_EQ(check(whole.mesh), Ok);
+  EXPECT_EQ(parts.n_cells(), whole.mesh.n_logical_cells());
+  expect_part_of(parts, whole);
+  gather_from_nothing(parts, cut);
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(identical(whole.mesh, cut.mesh));
   }
 }
 
