@@ -7,9 +7,6 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
-#ifdef __unix__
-#include <sys/resource.h>
-#endif
 
 #include <algorithm>
 #include <array>
@@ -29,6 +26,7 @@
 #include "Options.hh"
 #include "Parser.hh"
 #include "Paths.hh"
+#include "PrintFigures.hh"
 #include "Report.hh"
 #include "Signals.hh"
 #include "hfremesh/Distributed/InParts.hh"
@@ -54,6 +52,7 @@ struct PartsLine {
   std::string partition = "coordinates";
   bool distributed_output = false;
   std::string json;  ///< file for the report, "-" for stdout, empty for none
+  bool shows_traffic = false;
   bool quiet = false;
 
   bool prints() const { return !quiet && json != "-"; }
@@ -122,6 +121,8 @@ void add_options(Command command, PartsLine& line) {
   command.option("--json", line.json, "Write a report in JSON; - is stdout")
       .type_name("FILE")
       .transform(stream_name());
+  command.flag("--traffic", line.shows_traffic,
+               "Print what ranks have sent, their memory, and seconds by phase");
   command.flag("-q,--quiet", line.quiet, "Print errors only");
   command.group("A grid instead of IN, as hfremesh generate cavity makes it");
   command.option("--generate", line.counts, "Cubes along x, y and z, of 6 cells each")
@@ -248,6 +249,7 @@ class PartsRun {
       note_seconds("check");
     }
     bool goal_reached = true;
+    mpi::RankFigures figures;
     if (line_.has_idle_options()) {
       constexpr const char* kIdle =
           "nothing is improved: give --min-dihedral, --all-stages, --passes-only or --coarsen";
@@ -257,11 +259,16 @@ class PartsRun {
     if (line_.improves()) {
       const mpi::PartsResult result = improve();
       found = result.after;
+      figures = result.mine;
       goal_reached = result.goal_reached;
     }
     check();
     if (!line_.output.empty()) write();
     say_memory();
+    if (line_.shows_traffic) {
+      const std::vector<mpi::RankFigures> of_ranks = mpi::gather_figures(comm_, figures);
+      if (comm_.rank() == 0) print_figures(of_ranks);
+    }
     if (found.n_invalid > 0) {
       complain("{} cells are inverted or flat", grouped(found.n_invalid));
       return ExitCode::kInvalidCells;
@@ -436,16 +443,12 @@ class PartsRun {
   }
 
   void say_memory() {
-#ifdef __unix__
-    rusage usage{};
-    if (getrusage(RUSAGE_SELF, &usage) != 0) usage.ru_maxrss = 0;
-    const auto mine = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-    const std::uint64_t sum = comm_.sum(mine);
+    const std::uint64_t mine = mpi::peak_bytes(), sum = comm_.sum(mine);
+    if (sum == 0) return;
     const double most = -comm_.min(-static_cast<double>(mine));
     report_["memory"] = {{"most", static_cast<std::uint64_t>(most)}, {"all", sum}};
     say("memory: {:.0f} MB on the rank that took most, {:.0f} MB on all", most / 1e6,
         static_cast<double>(sum) / 1e6);
-#endif
   }
 
   using Clock = std::chrono::steady_clock;

@@ -9,6 +9,7 @@
 #include "Distributed/OwnItems.hh"
 #include "Distributed/Stretches.hh"
 #include "HalfFace/Reorder.hh"
+#include "Parallel/Sort.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -41,23 +42,38 @@ std::vector<std::vector<std::uint64_t>> ask(Comm& comm, std::vector<std::vector<
 /// The place in the order of all of each, those with a smaller `place` first, then those with a smaller
 /// number.
 std::vector<std::vector<std::uint64_t>> ranked(Comm& comm, const std::vector<std::vector<Placed>>& asked) {
-  struct Item {
-    Placed placed;
-    std::size_t from, at;
+  std::vector<std::size_t> begins = {0};
+  for (const auto& of_rank : asked) begins.push_back(begins.back() + of_rank.size());
+  const std::uint64_t n = begins.back();
+  std::vector<par::KeyIndex> order, scratch;
+  order.reserve(n);
+  for (const auto& of_rank : asked)
+    for (const Placed& one : of_rank) order.push_back({one.place, static_cast<std::uint32_t>(order.size())});
+  par::stable_sort({}, order, scratch);
+  scratch = {};
+  const auto from = [&](std::uint32_t at) {
+    return static_cast<std::size_t>(std::upper_bound(begins.begin(), begins.end(), at) - begins.begin()) - 1;
   };
-  std::vector<Item> items;
-  for (std::size_t r = 0; r < asked.size(); ++r)
-    for (std::size_t i = 0; i < asked[r].size(); ++i) items.push_back({asked[r][i], r, i});
-  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
-    return std::pair(a.placed.place, a.placed.number) < std::pair(b.placed.place, b.placed.number);
-  });
-  const std::uint64_t n = items.size();
+  const auto number = [&](const par::KeyIndex& item) {
+    const std::size_t r = from(item.index);
+    return asked[r][item.index - begins[r]].number;
+  };
+  for (std::size_t i = 0, end = 0; i < n; i = end) {
+    for (end = i + 1; end < n && order[end].key == order[i].key;) ++end;
+    if (end - i > 1)
+      std::sort(order.begin() + static_cast<std::ptrdiff_t>(i),
+                order.begin() + static_cast<std::ptrdiff_t>(end),
+                [&](const par::KeyIndex& a, const par::KeyIndex& b) { return number(a) < number(b); });
+  }
   const auto counts = comm.all_gather(std::span<const std::uint64_t>(&n, 1));
   std::uint64_t next = 0;
   for (int r = 0; r < comm.rank(); ++r) next += counts[static_cast<std::size_t>(r)];
   std::vector<std::vector<std::uint64_t>> answers(asked.size());
   for (std::size_t r = 0; r < asked.size(); ++r) answers[r].resize(asked[r].size());
-  for (const Item& item : items) answers[item.from][item.at] = next++;
+  for (const par::KeyIndex& item : order) {
+    const std::size_t r = from(item.index);
+    answers[r][item.index - begins[r]] = next++;
+  }
   return answers;
 }
 

@@ -3,6 +3,7 @@
 // it, so each looks at what is round its own ones; what cannot be seen from there is asked of others.
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -52,17 +53,20 @@ class PartCheck {
     for (std::size_t i = 0; i < part_.n_cells(); ++i)
       if (!part_.is_deleted(CellHandle(i)))
         if (Fault fault = look_at(CellHandle(i))) return fault;
+    const std::vector<VertexHandle> suspects = suspect_vertices();
+    if (suspects.empty()) return {};
     const Stars stars(mesh_);
-    for (std::size_t i = 0; i < part_.n_vertices(); ++i)
-      if (const VertexHandle v(i); mesh_.is_own(v))
-        if (Fault fault = look_at(v, stars[v])) return fault;
+    for (VertexHandle v : suspects)
+      if (Fault fault = look_at(v, stars[v])) return fault;
     return {};
   }
   PinchedEdges pinched_edges() const {
     PinchedEdges all;
+    const std::vector<VertexHandle> suspects = suspect_vertices();
+    if (suspects.empty()) return all;
     const Stars stars(mesh_);
-    for (std::size_t i = 0; i < part_.n_vertices(); ++i)
-      if (const VertexHandle v(i); mesh_.is_own(v) && !part_.is_deleted(v))
+    for (VertexHandle v : suspects)
+      if (!part_.is_deleted(v))
         for_edges(v, stars[v], [&](VertexHandle u, std::size_t n_fans) {
           if (n_fans > 1) all[{mesh_.number(v), mesh_.number(u)}] = n_fans;
           return true;
@@ -73,6 +77,77 @@ class PartCheck {
  private:
   std::string name(CellHandle c) const { return "cell " + std::to_string(mesh_.number(c)); }
   std::string name(VertexHandle v) const { return "vertex " + std::to_string(mesh_.number(v)); }
+
+  /// Own vertices that a first look does not clear; see is_plain().
+  std::vector<VertexHandle> suspect_vertices() const {
+    std::vector<std::uint32_t> n_cells_of(part_.n_vertices(), 0);
+    for (std::size_t i = 0; i < part_.n_cells(); ++i)
+      if (!part_.is_deleted(CellHandle(i)))
+        for (VertexHandle v : part_.cell(CellHandle(i)).v) ++n_cells_of[v.idx()];
+    std::vector<VertexHandle> suspects;
+    std::vector<std::uint8_t> place(part_.n_vertices(), 0);
+    for (std::size_t i = 0; i < part_.n_vertices(); ++i)
+      if (const VertexHandle v(i); mesh_.is_own(v) && !is_plain(v, n_cells_of[i], place))
+        suspects.push_back(v);
+    return suspects;
+  }
+
+  /// True only where all is well round v, which has so many cells: they connect, no face has two of them that
+  /// are not mates, each edge one fan. Expects cells that look_at() has cleared. `place`: by vertex, all 0
+  /// between calls.
+  ///
+  /// The faces opposite v in its cells make up a connected surface. Faces of v are its edges: where each is
+  /// met once in each direction at most, and not as open in both, none has two cells that are no mates. Were
+  /// a vertex of it counted once that has several fans, its Euler characteristic would come out too small: a
+  /// disk or a sphere has one fan everywhere. All other surfaces are left for a closer look.
+  bool is_plain(VertexHandle v, std::size_t n_cells, std::vector<std::uint8_t>& place) const {
+    const CellHandle incident = part_.incident_cell(v);
+    if (part_.is_deleted(v)) return n_cells == 0;
+    if (n_cells == 0) return !incident.is_valid();
+    if (!incident.is_valid() || incident.idx() >= part_.n_cells() || part_.is_deleted(incident) ||
+        !part_.cell(incident).has(v) || mesh_.work().star_size[v.idx()] != n_cells)
+      return false;
+    Star star;
+    if (!part_.gather_star(v, star) || static_cast<std::size_t>(star.size) != n_cells) return false;
+    constexpr std::size_t kMost = 64;                // neighbours, each a bit
+    std::array<std::uint64_t, kMost + 1> follows{};  // of each: those that come after it round a face
+    std::array<VertexHandle, kMost> neighbours;
+    std::array<std::array<std::uint8_t, 2>, Star::kCapacity> open;
+    std::size_t n_neighbours = 0, n_open = 0;
+    const auto place_of = [&](VertexHandle u) {
+      std::uint8_t& at = place[u.idx()];
+      if (at == 0 && n_neighbours < kMost) {
+        neighbours[n_neighbours++] = u;
+        at = static_cast<std::uint8_t>(n_neighbours);
+      }
+      return at;
+    };
+    const auto look = [&] {
+      for (std::size_t i = 0; i < n_cells; ++i) {
+        const Cell& cell = part_.cell(star.cells[i]);
+        const auto& f = kFaceCorners[star.corners[i]];
+        std::array<std::uint8_t, 3> at{};
+        for (std::size_t k = 0; k < 3; ++k)
+          if ((at[k] = place_of(cell.v[f[k]])) == 0) return false;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint8_t a = at[k], b = at[(k + 1) % 3];
+          const std::uint64_t bit = std::uint64_t{1} << (b - 1);
+          if ((follows[a] & bit) != 0) return false;
+          follows[a] |= bit;
+          if (cell.mate[f[(k + 2) % 3]].is_valid()) continue;
+          if (n_open == open.size()) return false;
+          open[n_open++] = {a, b};
+        }
+      }
+      for (std::size_t i = 0; i < n_open; ++i)
+        if ((follows[open[i][1]] >> (open[i][0] - 1) & 1) != 0) return false;
+      // V - (3 F + O) / 2 + F, twice: each face has three edges, of which O are open.
+      return 2 * n_neighbours == n_cells + n_open + (n_open > 0 ? 2 : 4);
+    };
+    const bool is_plain = look();
+    for (std::size_t i = 0; i < n_neighbours; ++i) place[neighbours[i].idx()] = 0;
+    return is_plain;
+  }
 
   Fault look_at(CellHandle c) const {
     const Cell& cell = part_.cell(c);

@@ -11,6 +11,7 @@
 #include "Distributed/PartPatches.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/Writer.hh"
+#include "Parallel/Sort.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -127,10 +128,17 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
 
 std::vector<std::uint64_t> DistributedMesh::renumber(std::span<const std::uint64_t> to) {
   std::vector<CellHandle> order;
-  for (std::size_t i = 0; i < mesh_.n_cells(); ++i) order.push_back(CellHandle(i));
-  std::sort(order.begin(), order.end(),
-            [&](CellHandle a, CellHandle b) { return to[a.idx()] < to[b.idx()]; });
+  {
+    std::vector<par::KeyIndex> keys, scratch;
+    keys.reserve(to.size());
+    for (std::size_t i = 0; i < to.size(); ++i) keys.push_back({to[i], static_cast<std::uint32_t>(i)});
+    par::stable_sort({}, keys, scratch);
+    order.reserve(keys.size());
+    for (const par::KeyIndex& key : keys) order.push_back(CellHandle(key.index));
+  }
   std::vector<std::uint64_t> before, now;
+  before.reserve(order.size());
+  now.reserve(order.size());
   for (CellHandle c : order) {
     before.push_back(number(c));
     now.push_back(to[c.idx()]);
@@ -148,21 +156,24 @@ std::vector<std::uint64_t> DistributedMesh::renumber(std::span<const std::uint64
 }
 
 std::shared_ptr<const DistributedMesh> DistributedMesh::copy() const {
-  return std::shared_ptr<const DistributedMesh>(new DistributedMesh(*this));
+  const auto copy = std::make_shared<DistributedMesh>(comm_);
+  static_cast<State&>(*copy) = *this;
+  copy->work_.star_size = work_.star_size;
+  copy->work_.frozen = work_.frozen;
+  copy->work_.quality = work_.quality;
+  return copy;
 }
 
 void DistributedMesh::put_back(const DistributedMesh& copy) {
-  const std::uint32_t clock = work_.clock;
-  const double floor = work_.floor;
-  const bool holds_damage = work_.holds_damage;
   static_cast<State&>(*this) = copy;
-  work_.clock = clock;
-  work_.floor = floor;
-  work_.holds_damage = holds_damage;
-  std::fill(work_.changed.begin(), work_.changed.end(), clock);
-  std::fill(work_.pending.begin(), work_.pending.end(), 0xff);
-  std::fill(work_.claim.begin(), work_.claim.end(), kUnclaimed);
+  work_.star_size = copy.work_.star_size;
+  work_.frozen = copy.work_.frozen;
+  work_.quality = copy.work_.quality;
+  work_.changed.assign(mesh_.n_vertices(), work_.clock);
+  work_.pending.assign(mesh_.n_cells(), 0xff);
+  work_.claim.assign(mesh_.n_cells(), kUnclaimed);
   work_.all_touched = true;
+  start_zone();
 }
 
 VertexHandle DistributedMesh::vertex_at(std::uint64_t number) const {
@@ -238,7 +249,7 @@ void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<co
   std::vector<VertexRecord> fresh;
   for (const VertexRecord& r : vertices)
     if (!vertex_at(r.number).is_valid()) fresh.push_back(r);
-  if (!fresh.empty()) insert_vertices(fresh);
+  if (!fresh.empty()) add_vertices(std::move(fresh));
   write_cells(cells);
   link(cells);
   match_open_faces();
@@ -329,77 +340,60 @@ void DistributedMesh::match_open_faces() {
   }
 }
 
-/// Vertices keep the order of their numbers, so all handles change: O(part), and rare.
-void DistributedMesh::insert_vertices(std::span<const VertexRecord> records) {
-  std::vector<VertexRecord> fresh(records.begin(), records.end());
+/// Vertices keep the order of their numbers: those that are new in the whole go to the end.
+void DistributedMesh::add_vertices(std::vector<VertexRecord> fresh) {
   std::stable_sort(fresh.begin(), fresh.end(), [](const VertexRecord& a, const VertexRecord& b) {
     return a.number < b.number || (a.number == b.number && a.of_owner > b.of_owner);
   });
   fresh.erase(std::unique(fresh.begin(), fresh.end(),
                           [](const auto& a, const auto& b) { return a.number == b.number; }),
               fresh.end());
+  const auto first_new = std::find_if(fresh.begin(), fresh.end(), [&](const VertexRecord& r) {
+    return vertex_number_.empty() || r.number > vertex_number_.back();
+  });
+  if (first_new != fresh.begin()) insert_vertices({fresh.begin(), first_new});
+  for (const VertexRecord& r : std::span(first_new, fresh.end())) {
+    mesh_.add_vertex(r.point);
+    vertex_number_.push_back(r.number);
+    owner_.push_back(r.owner);
+    work_.star_size.push_back(r.star_size);
+    work_.changed.push_back(r.changed);
+    work_.frozen.push_back(r.frozen);
+    for (RankSets* sets : {&near1_, &near2_, &told_}) sets->append_only(r.owner);
+    marks_.push_back(0);
+  }
+}
+
+/// Between others, so that handles change: O(part), and rare. `fresh`: ascending.
+void DistributedMesh::insert_vertices(std::span<const VertexRecord> fresh) {
   const std::size_t n_old = vertex_number_.size(), n = n_old + fresh.size();
-  std::vector<VertexHandle> to(n_old);
-  TetMesh mesh;
-  mesh.reserve_vertices(n);
-  std::vector<std::uint64_t> numbers;
-  std::vector<int> owners;
-  std::vector<std::uint32_t> star_size, changed;
-  std::vector<std::uint8_t> frozen;
-  std::vector<CellHandle> incident;
-  const auto add = [&](const VertexRecord& r, CellHandle c) {
-    numbers.push_back(r.number);
-    owners.push_back(r.owner);
-    star_size.push_back(r.star_size);
-    changed.push_back(r.changed);
-    frozen.push_back(r.frozen);
-    incident.push_back(c);
-    return mesh.add_vertex(r.point);
-  };
-  for (std::size_t i = 0, k = 0; i < n_old || k < fresh.size();) {
-    if (k == fresh.size() || (i < n_old && vertex_number_[i] < fresh[k].number)) {
-      to[i] = add(record(VertexHandle(i)), mesh_.incident_cell(VertexHandle(i)));
-      ++i;
-    } else {
-      add(fresh[k++], CellHandle());
-    }
-  }
-  TetMesh::Writer writer(mesh);
-  writer.resize_cells(mesh_.n_cells());
-  for (std::size_t c = 0; c < mesh_.n_cells(); ++c) {
-    Cell cell = mesh_.cell(CellHandle(c));
-    for (VertexHandle& v : cell.v)
-      if (v.is_valid()) v = to[v.idx()];
-    writer.cell(CellHandle(c)) = cell;
-    mesh.set_region(CellHandle(c), mesh_.region(CellHandle(c)));
-  }
-  for (std::size_t v = 0; v < n; ++v) writer.set_incident_cell(VertexHandle(v), incident[v]);
-  for (std::size_t i = 0; i < n_old; ++i)
-    if (mesh_.is_deleted(VertexHandle(i))) writer.mark_deleted(to[i]);
-  PartLabels::move(mesh_, mesh, to);
-  RankSets one(n, comm_.size()), two(n, comm_.size()), known(n, comm_.size());
-  for (std::size_t v = 0; v < n; ++v) {
-    one.set_only(v, owners[v]);
-    two.set_only(v, owners[v]);
-    known.set_only(v, owners[v]);
-  }
-  for (std::size_t i = 0; i < n_old; ++i) {
-    known.set(to[i].idx(), told_[i]);
-    one.set(to[i].idx(), near1_[i]);
-    two.set(to[i].idx(), near2_[i]);
-  }
+  std::vector<VertexHandle> to(n_old), places;
+  for (std::size_t i = 0, k = 0; i < n_old || k < fresh.size();)
+    if (k == fresh.size() || (i < n_old && vertex_number_[i] < fresh[k].number))
+      to[i] = VertexHandle(i + k), ++i;
+    else
+      places.push_back(VertexHandle(i + k)), ++k;
+  TetMesh::Writer(mesh_).open_gaps(to, n);
+  open_gaps(to, n, std::uint64_t{0}, vertex_number_);
+  open_gaps(to, n, 0, owner_);
+  open_gaps(to, n, std::uint32_t{0}, work_.star_size);
+  open_gaps(to, n, std::uint32_t{0}, work_.changed);
+  open_gaps(to, n, std::uint8_t{0}, work_.frozen);
+  for (RankSets* sets : {&near1_, &near2_, &told_}) sets->open_gaps(to, n);
   for (auto* list : {&dirty_, &renewed_})
     for (VertexHandle& v : *list) v = to[v.idx()];
   marks_.assign(n, 0);
-  near1_ = std::move(one);
-  near2_ = std::move(two);
-  told_ = std::move(known);
-  mesh_ = std::move(mesh);
-  vertex_number_ = std::move(numbers);
-  owner_ = std::move(owners);
-  work_.star_size = std::move(star_size);
-  work_.changed = std::move(changed);
-  work_.frozen = std::move(frozen);
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    const VertexRecord& r = fresh[k];
+    const VertexHandle v = places[k];
+    mesh_.set_point(v, r.point);
+    vertex_number_[v.idx()] = r.number;
+    owner_[v.idx()] = r.owner;
+    work_.star_size[v.idx()] = r.star_size;
+    work_.changed[v.idx()] = r.changed;
+    work_.frozen[v.idx()] = r.frozen;
+    for (RankSets* sets : {&near1_, &near2_, &told_}) sets->set_only(v.idx(), r.owner);
+  }
 }
 
 void DistributedMesh::gather(TetMesh* mesh, Workspace* work, Gather what, par::Policy policy) {

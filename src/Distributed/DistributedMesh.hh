@@ -21,24 +21,17 @@ namespace hfr::mpi {
 
 namespace detail {
 
-/// What a rank has of a mesh that is cut among the ranks.
+/// What a rank has of a mesh that is cut among the ranks, and comes back to.
 struct PartState {
   TetMesh mesh_;
-  Workspace work_;
   PartLabels labels_;
   std::vector<std::uint64_t> vertex_number_;  // ascending
   std::vector<int> owner_;
   std::vector<std::uint64_t> cell_number_;  // by slot; the first n_sorted_ ascend
   std::size_t n_sorted_ = 0;
   std::unordered_map<std::uint64_t, Index> later_;  // slots from n_sorted_ on
-  RankSets near1_, near2_, told_;
-  std::vector<HalfFaceHandle> open_;  // faces behind which something may come
-  std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
-  std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
-  std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
   std::uint64_t n_slots_ = 0, n_vertices_ = 0;
   std::vector<std::uint64_t> free_;
-  std::uint32_t clock_at_scatter_ = 0;
 };
 
 }  // namespace detail
@@ -64,6 +57,7 @@ struct Turned {
 class DistributedMesh : private detail::PartState {
  public:
   explicit DistributedMesh(Comm& comm) : comm_(comm) {}
+  DistributedMesh(const DistributedMesh&) = delete;
   DistributedMesh& operator=(const DistributedMesh&) = delete;
 
   /// Why a mesh cannot be cut yet; empty where it can. Cell properties and bits, pinched vertices.
@@ -96,7 +90,7 @@ class DistributedMesh : private detail::PartState {
   /// smallest vertex. All take part.
   void hand_out_labels(std::span<const LabelRecord> records);
 
-  /// Of this part, to come back to: as much memory as the part takes.
+  /// Of this part, to come back to: some 60 bytes a cell. It answers no questions on what lies near.
   std::shared_ptr<const DistributedMesh> copy() const;
   /// Makes it what the copy is, all cells pending and all vertices changed now. What the workspace has of the
   /// run goes on: clock, floor, and whether damage is held. All take part.
@@ -125,6 +119,10 @@ class DistributedMesh : private detail::PartState {
 
   std::uint64_t number(VertexHandle v) const { return vertex_number_[v.idx()]; }
   std::uint64_t number(CellHandle c) const { return cell_number_[c.idx()]; }
+  /// In the order of numbers, which is that of most slots.
+  bool is_before(CellHandle a, CellHandle b) const {
+    return a.idx() < n_sorted_ && b.idx() < n_sorted_ ? a < b : number(a) < number(b);
+  }
   int owner(VertexHandle v) const { return owner_[v.idx()]; }
   bool is_own(VertexHandle v) const { return owner_[v.idx()] == comm_.rank(); }
   bool is_own(CellHandle c) const {
@@ -153,8 +151,9 @@ class DistributedMesh : private detail::PartState {
   std::span<const VertexHandle> renewed() const { return renewed_; }
   /// True where no vertex within two edges is another rank's.
   bool is_inside(VertexHandle v) const { return near2_.is_only(v.idx(), comm_.rank()); }
-  /// Slots that hold, or held, a cell with a vertex that is not inside.
+  /// Slots of all cells with a vertex that is not inside, and of some others: which were such, or are gone.
   std::span<const Index> zone() const { return zone_; }
+  bool is_in_zone(CellHandle c) const { return c.idx() < in_zone_.size() && in_zone_[c.idx()] != 0; }
   /// A cell has come that may be in the zone.
   void note_created(CellHandle c);
   /// Cells with these vertices have come or gone.
@@ -210,6 +209,7 @@ class DistributedMesh : private detail::PartState {
  private:
   void build_part(Block& block, par::Policy policy);
   void scatter_labels(const TetMesh* mesh, std::span<const int> owner);
+  void add_vertices(std::vector<VertexRecord> fresh);
   void insert_vertices(std::span<const VertexRecord> fresh);
   void add_labels(std::span<const LabelRecord> records) {
     labels_.add(mesh_, records, [this](std::uint64_t n) { return vertex_at(n); });
@@ -223,15 +223,24 @@ class DistributedMesh : private detail::PartState {
   void start_zone();
   void put_into_zone(CellHandle c);
   template <class Fill>
-  std::vector<VertexHandle> renew(RankSets& sets, std::span<const VertexHandle> vertices, Fill&& fill);
+  std::vector<VertexHandle> renew(RankSets& sets, std::span<const VertexHandle> vertices,
+                                  std::span<const Index> cells, Fill&& fill);
+  std::vector<Index> zone_round(std::span<const VertexHandle> vertices);
   void write_slots(TetMesh& mesh, Workspace& work) const;
   void write_whole(TetMesh& mesh, Workspace& work, std::span<const VertexRecord> vertices,
                    std::span<const CellRecord> cells, par::Policy policy) const;
 
   using State = detail::PartState;
-  DistributedMesh(const DistributedMesh&) = default;
 
   Comm& comm_;
+  Workspace work_;
+  RankSets near1_, near2_, told_;
+  std::vector<HalfFaceHandle> open_;  // faces behind which something may come
+  std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
+  std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
+  std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
+  std::size_t n_changed_in_zone_ = 0;          // vertices, since zone_ was looked through
+  std::uint32_t clock_at_scatter_ = 0;
 };
 
 }  // namespace hfr::mpi

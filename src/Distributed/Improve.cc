@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/Improve.hh"
 
-#ifdef __unix__
-#include <sys/resource.h>
-#endif
-
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -30,15 +26,6 @@ struct Order {
   int threads = 1;  // of the other ranks
 };
 
-/// Of this process; 0 where the system does not tell.
-std::uint64_t peak_bytes() {
-#ifdef __unix__
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) == 0) return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
-#endif
-  return 0;
-}
-
 /// One rank of a run: does the orders that all ranks have at the same time.
 class Worker {
  public:
@@ -56,7 +43,7 @@ class Worker {
     }
     const Comm::InPhase phase(comm_, Phase::kHandOut);
     parts_->scatter(mesh, work, owner, policy);
-    count_part();
+    look_at_part(*parts_, figures_);
   }
 
   void bring_back(TetMesh* mesh, Workspace* work, par::Policy policy) {
@@ -72,22 +59,9 @@ class Worker {
   std::size_t n_cells() const { return static_cast<std::size_t>(parts_->n_cells()); }
 
   /// Of all ranks.
-  std::vector<RankFigures> figures() {
-    figures_.traffic = comm_.traffic();
-    figures_.seconds = comm_.seconds();
-    figures_.peak_bytes = peak_bytes();
-    return comm_.all_gather(std::span<const RankFigures>(&figures_, 1));
-  }
+  std::vector<RankFigures> figures() const { return gather_figures(comm_, figures_); }
 
  private:
-  void count_part() {
-    const TetMesh& part = parts_->part();
-    figures_.n_held = part.n_cells();
-    figures_.n_border = parts_->zone().size();
-    figures_.n_own = 0;
-    for (std::size_t c = 0; c < part.n_cells(); ++c) figures_.n_own += parts_->is_own(CellHandle(c)) ? 1 : 0;
-  }
-
   Comm& comm_;
   std::unique_ptr<DistributedMesh> parts_;
   std::optional<PartPasses> passes_;

@@ -5,26 +5,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "hfremesh/Distributed/Comm.hh"
 #include "hfremesh/Distributed/Partition.hh"
+#include "hfremesh/Distributed/RankFigures.hh"
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Remesh/Improve.hh"
 
 namespace hfr::mpi {
 
-/// What one rank has done.
-struct RankFigures {
-  PerPhase<Traffic> traffic{};
-  PerPhase<double> seconds{};
-  std::uint64_t n_rounds = 0;    ///< shared rounds and smoothing passes
-  std::uint64_t peak_bytes = 0;  ///< largest resident memory; 0 where the system does not tell
-  /// Of its part when it was handed out last: own cells, all, and those within two edges of another's vertex.
-  std::uint64_t n_own = 0, n_held = 0, n_border = 0;
-};
 /// How ranks share the work. The mesh that comes out does not depend on it.
 struct Sharing {
   Partition partition = Partition::kCoordinates;

@@ -35,6 +35,7 @@ class Residents : public Ranks, public MeshInParts {
  public:
   Residents(DistributedMesh& mesh, par::Policy policy)
       : mesh_(mesh), policy_(policy), passes_(mesh, n_rounds_) {}
+  std::uint64_t n_rounds() const { return n_rounds_; }
 
   bool keep_mesh() const override { return true; }
   MeshInParts* parts() override { return this; }
@@ -319,6 +320,8 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   result.goal_reached = result.after.n_below_goal == 0 && result.after.n_invalid == 0;
   result.passes = std::move(control.passes());
   result.seconds = control.seconds();
+  result.mine.n_rounds = residents.n_rounds();
+  look_at_part(mesh, result.mine);
   return result;
 }
 

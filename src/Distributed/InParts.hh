@@ -11,6 +11,7 @@
 
 #include "hfremesh/Distributed/DistributedMesh.hh"
 #include "hfremesh/Distributed/Partition.hh"
+#include "hfremesh/Distributed/RankFigures.hh"
 #include "hfremesh/HalfFace/Generate.hh"
 #include "hfremesh/IO/MeshFile.hh"
 #include "hfremesh/Remesh/Improve.hh"
@@ -46,7 +47,7 @@ struct InParts {
 /// `goal`: degrees. O(part), and two reductions.
 InParts survey(DistributedMesh& mesh, double goal = 0, par::Policy policy = {});
 
-/// What improve() has done to a mesh in parts; the same on all ranks, but for seconds.
+/// What improve() has done to a mesh in parts; the same on all ranks, but for seconds and figures.
 struct PartsResult {
   InParts before, after;
   bool changed = false;
@@ -56,6 +57,7 @@ struct PartsResult {
   bool has_fallen = false;
   std::vector<PassReport> passes;
   double seconds = 0;
+  RankFigures mine;  ///< of this rank: rounds, and its part at the end; see gather_figures()
 };
 /// hfr::improve() with a frozen surface: the same bits, for each number of ranks and threads. Where cells of
 /// a run without a goal are scattered in memory, they are numbered anew first, as there.
@@ -121,7 +123,7 @@ std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem:
 /// tetrahedron; IoError where the file cannot be read. `at_once`: elements that a rank reads and sends away
 /// before it reads on, about.
 std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
-                                     std::uint64_t at_once = 1'000'000);
+                                     std::uint64_t at_once = 250'000);
 
 /// The files of ParMmg for a mesh in parts, "name.0.mesh", "name.1.mesh", … for the path "name.mesh": text in
 /// Medit's format that says which triangles or vertices a part shares with others. Any number of them; file i

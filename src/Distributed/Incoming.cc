@@ -43,6 +43,7 @@ void Incoming::unite() {
   };
   by_number(points_);
   by_number(cells_);
+  places_ = {};
 }
 
 /// Of a number among the points. Corners of one cell after the other lie near each other, so the search
@@ -63,13 +64,16 @@ std::size_t Incoming::place(std::uint64_t number, std::size_t hint) const {
 
 /// body(cell, places of its corners) for all cells.
 template <class Body>
-void Incoming::for_cells(Body&& body) const {
-  std::size_t hint = 0;
-  for (const CornerRecord& c : cells_) {
-    Places at{};
-    for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(hint = place(c.v[k], hint));
-    body(c, at);
+void Incoming::for_cells(Body&& body) {
+  if (places_.empty()) {
+    places_.reserve(cells_.size());
+    std::size_t hint = 0;
+    for (const CornerRecord& c : cells_) {
+      Places& at = places_.emplace_back();
+      for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(hint = place(c.v[k], hint));
+    }
   }
+  for (std::size_t i = 0; i < cells_.size(); ++i) body(cells_[i], places_[i]);
 }
 
 /// One more than the largest number of all.
@@ -177,7 +181,7 @@ void Incoming::send(Receivers&& receivers, Incoming& into) {
 
 /// Of own vertices that have others' within so many edges: the owners of these. One edge less round own
 /// vertices all cells are here.
-Incoming::Sets Incoming::near_own(int edges) const {
+Incoming::Sets Incoming::near_own(int edges) {
   Sets one{std::vector<Index>(points_.size(), Sets::kNone), {}};  // of any vertex: owners of its neighbours
   for_cells([&](const CornerRecord&, const Places& at) {
     if (std::all_of(at.begin(), at.end(), [&](Index i) { return owner(i) == owner(at[0]); })) return;
@@ -225,6 +229,7 @@ void Incoming::keep_near(std::uint8_t most) {
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (stays[i]) points_[n++] = points_[i];
   points_.resize(n);
+  places_ = {};
 }
 
 DistributedMesh::Piece Incoming::piece() {
@@ -237,14 +242,18 @@ DistributedMesh::Piece Incoming::piece() {
     piece.owner.push_back(p.owner);
     points.push_back(p.point);
   }
-  bool has_regions = false;
   cells.reserve(cells_.size());
+  piece.cell_number.reserve(cells_.size());
   for_cells([&](const CornerRecord& c, const Places& at) {
     piece.cell_number.push_back(c.number);
     cells.push_back(at);
-    has_regions = has_regions || c.region != 0;
   });
+  std::vector<std::int32_t> regions;
+  if (std::any_of(cells_.begin(), cells_.end(), [](const CornerRecord& c) { return c.region != 0; }))
+    for (const CornerRecord& c : cells_) regions.push_back(c.region);
   points_ = {};
+  cells_ = {};
+  places_ = {};
   piece.mesh = build(std::move(points), cells, {}, nullptr, NonManifold::kKeep, Turning::kConflicts);
   const auto was_turned = [&](CellHandle c) { return piece.mesh.cell(c).v[2].idx() != cells[c.idx()][2]; };
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -254,9 +263,7 @@ DistributedMesh::Piece Incoming::piece() {
                       std::to_string(piece.cell_number[cell_of(m).idx()]) +
                       " are ordered against one another, and a mesh in parts has to be oriented alike; "
                       "hfremesh turns such cells");
-  if (has_regions)
-    for (std::size_t c = 0; c < cells.size(); ++c) piece.mesh.set_region(CellHandle(c), cells_[c].region);
-  cells_ = {};
+  for (std::size_t c = 0; c < regions.size(); ++c) piece.mesh.set_region(CellHandle(c), regions[c]);
   return piece;
 }
 

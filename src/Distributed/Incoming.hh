@@ -65,7 +65,7 @@ class Incoming {
   void unite();
   std::size_t place(std::uint64_t number, std::size_t hint) const;
   template <class Body>
-  void for_cells(Body&& body) const;
+  void for_cells(Body&& body);
   int owner(Index at) const { return points_[at].owner; }
   std::uint64_t end_of(std::uint64_t mine) const;
   template <class Item, class Counts>
@@ -73,7 +73,7 @@ class Incoming {
                          Counts&& counts) const;
   template <class Receivers>
   void send(Receivers&& receivers, Incoming& into);
-  Sets near_own(int edges) const;
+  Sets near_own(int edges);
   /// Leaves cells with a vertex within so many edges of own ones, and the points of these and own ones.
   void keep_near(std::uint8_t most);
   void send_labels(Incoming& to);
@@ -82,6 +82,7 @@ class Incoming {
   Comm& comm_;
   std::vector<PointRecord> points_;
   std::vector<CornerRecord> cells_;
+  std::vector<Places> places_;  // of the corners of cells_, or none yet
   std::vector<LabelRecord> labels_;
   std::uint64_t n_points_ = 0, n_cells_ = 0;
 };

@@ -109,25 +109,4 @@ std::vector<LabelRecord> PartLabels::found_at(const TetMesh& mesh, std::span<con
   return records;
 }
 
-void PartLabels::move(TetMesh& from, TetMesh& to, std::span<const VertexHandle> now) {
-  const auto renamed = [&](VertexHandle v) { return now[v.idx()]; };
-  const auto all = [](const auto&) { return true; };
-  Locks locks = from.locks();
-  Labels labels = std::move(from.labels());
-  labels.faces.rename_vertices(renamed, all);
-  labels.edges.rename_vertices(renamed, all);
-  if (!labels.vertices.empty()) {
-    std::vector<int> moved(to.n_vertices(), 0);
-    for (std::size_t v = 0; v < now.size(); ++v) moved[now[v].idx()] = labels.vertices[v];
-    labels.vertices = std::move(moved);
-  }
-  to.labels() = std::move(labels);
-  for (std::size_t v = 0; v < now.size(); ++v)
-    if (from.is_fixed(VertexHandle(v))) to.set_fixed(now[v]);
-  // Those whose cells have gone from this part come again with the cells.
-  locks.edges.rename_vertices(renamed, all);
-  locks.faces.rename_vertices(renamed, all);
-  fix(to, locks);
-}
-
 }  // namespace hfr::mpi

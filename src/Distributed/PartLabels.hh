@@ -62,8 +62,6 @@ class PartLabels {
   /// Of entry i of Labels::faces, and of Labels::edges.
   std::uint64_t face_number(std::size_t i) const { return face_number_[i]; }
   std::uint64_t edge_number(std::size_t i) const { return edge_number_[i]; }
-  /// `from` has other handles for its vertices; `to` has all of them, and its cells.
-  static void move(TetMesh& from, TetMesh& to, std::span<const VertexHandle> now);
 
  private:
   void put(TetMesh& mesh, const LabelRecord& record, const std::array<VertexHandle, 3>& v, Locks& locks);

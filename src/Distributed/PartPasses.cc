@@ -38,16 +38,21 @@ Ranks::Tally PartPasses::tally(double below) {
   std::array<std::uint64_t, 2> sums = {0, 0};
   double worst = std::numeric_limits<double>::infinity();
   const TetMesh& part = parts_.part();
-  for (std::size_t i = 0; i < part.n_cells(); ++i) {
-    const double q = parts_.work().quality[i];
+  const std::vector<double>& quality = parts_.work().quality;
+  const auto look = [&](std::size_t i) {
+    const double q = quality[i];
     // Deleted ones and most others are nowhere near.
-    if (q > 0 && !(q < below) && !(q < worst)) continue;
+    if (q > 0 && !(q < below) && !(q < worst)) return;
     const CellHandle c(i);
-    if (part.is_deleted(c) || !parts_.is_own(c)) continue;
+    if (part.is_deleted(c) || !parts_.is_own(c)) return;
     sums[0] += q > 0 ? 0 : 1;
     sums[1] += q < below ? 1 : 0;
     worst = std::min(worst, q);
-  }
+  };
+  if (below > 0)
+    for (Index i : poor_.below(below, parts_.work(), {})) look(i);
+  if (sums[1] == 0)  // else the worst and all that are invalid are among those
+    for (std::size_t i = 0; i < quality.size(); ++i) look(i);
   worst = parts_.comm().sum_and_min(sums, worst);
   return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), worst};
 }

@@ -54,48 +54,63 @@ struct Decision {
 
 }  // namespace
 
+std::uint64_t PartRound::seed_number(const Entry& entry) const {
+  if (!is_own(entry)) return others_[entry.other].seed_number;
+  const SeedAddress& at = candidates_[entry.own].seed;
+  return at.cell.is_valid() ? mesh_.number(at.cell) : mesh_.number(at.vertex);
+}
+
+bool PartRound::is_before(const Entry& a, const Entry& b) const {
+  if (key(a) != key(b)) return key(a) < key(b);
+  if (name(a) != name(b)) return name(a) < name(b);
+  return std::tuple(seed_number(a), seed(a).place) < std::tuple(seed_number(b), seed(b).place);
+}
+
 auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
                        bool check_links) -> Selected {
   const Comm::InPhase phase(comm_, Phase::kSelect);
-  const bool is_anyone_told = announce(candidates);
+  candidates_ = candidates;
+  const bool is_anyone_told = announce();
   if (check_links)
-    decide_on_first(candidates);
+    decide_on_first();
   else
-    decide(candidates, is_anyone_told);
+    decide(is_anyone_told);
   Selected selected;
-  for (std::size_t e = 0; e < entries_.size(); ++e)
-    if (entries_[e].state == State::kWon) selected.winners.push_back({entries_[e].own, entries_[e].seed, {}});
-  selected.held_back = hand_out_slots(candidates, may_lose, may_gain, selected.winners);
-  pending_.clear();
   for (const Entry& entry : entries_)
-    if (entry.state == State::kWon) note_pending(candidates, entry);
+    if (entry.state == State::kWon)
+      selected.winners.push_back({is_own(entry) ? entry.own : Winner::kOfOthers, seed(entry), {}});
+  selected.held_back = hand_out_slots(may_lose, may_gain, selected.winners);
+  pending_.clear();
+  std::size_t w = 0;
+  for (const Entry& entry : entries_)
+    if (entry.state == State::kWon) note_pending(w++, entry);
+  entries_ = {};
+  told_ = {};
+  others_ = {};
+  candidates_ = {};
   return selected;
 }
 
 /// Tells each rank of the candidates that have a vertex within one edge of its own ones: those are all that
 /// share a cell with a candidate of that rank, and all that it has to commit. Returns whether any rank has
 /// told another of one.
-bool PartRound::announce(std::span<const Candidate> candidates) {
+bool PartRound::announce() {
   const TetMesh& part = mesh_.part();
   std::vector<Packer> to(comm_.n_ranks());
-  entries_.clear();
-  entries_.resize(candidates.size());
-  const std::size_t words = mesh_.within_two().words();
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& candidate = candidates[i];
+  entries_.resize(candidates_.size());
+  RankSet told(mesh_.within_two().words());
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& candidate = candidates_[i];
     Entry& entry = entries_[i];
-    entry.key = candidate.key;
-    entry.name = candidate.name;
-    entry.own = i;
-    entry.home = comm_.rank();
-    entry.seed = candidate.seed;
-    entry.seed_number = candidate.seed.cell.is_valid() ? mesh_.number(candidate.seed.cell)
-                                                       : mesh_.number(candidate.seed.vertex);
-    entry.told = RankSet(words);
+    entry.own = static_cast<std::uint32_t>(i);
+    if (std::none_of(candidate.scope.begin(), candidate.scope.end(),
+                     [&](CellHandle c) { return mesh_.is_in_zone(c); }))
+      continue;
+    told.clear();
     for (CellHandle c : candidate.scope)
-      for (VertexHandle v : part.cell(c).v) entry.told.add(mesh_.near(v));
-    entry.told.remove(comm_.rank());
-    if (entry.told.empty()) continue;
+      for (VertexHandle v : part.cell(c).v) told.add(mesh_.near(v));
+    told.remove(comm_.rank());
+    if (told.empty()) continue;
     Announcement a{candidate.key,
                    candidate.name,
                    kNoNumber,
@@ -106,24 +121,23 @@ bool PartRound::announce(std::span<const Candidate> candidates) {
                    static_cast<std::uint32_t>(candidate.scope.size())};
     if (candidate.seed.cell.is_valid()) a.seed_cell = mesh_.number(candidate.seed.cell);
     if (candidate.seed.vertex.is_valid()) a.seed_vertex = mesh_.number(candidate.seed.vertex);
-    for_ranks(entry.told.bits(), [&](int r) {
+    for_ranks(told.bits(), [&](int r) {
       Packer& out = to[static_cast<std::size_t>(r)];
       out.put(a);
       for (CellHandle c : candidate.scope) out.put(mesh_.number(c));
     });
+    entry.other = static_cast<std::uint32_t>(told_.size());
+    told_.push_back(told);
   }
   const Comm::Exchanged came = comm_.exchange(to, 0);
   for (const Comm::Message& message : came.messages) hear(message);
-  // Two seeds may have one name where both find the same: then the first in the order of numbers comes first,
-  // as it does where all cells are in one mesh.
-  const auto by_rank = [](const Entry& a, const Entry& b) {
-    return std::tie(a.key, a.name, a.seed_number, a.seed.place) <
-           std::tie(b.key, b.name, b.seed_number, b.seed.place);
-  };
-  const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates.size());
-  if (!std::is_sorted(entries_.begin(), middle, by_rank)) std::sort(entries_.begin(), middle, by_rank);
-  std::sort(middle, entries_.end(), by_rank);
-  std::inplace_merge(entries_.begin(), middle, entries_.end(), by_rank);
+  const auto before = [&](const Entry& a, const Entry& b) { return is_before(a, b); };
+  const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates_.size());
+  if (!std::is_sorted(entries_.begin(), middle, before)) std::sort(entries_.begin(), middle, before);
+  if (middle != entries_.end()) {
+    std::sort(middle, entries_.end(), before);
+    std::inplace_merge(entries_.begin(), middle, entries_.end(), before);
+  }
   return came.n_messages > 0;
 }
 
@@ -131,61 +145,61 @@ void PartRound::hear(const Comm::Message& message) {
   Unpacker in(message.bytes);
   while (!in.at_end()) {
     const auto a = in.get<Announcement>();
-    Entry entry;
-    entry.key = a.key;
-    entry.name = a.name;
-    entry.home = message.from;
-    entry.number_at_home = a.number;
-    entry.seed.place = a.seed_place;
-    entry.seed.kind = a.seed_kind;
-    entry.seed_number = a.seed_cell != kNoNumber ? a.seed_cell : a.seed_vertex;
-    if (a.seed_cell != kNoNumber) entry.seed.cell = mesh_.cell_at(a.seed_cell);
-    if (a.seed_vertex != kNoNumber) entry.seed.vertex = mesh_.vertex_at(a.seed_vertex);
+    OfOther one;
+    one.key = a.key;
+    one.name = a.name;
+    one.home = message.from;
+    one.number_at_home = a.number;
+    one.seed.place = a.seed_place;
+    one.seed.kind = a.seed_kind;
+    one.seed_number = a.seed_cell != kNoNumber ? a.seed_cell : a.seed_vertex;
+    if (a.seed_cell != kNoNumber) one.seed.cell = mesh_.cell_at(a.seed_cell);
+    if (a.seed_vertex != kNoNumber) one.seed.vertex = mesh_.vertex_at(a.seed_vertex);
     for (std::uint32_t i = 0; i < a.n_cells; ++i) {
       const CellHandle c = mesh_.cell_at(in.get<std::uint64_t>());
       if (!c.is_valid() || mesh_.part().is_deleted(c))
         throw InternalError(
             "parts of a mesh differ: a candidate next to this part has a cell that is not here");
-      entry.scope.push_back(c);
+      one.scope.push_back(c);
     }
-    entries_.push_back(std::move(entry));
+    entries_.push_back({kNothing, static_cast<std::uint32_t>(others_.size()), State::kUndecided});
+    others_.push_back(std::move(one));
   }
 }
 
 /// Until all ranks know of all their candidates: decides what the decisions of others allow, and tells those
 /// who wait for it. The first undecided candidate of the whole is decided each time.
-void PartRound::decide(std::span<const Candidate> candidates, bool is_anyone_told) {
+void PartRound::decide(bool is_anyone_told) {
   undecided_.resize(entries_.size());
-  for (std::size_t e = 0; e < entries_.size(); ++e) undecided_[e] = e;
+  for (std::size_t e = 0; e < entries_.size(); ++e) undecided_[e] = static_cast<std::uint32_t>(e);
   sub_rounds_ = 0;
   for (bool is_done = false; !is_done;) {
     ++sub_rounds_;
-    sweep(candidates);
+    sweep();
     std::uint64_t n_left = 0;
-    for (std::size_t e : undecided_)
-      if (entries_[e].own != Winner::kOfOthers && entries_[e].state == State::kUndecided) ++n_left;
+    for (std::uint32_t e : undecided_)
+      if (is_own(entries_[e]) && entries_[e].state == State::kUndecided) ++n_left;
     is_done = !is_anyone_told || tell_decisions(n_left) == 0;
-    for (std::size_t e : undecided_)
-      if (entries_[e].own == Winner::kOfOthers && entries_[e].state == State::kWon)
-        for (CellHandle c : entries_[e].scope) mesh_.work().claim[c.idx()] = static_cast<std::uint32_t>(e);
-    std::erase_if(undecided_, [&](std::size_t e) { return entries_[e].state != State::kUndecided; });
+    for (std::uint32_t e : undecided_)
+      if (!is_own(entries_[e]) && entries_[e].state == State::kWon)
+        for (CellHandle c : scope(entries_[e])) mesh_.work().claim[c.idx()] = e;
+    std::erase_if(undecided_, [&](std::uint32_t e) { return entries_[e].state != State::kUndecided; });
   }
   if (!undecided_.empty()) throw InternalError("a selection among ranks has ended without a decision");
-  for (std::size_t e = 0; e < entries_.size(); ++e)
-    if (entries_[e].state == State::kWon)
-      for (CellHandle c : scope_of(entries_[e], candidates)) mesh_.work().claim[c.idx()] = kUnclaimed;
+  for (const Entry& entry : entries_)
+    if (entry.state == State::kWon)
+      for (CellHandle c : scope(entry)) mesh_.work().claim[c.idx()] = kUnclaimed;
 }
 
 /// Two candidates that make the same edge may lie further from each other than ranks know of candidates. So
 /// rank 0 goes through those of all, as select_by_marking() does.
-void PartRound::decide_on_first(std::span<const Candidate> candidates) {
+void PartRound::decide_on_first() {
   sub_rounds_ = 1;
   std::vector<Packer> to(comm_.n_ranks());
   for (const Entry& entry : entries_) {
-    if (entry.own == Winner::kOfOthers) continue;
-    const Candidate& candidate = candidates[entry.own];
-    to[0].put(Contender{entry.key, entry.name, entry.seed_number, entry.seed.place,
-                        static_cast<std::uint32_t>(entry.own)});
+    if (!is_own(entry)) continue;
+    const Candidate& candidate = candidates_[entry.own];
+    to[0].put(Contender{candidate.key, candidate.name, seed_number(entry), candidate.seed.place, entry.own});
     std::vector<std::uint64_t> cells;
     for (CellHandle c : candidate.scope) cells.push_back(mesh_.number(c));
     to[0].put_all(cells);
@@ -223,55 +237,56 @@ void PartRound::decide_on_first(std::span<const Candidate> candidates) {
   const std::vector<std::byte> bytes = told_by_first(comm_, said);
   won = Unpacker(bytes).get_all<std::uint64_t>();
   for (Entry& entry : entries_) {
-    const auto number =
-        entry.own == Winner::kOfOthers ? entry.number_at_home : static_cast<std::uint32_t>(entry.own);
-    const bool has_won = std::binary_search(won.begin(), won.end(), candidate_name(entry.home, number));
+    const std::uint64_t named =
+        is_own(entry) ? candidate_name(comm_.rank(), entry.own)
+                      : candidate_name(others_[entry.other].home, others_[entry.other].number_at_home);
+    const bool has_won = std::binary_search(won.begin(), won.end(), named);
     entry.state = has_won ? State::kWon : State::kLost;
   }
 }
 
 /// In rank order: a candidate has lost when a winner has one of its cells, and waits while one that is
 /// undecided has. Claims of winners stay.
-void PartRound::sweep(std::span<const Candidate> candidates) {
+void PartRound::sweep() {
   auto& claim = mesh_.work().claim;
-  for (std::size_t e : undecided_) {
+  for (std::uint32_t e : undecided_) {
     Entry& entry = entries_[e];
-    const auto scope = scope_of(entry, candidates);
     bool is_free = true, has_lost = false;
-    for (CellHandle c : scope) {
+    for (CellHandle c : scope(entry)) {
       const std::uint32_t holder = claim[c.idx()];
       if (holder == kUnclaimed) continue;
       is_free = false;
       has_lost = has_lost || entries_[holder].state == State::kWon;
     }
     if (has_lost) {
-      if (entry.own != Winner::kOfOthers) entry.state = State::kLost;
+      if (is_own(entry)) entry.state = State::kLost;
       continue;
     }
-    if (is_free && entry.own != Winner::kOfOthers) entry.state = State::kWon;
-    for (CellHandle c : scope)
-      if (claim[c.idx()] == kUnclaimed) claim[c.idx()] = static_cast<std::uint32_t>(e);
+    if (is_free && is_own(entry)) entry.state = State::kWon;
+    for (CellHandle c : scope(entry))
+      if (claim[c.idx()] == kUnclaimed) claim[c.idx()] = e;
   }
-  for (std::size_t e : undecided_)
+  for (std::uint32_t e : undecided_)
     if (entries_[e].state == State::kUndecided)
-      for (CellHandle c : scope_of(entries_[e], candidates))
+      for (CellHandle c : scope(entries_[e]))
         if (claim[c.idx()] == e) claim[c.idx()] = kUnclaimed;
 }
 
 /// Returns the sum of `n_left` over all ranks.
 std::uint64_t PartRound::tell_decisions(std::uint64_t n_left) {
   std::vector<Packer> to(comm_.n_ranks());
-  for (std::size_t e : undecided_) {
-    const Entry& entry = entries_[e];
-    if (entry.own == Winner::kOfOthers || entry.state == State::kUndecided) continue;
-    const Decision decision{static_cast<std::uint32_t>(entry.own), entry.state == State::kWon ? 1U : 0U};
-    for_ranks(entry.told.bits(), [&](int r) { to[static_cast<std::size_t>(r)].put(decision); });
-  }
   // Of others' candidates, those that are undecided, by rank and number.
-  std::vector<std::tuple<int, std::uint32_t, std::size_t>> waiting;
-  for (std::size_t e : undecided_)
-    if (entries_[e].own == Winner::kOfOthers)
-      waiting.emplace_back(entries_[e].home, entries_[e].number_at_home, e);
+  std::vector<std::tuple<int, std::uint32_t, std::uint32_t>> waiting;
+  for (std::uint32_t e : undecided_) {
+    const Entry& entry = entries_[e];
+    if (!is_own(entry)) {
+      waiting.emplace_back(others_[entry.other].home, others_[entry.other].number_at_home, e);
+      continue;
+    }
+    if (entry.state == State::kUndecided || entry.other == kNothing) continue;
+    const Decision decision{entry.own, entry.state == State::kWon ? 1U : 0U};
+    for_ranks(told_[entry.other].bits(), [&](int r) { to[static_cast<std::size_t>(r)].put(decision); });
+  }
   std::sort(waiting.begin(), waiting.end());
   const Comm::Exchanged came = comm_.exchange(to, n_left);
   for (const Comm::Message& message : came.messages) {
@@ -279,7 +294,7 @@ std::uint64_t PartRound::tell_decisions(std::uint64_t n_left) {
     while (!in.at_end()) {
       const auto decision = in.get<Decision>();
       const auto at = std::lower_bound(waiting.begin(), waiting.end(),
-                                       std::tuple(message.from, decision.number, std::size_t{0}));
+                                       std::tuple(message.from, decision.number, std::uint32_t{0}));
       if (at == waiting.end() || std::get<0>(*at) != message.from || std::get<1>(*at) != decision.number)
         throw InternalError("a decision among ranks is about a candidate that nobody has told of");
       entries_[std::get<2>(*at)].state = decision.has_won ? State::kWon : State::kLost;
@@ -292,18 +307,18 @@ std::uint64_t PartRound::tell_decisions(std::uint64_t n_left) {
 /// ones; what is freed goes to its back. Every rank goes through the winners of all that take or leave a
 /// slot. Returns the number of winners that are given up, because the whole would lose or gain too many
 /// cells.
-std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std::size_t may_lose,
-                                      std::size_t may_gain, std::vector<Winner>& winners) {
+std::size_t PartRound::hand_out_slots(std::size_t may_lose, std::size_t may_gain,
+                                      std::vector<Winner>& winners) {
   std::vector<SlotUse> mine;
   std::vector<std::uint64_t> my_freed;
   for (const Entry& entry : entries_) {
-    if (entry.state != State::kWon || entry.own == Winner::kOfOthers) continue;
-    const PlanBase& plan = *candidates[entry.own].plan;
-    SlotUse use{entry.key, entry.name};
+    if (entry.state != State::kWon || !is_own(entry)) continue;
+    const PlanBase& plan = *candidates_[entry.own].plan;
+    SlotUse use{key(entry), name(entry)};
     for (const CavityPart& p :
          parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first)) {
       for (std::size_t i = p.n_created; i < p.n_removed; ++i, ++use.n_freed)
-        my_freed.push_back(mesh_.number(candidates[entry.own].scope[p.first_removed + i]));
+        my_freed.push_back(mesh_.number(scope(entry)[p.first_removed + i]));
       if (p.n_created > p.n_removed) use.n_fresh += static_cast<std::uint32_t>(p.n_created - p.n_removed);
     }
     if (plan.removes_vertex && plan.n_removed > plan.n_created) use.loss = plan.n_removed - plan.n_created;
@@ -320,7 +335,8 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
     lost += uses[i].loss;
     gained += uses[i].gain;
   }
-  const auto rank_of = [](const auto& use) { return std::tie(use.key, use.name); };
+  const auto rank_of = [](const SlotUse& use) { return std::tie(use.key, use.name); };
+  const auto place_of = [&](const Entry& entry) { return std::tuple(key(entry), name(entry)); };
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return rank_of(uses[a]) < rank_of(uses[b]); });
   const bool all_stay = lost <= may_lose && gained <= may_gain;
@@ -332,8 +348,8 @@ std::size_t PartRound::hand_out_slots(std::span<const Candidate> candidates, std
   };
   for (std::size_t i : order) {
     const SlotUse& use = uses[i];
-    for (skip(); e < entries_.size() && rank_of(entries_[e]) < rank_of(use); skip()) ++e, ++w;
-    const bool is_here = e < entries_.size() && rank_of(entries_[e]) == rank_of(use);
+    for (skip(); e < entries_.size() && place_of(entries_[e]) < rank_of(use); skip()) ++e, ++w;
+    const bool is_here = e < entries_.size() && place_of(entries_[e]) == rank_of(use);
     if (!all_stay && (use.loss > may_lose || use.gain > may_gain)) {
       ++n_given_up;
       if (is_here) given_up.push_back(w), dropped_.push_back(e);
@@ -387,27 +403,26 @@ auto PartRound::gather_uses(std::span<const SlotUse> mine, std::span<const std::
 }
 
 /// Before the commit: whose cells the winner takes away. A rank answers for the cells round its own vertices.
-void PartRound::note_pending(std::span<const Candidate> candidates, const Entry& entry) {
+void PartRound::note_pending(std::size_t winner, const Entry& entry) {
+  const auto cells = scope(entry);
+  if (std::none_of(cells.begin(), cells.end(), [&](CellHandle c) { return mesh_.is_in_zone(c); })) return;
   Pending pending;
-  pending.vertices = vertices_of(mesh_.part(), scope_of(entry, candidates));
+  pending.winner = winner;
+  pending.vertices = vertices_of(mesh_.part(), cells);
   pending.receivers = RankSet(mesh_.within_two().words());
-  for (VertexHandle v : pending.vertices) {
-    pending.in_zone = pending.in_zone || !mesh_.is_inside(v);
+  for (VertexHandle v : pending.vertices)
     if (mesh_.is_own(v)) pending.receivers.add(mesh_.within_two(v));
-  }
   pending.receivers.remove(comm_.rank());
   pending_.push_back(std::move(pending));
 }
 
 void PartRound::finish(std::span<const Commit> commits) {
   const Comm::InPhase phase(comm_, Phase::kBorder);
-  bool is_touched = false;
-  for (std::size_t w = 0; w < commits.size(); ++w) {
-    if (!pending_[w].in_zone) continue;
-    is_touched = true;
-    mesh_.note_changed(pending_[w].vertices);
-    for (CellHandle c : commits[w].created) mesh_.note_created(c);
+  for (const Pending& one : pending_) {
+    mesh_.note_changed(one.vertices);
+    for (CellHandle c : commits[one.winner].created) mesh_.note_created(c);
   }
+  bool is_touched = !pending_.empty();
   // First what has changed, to whoever held it: then each rank knows all cells round the vertices that were
   // within two edges of its own. An edge that came may have brought vertices nearer, but only such; so it
   // knows whom its own are near to now.
@@ -439,18 +454,18 @@ auto PartRound::changed_cells(std::span<const Commit> commits) const -> std::vec
   const TetMesh& part = mesh_.part();
   std::vector<Push> pushes(comm_.n_ranks());
   RankSet set(mesh_.within_two().words());
-  for (std::size_t w = 0; w < commits.size(); ++w) {
-    if (!pending_[w].in_zone) continue;
-    for_others(pending_[w].receivers.bits(), pushes, [&](Push& push) {
-      for (CellHandle c : commits[w].removed) push.removed.push_back(mesh_.number(c));
+  for (const Pending& one : pending_) {
+    const Commit& commit = commits[one.winner];
+    for_others(one.receivers.bits(), pushes, [&](Push& push) {
+      for (CellHandle c : commit.removed) push.removed.push_back(mesh_.number(c));
     });
-    for (CellHandle c : commits[w].created) {
+    for (CellHandle c : commit.created) {
       set.clear();
       for (VertexHandle v : part.cell(c).v)
         if (mesh_.is_own(v)) set.add(mesh_.told(v));
       for_others(set.bits(), pushes, [&](Push& push) { push.cells.push_back(c); });
     }
-    for (VertexHandle v : pending_[w].vertices)
+    for (VertexHandle v : one.vertices)
       if (mesh_.is_own(v) && !part.is_deleted(v))
         for_others(mesh_.told(v), pushes, [&](Push& push) { push.vertices.push_back(v); });
   }
@@ -500,8 +515,9 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
   const bool is_any_touched = n_touched + n_messages > 0;
   if (came.empty()) return {false, is_any_touched};
   std::unordered_set<std::uint64_t> done;  // removed by what was committed here
-  for (const Commit& commit : commits)
-    for (CellHandle c : commit.removed) done.insert(mesh_.number(c));
+  if (!commits.empty())
+    for (const Pending& one : pending_)
+      for (CellHandle c : commits[one.winner].removed) done.insert(mesh_.number(c));
   std::vector<VertexRecord> vertices;
   std::vector<CellRecord> cells;
   std::vector<LabelRecord> labels;

@@ -46,18 +46,22 @@ class PartRound : public RoundPlace {
 
  private:
   enum class State : std::uint8_t { kUndecided, kWon, kLost };
-  /// A candidate as selection sees it: own ones and those that others have told of.
+  static constexpr std::uint32_t kNothing = static_cast<std::uint32_t>(-1);
+  /// A candidate as selection sees it: an own one or one that another rank has told of. There are many, and
+  /// most are nobody else's concern.
   struct Entry {
+    std::uint32_t own = kNothing;    // number among the candidates
+    std::uint32_t other = kNothing;  // of own ones in told_, where any rank knows of it; of others in others_
+    State state = State::kUndecided;
+  };
+  struct OfOther {
     std::uint64_t key = 0;
     SeedName name{};
-    std::uint64_t seed_number = 0;        // of its cell or vertex
-    std::size_t own = Winner::kOfOthers;  // number among the candidates
+    std::uint64_t seed_number = 0;  // of its cell or vertex
     int home = 0;
     std::uint32_t number_at_home = 0;
     SeedAddress seed;
-    std::vector<CellHandle> scope;  // of others': what this rank holds of it
-    State state = State::kUndecided;
-    RankSet told{0};  // of own ones: ranks that know of it
+    std::vector<CellHandle> scope;  // what this rank holds of it
   };
   /// What a winner does to the slots of the whole.
   struct SlotUse {
@@ -65,31 +69,43 @@ class PartRound : public RoundPlace {
     SeedName name{};
     std::uint32_t n_fresh = 0, n_freed = 0, loss = 0, gain = 0;
   };
-  /// A winner that is committed here, before it is.
+  /// A winner that is committed here and lies in the zone, before it is committed.
   struct Pending {
+    std::size_t winner = 0;
     std::vector<VertexHandle> vertices;  // of its scope
     RankSet receivers{0};                // ranks that hold cells of it, as far as this rank answers for it
-    bool in_zone = false;
   };
 
-  bool announce(std::span<const Candidate> candidates);
+  bool announce();
   void hear(const Comm::Message& message);
-  void decide(std::span<const Candidate> candidates, bool is_anyone_told);
-  void decide_on_first(std::span<const Candidate> candidates);
-  void sweep(std::span<const Candidate> candidates);
-  std::span<const CellHandle> scope_of(const Entry& entry, std::span<const Candidate> candidates) const {
-    return entry.own == Winner::kOfOthers ? std::span<const CellHandle>(entry.scope)
-                                          : candidates[entry.own].scope;
+  void decide(bool is_anyone_told);
+  void decide_on_first();
+  void sweep();
+  static bool is_own(const Entry& entry) { return entry.own != kNothing; }
+  std::uint64_t key(const Entry& entry) const {
+    return is_own(entry) ? candidates_[entry.own].key : others_[entry.other].key;
   }
+  const SeedName& name(const Entry& entry) const {
+    return is_own(entry) ? candidates_[entry.own].name : others_[entry.other].name;
+  }
+  const SeedAddress& seed(const Entry& entry) const {
+    return is_own(entry) ? candidates_[entry.own].seed : others_[entry.other].seed;
+  }
+  std::uint64_t seed_number(const Entry& entry) const;
+  std::span<const CellHandle> scope(const Entry& entry) const {
+    return is_own(entry) ? candidates_[entry.own].scope : others_[entry.other].scope;
+  }
+  /// By key, then name, then seed. Two seeds may have one name where both find the same: then the first in
+  /// the order of numbers comes first, as it does where all cells are in one mesh.
+  bool is_before(const Entry& a, const Entry& b) const;
   std::uint64_t tell_decisions(std::uint64_t n_left);
   struct Uses {
     std::vector<SlotUse> uses;
     std::vector<std::uint64_t> freed;
   };
   Uses gather_uses(std::span<const SlotUse> mine, std::span<const std::uint64_t> freed);
-  std::size_t hand_out_slots(std::span<const Candidate> candidates, std::size_t may_lose,
-                             std::size_t may_gain, std::vector<Winner>& winners);
-  void note_pending(std::span<const Candidate> candidates, const Entry& entry);
+  std::size_t hand_out_slots(std::size_t may_lose, std::size_t may_gain, std::vector<Winner>& winners);
+  void note_pending(std::size_t winner, const Entry& entry);
   /// What one rank tells another of cells.
   struct Push {
     std::vector<std::uint64_t> removed;
@@ -113,8 +129,11 @@ class PartRound : public RoundPlace {
 
   DistributedMesh& mesh_;
   Comm& comm_;
-  std::vector<Entry> entries_;  // by key, then name, then seed
-  std::vector<std::size_t> undecided_;
+  std::span<const Candidate> candidates_;  // while select() lasts
+  std::vector<Entry> entries_;             // in the order of is_before()
+  std::vector<RankSet> told_;              // of own candidates: ranks that know of it
+  std::vector<OfOther> others_;
+  std::vector<std::uint32_t> undecided_;
   std::vector<Pending> pending_;
   std::vector<std::uint64_t> dropped_;  // entries given up for the number of cells
   std::size_t sub_rounds_ = 0;

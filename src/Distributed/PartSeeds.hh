@@ -15,7 +15,7 @@ template <class Visit>
 void visit_edge_seeds(const DistributedMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
   if (mesh.is_own(c))
     hfr::visit_edge_seeds(mesh.part(), list, c, visit,
-                          [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); });
+                          [&](CellHandle a, CellHandle b) { return mesh.is_before(a, b); });
 }
 
 /// Until visit(seed) is true, from the longest edge on.
@@ -23,14 +23,14 @@ template <class Visit>
 void visit_edge_seeds_until(const DistributedMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
   if (mesh.is_own(c))
     hfr::visit_edge_seeds_until(mesh.part(), list, c, visit,
-                                [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); });
+                                [&](CellHandle a, CellHandle b) { return mesh.is_before(a, b); });
 }
 
 template <class Visit>
 void visit_face_seeds(const DistributedMesh& mesh, const Worklist& list, CellHandle c, Visit&& visit) {
   if (mesh.is_own(c))
     hfr::visit_face_seeds(mesh.part(), list, c, visit,
-                          [&](CellHandle a, CellHandle b) { return mesh.number(a) < mesh.number(b); });
+                          [&](CellHandle a, CellHandle b) { return mesh.is_before(a, b); });
 }
 
 /// Own vertices of the listed cells that an operator may take out.

@@ -10,6 +10,11 @@ namespace {
 constexpr std::uint8_t kNone = 63;      // as colour_vertices() has it: not in the pass, or alone
 constexpr std::uint8_t kWaiting = 255;  // not coloured yet
 
+/// The smallest colour that is not in the set; kNone where that would be the 64th.
+std::uint8_t first_without(std::uint64_t used) {
+  return static_cast<std::uint8_t>(std::countr_one(used & ~(std::uint64_t{1} << kNone)));
+}
+
 struct Colour {
   std::uint64_t number = 0;
   std::uint64_t colour = 0;
@@ -34,28 +39,30 @@ PartSmoothing::PartSmoothing(DistributedMesh& mesh, std::span<const VertexHandle
     if (link.empty()) colour_[own_[i].idx()] = kNone;
     links_.insert(links_.end(), link.begin(), link.end());
     std::sort(links_.begin() + static_cast<std::ptrdiff_t>(begin_.back()), links_.end(),
-              [&](HalfFaceHandle a, HalfFaceHandle b) {
-                return mesh_.number(cell_of(a)) < mesh_.number(cell_of(b));
-              });
+              [&](HalfFaceHandle a, HalfFaceHandle b) { return mesh_.is_before(cell_of(a), cell_of(b)); });
     begin_.push_back(links_.size());
   }
 }
 
-/// Every cell with a vertex of another rank is in the zone.
-void PartSmoothing::find_links(std::vector<Come>& came) {
+/// Half-faces opposite each vertex of another rank, in the cells that are held here: each such cell is in the
+/// zone.
+void PartSmoothing::find_links_of_others() {
   const TetMesh& part = mesh_.part();
-  come_.resize(part.n_vertices(), 0);
-  for (std::size_t i = 0; i < came.size(); ++i)
-    come_[came[i].vertex.idx()] = static_cast<std::uint32_t>(i + 1);
-  for (Index i : mesh_.zone()) {
-    const CellHandle c(i);
-    if (part.is_deleted(c)) continue;
-    const auto& v = part.cell(c).v;
-    for (std::size_t k = 0; k < 4; ++k)
-      if (const std::uint32_t place = come_[v[k].idx()]; place != 0)
-        came[place - 1].link.push_back(halfface_of(c, static_cast<int>(k)));
-  }
-  for (const Come& one : came) come_[one.vertex.idx()] = 0;
+  const auto for_corners = [&](auto&& body) {
+    for (Index i : mesh_.zone()) {
+      const CellHandle c(i);
+      if (part.is_deleted(c)) continue;
+      const auto& v = part.cell(c).v;
+      for (std::size_t k = 0; k < 4; ++k)
+        if (!mesh_.is_own(v[k])) body(v[k], halfface_of(c, static_cast<int>(k)));
+    }
+  };
+  begin_of_other_.assign(part.n_vertices() + 2, 0);
+  for_corners([&](VertexHandle v, HalfFaceHandle) { ++begin_of_other_[v.idx() + 2]; });
+  for (std::size_t v = 2; v < begin_of_other_.size(); ++v) begin_of_other_[v] += begin_of_other_[v - 1];
+  links_of_others_.resize(begin_of_other_.back());
+  for_corners(
+      [&](VertexHandle v, HalfFaceHandle h) { links_of_others_[begin_of_other_[v.idx() + 1]++] = h; });
 }
 
 std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
@@ -63,83 +70,97 @@ std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
   return {links_.data() + begin_[i], links_.data() + begin_[i + 1]};
 }
 
-/// Own vertices that can be coloured: each once all its smaller neighbours are.
+/// Own vertices that wait for some of other ranks, or for such that do: each can be coloured once all its
+/// smaller neighbours are. A neighbour counts as often as there are cells that both have.
 class PartSmoothing::Ready {
  public:
   Ready(const PartSmoothing& pass)
-      : pass_(pass), n_waits_for_(pass.colour_.size(), 0), seen_(pass.colour_.size(), 0) {
+      : pass_(pass), n_waits_for_(pass.colour_.size(), 0), used_(pass.colour_.size(), 0) {
     for (VertexHandle v : pass_.own_) {
       if (!is_waiting(v)) continue;
       ++n_left_;
-      for_neighbours(v, [&](VertexHandle u) {
-        if (u < v && is_waiting(u)) ++n_waits_for_[v.idx()];
-      });
-      if (n_waits_for_[v.idx()] == 0) ready_.push_back(v);
+      for (HalfFaceHandle h : pass_.link(v))
+        for (VertexHandle u : pass_.mesh_.part().cell(cell_of(h)).v) {
+          if (!(u < v)) continue;
+          if (is_waiting(u))
+            ++n_waits_for_[v.idx()];
+          else
+            used_[v.idx()] |= bit_of(u);
+        }
     }
   }
 
   std::size_t n_left() const { return n_left_; }
   bool is_empty() const { return ready_.empty(); }
-  VertexHandle take() {
+  /// It and its colour.
+  std::pair<VertexHandle, std::uint8_t> take() {
     const VertexHandle v = ready_.back();
     ready_.pop_back();
     --n_left_;
-    return v;
+    return {v, first_without(used_[v.idx()])};
   }
-  /// A vertex within one edge of own ones has its colour.
+  /// A vertex within one edge of own ones has its colour. All its cells are here.
   void note_coloured(VertexHandle v) {
-    for_neighbours(v, [&](VertexHandle w) {
-      if (v < w && pass_.mesh_.is_own(w) && is_waiting(w) && --n_waits_for_[w.idx()] == 0)
-        ready_.push_back(w);
-    });
+    const auto tell = [&](CellHandle c) {
+      for (VertexHandle w : pass_.mesh_.part().cell(c).v) {
+        if (!(v < w) || !is_waiting(w) || !pass_.mesh_.is_own(w)) continue;
+        used_[w.idx()] |= bit_of(v);
+        if (--n_waits_for_[w.idx()] == 0) ready_.push_back(w);
+      }
+    };
+    if (pass_.mesh_.is_own(v))
+      for (HalfFaceHandle h : pass_.link(v)) tell(cell_of(h));
+    else
+      for (CellHandle c : pass_.mesh_.part().vertex_cells(v)) tell(c);
   }
 
  private:
   bool is_waiting(VertexHandle v) const { return pass_.colour_[v.idx()] == kWaiting; }
-  /// Each once. All cells of such a vertex are here.
-  template <class Visit>
-  void for_neighbours(VertexHandle v, Visit&& visit) {
-    const TetMesh& part = pass_.mesh_.part();
-    ++look_;
-    for (CellHandle c : part.vertex_cells(v))
-      for (VertexHandle u : part.cell(c).v)
-        if (std::exchange(seen_[u.idx()], look_) != look_ && u != v) visit(u);
-  }
+  std::uint64_t bit_of(VertexHandle v) const { return std::uint64_t{1} << pass_.colour_[v.idx()]; }
 
   const PartSmoothing& pass_;
   std::vector<std::uint32_t> n_waits_for_;  // by vertex: smaller neighbours without a colour
-  std::vector<std::uint32_t> seen_;         // by vertex: the last look that came to it
-  std::uint32_t look_ = 0;
+  std::vector<std::uint64_t> used_;         // by vertex: colours of the others
   std::vector<VertexHandle> ready_;
   std::size_t n_left_ = 0;
 };
 
+/// kWaiting while a smaller neighbour is.
 std::uint8_t PartSmoothing::first_fit(VertexHandle v) const {
   std::uint64_t used = 0;
   for (HalfFaceHandle h : link(v))
-    for (VertexHandle u : mesh_.part().cell(cell_of(h)).v)
-      if (u < v) used |= std::uint64_t{1} << colour_[u.idx()];
-  return static_cast<std::uint8_t>(std::countr_one(used & ~(std::uint64_t{1} << kNone)));
+    for (VertexHandle u : mesh_.part().cell(cell_of(h)).v) {
+      if (!(u < v)) continue;
+      if (colour_[u.idx()] == kWaiting) return kWaiting;
+      used |= std::uint64_t{1} << colour_[u.idx()];
+    }
+  return first_without(used);
 }
 
 /// All ranks together colour in the order of numbers, as far as neighbours go.
 std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
   Comm& comm = mesh_.comm();
   std::vector<std::uint64_t> alone;  // what would need a 64th colour has a group each, after the others
+  std::vector<Packer> to(comm.n_ranks());
+  const auto set_colour = [&](VertexHandle v, std::uint8_t colour) {
+    if (colour == kNone) alone.push_back(mesh_.number(v));
+    colour_[v.idx()] = colour;
+    for_ranks(mesh_.near(v), [&](int r) {
+      if (r != comm.rank()) to[static_cast<std::size_t>(r)].put(Colour{mesh_.number(v), colour});
+    });
+  };
+  for (VertexHandle v : own_)  // ascending, so most come after all that they wait for
+    if (colour_[v.idx()] == kWaiting)
+      if (const std::uint8_t colour = first_fit(v); colour != kWaiting) set_colour(v, colour);
   Ready ready(*this);
   for (bool is_done = false; !is_done;) {
-    std::vector<Packer> to(comm.n_ranks());
     while (!ready.is_empty()) {
-      const VertexHandle v = ready.take();
-      const std::uint8_t colour = first_fit(v);
-      if (colour == kNone) alone.push_back(mesh_.number(v));
-      colour_[v.idx()] = colour;
+      const auto [v, colour] = ready.take();
+      set_colour(v, colour);
       ready.note_coloured(v);
-      for_ranks(mesh_.near(v), [&](int r) {
-        if (r != comm.rank()) to[static_cast<std::size_t>(r)].put(Colour{mesh_.number(v), colour});
-      });
     }
     const Comm::Exchanged came = comm.exchange(to, ready.n_left());
+    to.assign(comm.n_ranks(), {});
     for (const Comm::Message& message : came.messages)
       for (Unpacker in(message.bytes); !in.at_end();) {
         const auto news = in.get<Colour>();
@@ -173,8 +194,12 @@ auto PartSmoothing::tell_points(std::span<const VertexHandle> moved) -> std::vec
   std::vector<Packer> to(comm.n_ranks());
   RankSet set(mesh_.within_two().words());
   for (VertexHandle v : moved) {
+    const auto cells = link(v);
+    if (std::none_of(cells.begin(), cells.end(),
+                     [&](HalfFaceHandle h) { return mesh_.is_in_zone(cell_of(h)); }))
+      continue;
     set.clear();  // ranks within three edges: those that hold a cell of v
-    for (HalfFaceHandle h : link(v))
+    for (HalfFaceHandle h : cells)
       for (VertexHandle u : mesh_.part().cell(cell_of(h)).v)
         if (!mesh_.is_inside(u)) set.add(mesh_.within_two(u));
     set.remove(comm.rank());
@@ -196,7 +221,10 @@ auto PartSmoothing::tell_points(std::span<const VertexHandle> moved) -> std::vec
 
 auto PartSmoothing::tell(std::span<const VertexHandle> moved) -> std::vector<Come> {
   std::vector<Come> came = tell_points(moved);
-  if (!came.empty()) find_links(came);
+  if (!came.empty() && begin_of_other_.empty()) find_links_of_others();
+  for (Come& one : came)
+    one.link = {links_of_others_.data() + begin_of_other_[one.vertex.idx()],
+                links_of_others_.data() + begin_of_other_[one.vertex.idx() + 1]};
   return came;
 }
 

@@ -31,10 +31,10 @@ class PartSmoothing {
   struct Come {
     VertexHandle vertex;
     Vec3 point;
-    std::vector<HalfFaceHandle> link;
+    std::span<const HalfFaceHandle> link;
   };
   /// Tells the ranks that hold them of own vertices that have moved; returns what came from others and is
-  /// held here. O(zone) where something came.
+  /// held here. The first time that something comes: O(zone).
   std::vector<Come> tell(std::span<const VertexHandle> moved);
   /// The same without half-faces.
   std::vector<Come> tell_points(std::span<const VertexHandle> moved);
@@ -43,7 +43,7 @@ class PartSmoothing {
   class Ready;
 
   std::uint8_t first_fit(VertexHandle v) const;
-  void find_links(std::vector<Come>& came);
+  void find_links_of_others();
 
   DistributedMesh& mesh_;
   std::vector<VertexHandle> own_;
@@ -51,7 +51,8 @@ class PartSmoothing {
   std::vector<std::uint8_t> colour_;  // by vertex of the part
   std::vector<std::size_t> begin_;    // by own_
   std::vector<HalfFaceHandle> links_;
-  std::vector<std::uint32_t> come_;  // by vertex: one more than its place among those that have come
+  std::vector<std::uint32_t> begin_of_other_;  // by vertex of the part, none before they are needed
+  std::vector<HalfFaceHandle> links_of_others_;
 };
 
 /// smooth_pass() over the parts of a mesh, with the same moves. Counts are those of the whole.

@@ -21,6 +21,8 @@
 namespace hfr::mpi {
 namespace {
 
+constexpr std::size_t kLatest = 16'384;  // numbers of points that were asked for last
+
 /// Ranges of the numbers of points, one a rank.
 class Slices {
  public:
@@ -85,8 +87,11 @@ class Passage {
 
   void send_cells(const std::vector<CornerRecord>& cells, Incoming& incoming) {
     std::vector<std::vector<std::uint64_t>> wanted(comm_.n_ranks());
+    std::vector<std::uint64_t> latest(kLatest, kNoNumber);  // most corners are those of a cell just before
     for (const CornerRecord& c : cells)
-      for (std::uint64_t number : c.v) wanted[slices_.rank_of(number)].push_back(number);
+      for (std::uint64_t number : c.v)
+        if (std::exchange(latest[number % kLatest], number) != number)
+          wanted[slices_.rank_of(number)].push_back(number);
     std::vector<Packer> questions(comm_.n_ranks());
     for (std::size_t r = 0; r < wanted.size(); ++r) {
       std::vector<std::uint64_t>& numbers = wanted[r];

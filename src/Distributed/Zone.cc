@@ -9,16 +9,7 @@
 namespace hfr::mpi {
 namespace {
 
-/// body(corners) for the cells of the list that are there and have a marked vertex.
-template <class Body>
-void for_marked(const TetMesh& mesh, std::span<const Index> cells, std::span<const std::uint8_t> marks,
-                Body&& body) {
-  for (Index c : cells) {
-    if (mesh.is_deleted(CellHandle(c))) continue;
-    const auto& v = mesh.cell(CellHandle(c)).v;
-    if (marks[v[0].idx()] | marks[v[1].idx()] | marks[v[2].idx()] | marks[v[3].idx()]) body(v);
-  }
-}
+constexpr std::size_t kPurgeShare = 16;  // of the zone: so many changes, and it is looked through
 
 }  // namespace
 
@@ -57,6 +48,7 @@ void DistributedMesh::start_zone() {
   }
   open_.clear();
   dirty_.clear();
+  n_changed_in_zone_ = 0;
   renewed_.clear();
   marks_.assign(n, 0);
   told_ = near2_;
@@ -74,11 +66,24 @@ void DistributedMesh::note_created(CellHandle c) {
   if (std::none_of(v.begin(), v.end(), [&](VertexHandle u) { return is_own(u); })) rim_.push_back(c.idx());
 }
 
-/// Sets of these vertices as `fill` makes them from the cells of the zone, all of which it is called for that
-/// have one. Returns those whose sets are others than before.
+/// Those of the zone that have one of these vertices. O(zone).
+std::vector<Index> DistributedMesh::zone_round(std::span<const VertexHandle> vertices) {
+  for (VertexHandle v : vertices) marks_[v.idx()] = 1;
+  std::vector<Index> cells;
+  for (Index c : zone_) {
+    if (mesh_.is_deleted(CellHandle(c))) continue;
+    const auto& v = mesh_.cell(CellHandle(c)).v;
+    if (marks_[v[0].idx()] | marks_[v[1].idx()] | marks_[v[2].idx()] | marks_[v[3].idx()]) cells.push_back(c);
+  }
+  for (VertexHandle v : vertices) marks_[v.idx()] = 0;
+  return cells;
+}
+
+/// Sets of these vertices as fill(vertex, neighbour) makes them, which is called for all edges of them in
+/// cells of the zone; `cells`: from zone_round(). Returns those whose sets are others than before.
 template <class Fill>
 std::vector<VertexHandle> DistributedMesh::renew(RankSets& sets, std::span<const VertexHandle> vertices,
-                                                 Fill&& fill) {
+                                                 std::span<const Index> cells, Fill&& fill) {
   const std::size_t words = sets.words();
   std::vector<std::uint64_t> before;
   before.reserve(vertices.size() * words);
@@ -87,11 +92,12 @@ std::vector<VertexHandle> DistributedMesh::renew(RankSets& sets, std::span<const
     sets.set_only(v.idx(), owner(v));
     marks_[v.idx()] = 1;
   }
-  for_marked(mesh_, zone_, marks_, [&](const auto& corners) {
+  for (Index c : cells) {
+    const auto& corners = mesh_.cell(CellHandle(c)).v;
     for (VertexHandle u : corners)
       if (marks_[u.idx()])
         for (VertexHandle w : corners) fill(u, w);
-  });
+  }
   for (VertexHandle v : vertices) marks_[v.idx()] = 0;
   std::vector<VertexHandle> others;
   for (std::size_t i = 0; i < vertices.size(); ++i)
@@ -107,34 +113,39 @@ void DistributedMesh::update_zone() {
   std::vector<VertexHandle> vertices;  // each once
   for (VertexHandle v : dirty_)
     if (std::exchange(marks_[v.idx()], std::uint8_t{1}) == 0) vertices.push_back(v);
+  for (VertexHandle v : vertices) marks_[v.idx()] = 0;
   dirty_.clear();
+  if (vertices.empty()) return;
+  n_changed_in_zone_ += vertices.size();
   const auto put_star = [&](VertexHandle v) {
     if (!mesh_.is_deleted(v))
       for (CellHandle c : mesh_.vertex_cells(v)) put_into_zone(c);
   };
+  std::vector<Index> cells = zone_round(vertices);
   const auto nearer =
-      renew(near1_, vertices, [&](VertexHandle u, VertexHandle w) { near1_.add(u.idx(), owner(w)); });
-  for (VertexHandle v : nearer)
-    if (is_own(v) && is_inside(v)) put_star(v);
-  // Within two edges: the same vertices, and the neighbours of those that are near to others now.
-  for (VertexHandle v : nearer) marks_[v.idx()] = 1;
-  std::vector<VertexHandle> neighbours;
-  for_marked(mesh_, zone_, marks_, [&](const auto& corners) {
-    neighbours.insert(neighbours.end(), corners.begin(), corners.end());
-  });
-  for (VertexHandle v : nearer) marks_[v.idx()] = 0;
-  for (VertexHandle v : vertices) marks_[v.idx()] = 1;
-  for (VertexHandle v : neighbours)
-    if (std::exchange(marks_[v.idx()], std::uint8_t{1}) == 0) vertices.push_back(v);
+      renew(near1_, vertices, cells, [&](VertexHandle u, VertexHandle w) { near1_.add(u.idx(), owner(w)); });
+  if (!nearer.empty()) {
+    for (VertexHandle v : nearer)
+      if (is_own(v) && is_inside(v)) put_star(v);
+    // Within two edges: the same vertices, and the neighbours of those that are near to others now.
+    std::vector<std::uint8_t> is_in(mesh_.n_vertices(), 0);
+    for (VertexHandle v : vertices) is_in[v.idx()] = 1;
+    for (Index c : zone_round(nearer))
+      for (VertexHandle v : mesh_.cell(CellHandle(c)).v)
+        if (std::exchange(is_in[v.idx()], std::uint8_t{1}) == 0) vertices.push_back(v);
+    cells = zone_round(vertices);
+  }
   std::vector<VertexHandle> was_inside;
   for (VertexHandle v : vertices)
     if (is_own(v) && is_inside(v)) was_inside.push_back(v);
-  const auto renewed =
-      renew(near2_, vertices, [&](VertexHandle u, VertexHandle w) { near2_.add(u.idx(), near1_[w.idx()]); });
+  const auto renewed = renew(near2_, vertices, cells,
+                             [&](VertexHandle u, VertexHandle w) { near2_.add(u.idx(), near1_[w.idx()]); });
   for (VertexHandle v : was_inside)
     if (!is_inside(v)) put_star(v);
   for (VertexHandle v : renewed)
     if (is_own(v)) renewed_.push_back(v);
+  if (n_changed_in_zone_ < zone_.size() / kPurgeShare) return;
+  n_changed_in_zone_ = 0;
   std::erase_if(zone_, [&](Index c) {
     const auto& v = mesh_.cell(CellHandle(c)).v;
     const bool goes = mesh_.is_deleted(CellHandle(c)) ||

@@ -4,6 +4,7 @@
 
 #include "HalfFace/TetMesh.hh"
 #include "HalfFace/TupleUse.hh"
+#include "HalfFace/Writer.hh"
 
 namespace hfr {
 namespace {
@@ -116,6 +117,24 @@ void TetMesh::renumber(const GarbageMap& map, std::size_t n_vertices, std::size_
   free_cells_.clear();
   n_deleted_vertices_.n = 0;
   find_incident_cells(policy);
+}
+
+void TetMesh::Writer::open_gaps(std::span<const VertexHandle> to, std::size_t n) {
+  TetMesh& mesh = mesh_;
+  const auto all = [](const auto&) { return true; };
+  const auto renamed = [&](VertexHandle v) { return to[v.idx()]; };
+  mesh.labels_.faces.rename_vertices(renamed, all);
+  mesh.labels_.edges.rename_vertices(renamed, all);
+  mesh.locks_.faces.rename_vertices(renamed, all);
+  mesh.locks_.edges.rename_vertices(renamed, all);
+  if (!mesh.labels_.vertices.empty()) hfr::open_gaps(to, n, 0, mesh.labels_.vertices);
+  hfr::open_gaps(to, n, Vec3{}, mesh.points_);
+  hfr::open_gaps(to, n, CellHandle(), mesh.incident_cell_);
+  hfr::open_gaps(to, n, std::uint8_t{0}, mesh.vertex_status_);
+  for (Cell& cell : mesh.cells_)
+    for (VertexHandle& v : cell.v)
+      if (v.is_valid()) v = to[v.idx()];
+  mesh.hand_index_state_ = kVoid;
 }
 
 GarbageMap TetMesh::collect_garbage(GarbageOptions options) {

@@ -2,12 +2,30 @@
 #ifndef HFR_HALFFACE_WRITER_HH
 #define HFR_HALFFACE_WRITER_HH
 
+#include <cstddef>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Atomic.hh"
 
 namespace hfr {
+
+/// In place: values[i] goes to to[i], which ascend, of n; those between become `none`.
+template <class T>
+void open_gaps(std::span<const VertexHandle> to, std::size_t n, const T& none, std::vector<T>& values) {
+  values.resize(n, none);
+  std::size_t i = to.size();
+  for (std::size_t place = n; place-- > 0;) {
+    if (i == 0 || to[i - 1].idx() != place)
+      values[place] = none;
+    else if (--i == place)
+      return;  // so are all before
+    else
+      values[place] = std::move(values[i]);
+  }
+}
 
 /// Low-level writing of a mesh, for builders and operators. Nothing is checked: between two calls the mesh
 /// may break every rule of check(), and whoever writes sees to it that it keeps them in the end. Operators of
@@ -32,6 +50,9 @@ class TetMesh::Writer {
   void mark_deleted(VertexHandle v) { mesh_.mark_deleted(v); }
   /// New cells are deleted ones, not on the free list.
   void resize_cells(std::size_t n) { mesh_.resize_cells(n); }
+  /// Vertex i becomes to[i], which ascend, of n: those between are new ones without cells, at the origin. All
+  /// that names vertices follows, but for properties, of which the mesh must have none. O(mesh), in place.
+  void open_gaps(std::span<const VertexHandle> to, std::size_t n);
   /// Deleted cells that wait for reuse, in the order in which they are to be taken (from the back).
   std::vector<CellHandle>& free_cells() { return mesh_.free_cells_; }
 

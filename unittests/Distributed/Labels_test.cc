@@ -96,6 +96,11 @@ TEST(PartLabels, AsManyCellsRoundAVertexAsAStarHolds) {
   }
   comm.sum(0);
   expect_bytes(comm, folder, path, polish_towards(1));
+  mpi::DistributedMesh whole(comm);
+  mpi::read_ranges(whole, path);
+  EXPECT_TRUE(mpi::check(whole).is_good);
+  whole.work().star_size[0] += 1;
+  EXPECT_FALSE(mpi::check(whole).is_good);
   mpi::Comm again(MPI_COMM_WORLD);
   mpi::DistributedMesh parts(again);
   std::string refusal;

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <type_traits>
+#include <vector>
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
@@ -51,6 +54,45 @@ TEST(Writer, MoreCellsThanThereAreIndicesForAreRefused) {
   const std::size_t n = mesh.n_cells();
   EXPECT_THROW(TetMesh::Writer(mesh).resize_cells(TetMesh::kMostCells + 1), ResourceLimit);
   EXPECT_EQ(mesh.n_cells(), n);
+}
+
+TEST(Writer, WhatNamesVerticesFollowsWhereOthersComeBetween) {
+  const generate::Arrays box = generate::box({2, 3, 2});
+  TetMesh mesh = build(box.points, box.cells);
+  using V = VertexHandle;
+  const std::size_t n = mesh.n_vertices();
+  mesh.labels().vertices.assign(n, 0);
+  mesh.labels().vertices[5] = 3;
+  const auto corners = mesh.cell(CellHandle(7)).v;
+  mesh.labels().faces.set({corners[0], corners[1], corners[2]}, 4);
+  mesh.labels().edges.set({corners[2], corners[3]}, 5);
+  mesh.set_fixed(V(2));
+  // One before all, two in the middle, one at the end; then nothing before the last one.
+  for (const std::vector<std::size_t>& gaps : {std::vector<std::size_t>{0, 6, 7, n + 3}, {n - 1}, {n}}) {
+    TetMesh wider = mesh;
+    std::vector<V> to;
+    for (std::size_t place = 0; place < n + gaps.size(); ++place)
+      if (std::find(gaps.begin(), gaps.end(), place) == gaps.end()) to.emplace_back(place);
+    ASSERT_EQ(to.size(), n);
+    TetMesh::Writer(wider).open_gaps(to, n + gaps.size());
+    EXPECT_TRUE(check(wider)) << check(wider);
+    ASSERT_EQ(wider.n_vertices(), n + gaps.size());
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_EQ(wider.point(to[i]), mesh.point(V(i)));
+      EXPECT_EQ(wider.incident_cell(to[i]), mesh.incident_cell(V(i)));
+      EXPECT_EQ(wider.labels().vertex(to[i]), i == 5 ? 3 : 0);
+      EXPECT_EQ(wider.is_fixed(to[i]), i == 2);
+    }
+    for (std::size_t gap : gaps) {
+      EXPECT_FALSE(wider.incident_cell(V(gap)).is_valid());
+      EXPECT_FALSE(wider.is_fixed(V(gap)));
+      EXPECT_EQ(wider.labels().vertex(V(gap)), 0);
+    }
+    const auto now = [&](int k) { return to[corners[static_cast<std::size_t>(k)].idx()]; };
+    EXPECT_EQ(wider.cell(CellHandle(7)).v, (std::array{now(0), now(1), now(2), now(3)}));
+    ASSERT_TRUE(wider.labels().faces.find({now(0), now(1), now(2)}));
+    ASSERT_TRUE(wider.labels().edges.find({now(2), now(3)}));
+  }
 }
 
 TEST(Writer, AddingByHandSeesWhatWasWrittenInBetween) {
