@@ -43,23 +43,30 @@ void Incoming::unite() {
   };
   by_number(points_);
   by_number(cells_);
-  places_ = {};
+  forget_places();
 }
 
-/// Of a number among the points. Corners of one cell after the other lie near each other, so the search
-/// begins where the last one has ended.
-std::size_t Incoming::place(std::uint64_t number, std::size_t hint) const {
-  std::size_t low = std::min(hint, points_.size() - 1), high = low, step = 1;
-  if (points_[low].number <= number)
-    for (; high < points_.size() && points_[high].number <= number; step *= 2) low = high, high += step;
-  else
-    for (; low > 0 && points_[low].number > number; step *= 2) high = low, low -= std::min(low, step);
-  const auto begin = points_.begin() + static_cast<std::ptrdiff_t>(low);
-  const auto end = points_.begin() + static_cast<std::ptrdiff_t>(std::min(high + 1, points_.size()));
-  const auto at = std::lower_bound(begin, end, number,
-                                   [](const PointRecord& p, std::uint64_t n) { return p.number < n; });
-  if (at == end || at->number != number) throw InternalError("a point of a cell has not come along");
-  return static_cast<std::size_t>(at - points_.begin());
+/// The points stand in blocks of so many numbers each, of which most have one or two.
+void Incoming::make_index() {
+  const std::uint64_t range = points_.back().number - points_.front().number;
+  for (block_bits_ = 0; (range >> block_bits_) > points_.size();) ++block_bits_;
+  block_begin_.assign((range >> block_bits_) + 2, 0);
+  for (const PointRecord& p : points_)
+    ++block_begin_[((p.number - points_.front().number) >> block_bits_) + 1];
+  for (std::size_t b = 1; b < block_begin_.size(); ++b) block_begin_[b] += block_begin_[b - 1];
+}
+
+/// Of a number among the points.
+std::size_t Incoming::place(std::uint64_t number) {
+  if (!points_.empty() && number >= points_.front().number && number <= points_.back().number) {
+    if (block_begin_.empty()) make_index();
+    const std::size_t block = (number - points_.front().number) >> block_bits_;
+    const auto begin = points_.begin() + block_begin_[block], end = points_.begin() + block_begin_[block + 1];
+    const auto at = std::lower_bound(begin, end, number,
+                                     [](const PointRecord& p, std::uint64_t n) { return p.number < n; });
+    if (at != end && at->number == number) return static_cast<std::size_t>(at - points_.begin());
+  }
+  throw InternalError("a point of a cell has not come along");
 }
 
 /// body(cell, places of its corners) for all cells.
@@ -67,10 +74,9 @@ template <class Body>
 void Incoming::for_cells(Body&& body) {
   if (places_.empty()) {
     places_.reserve(cells_.size());
-    std::size_t hint = 0;
     for (const CornerRecord& c : cells_) {
       Places& at = places_.emplace_back();
-      for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(hint = place(c.v[k], hint));
+      for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(place(c.v[k]));
     }
   }
   for (std::size_t i = 0; i < cells_.size(); ++i) body(cells_[i], places_[i]);
@@ -164,8 +170,7 @@ void Incoming::send(Receivers&& receivers, Incoming& into) {
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
     std::vector<PointRecord> points;
-    for (std::size_t at = 0; std::uint64_t number : numbers)
-      points.push_back(points_[at = place(number, at)]);
+    for (std::uint64_t number : numbers) points.push_back(points_[place(number)]);
     to[r].put_all(points);
     to[r].put_all(std::exchange(cells[r], {}));
   }
@@ -229,7 +234,7 @@ void Incoming::keep_near(std::uint8_t most) {
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (stays[i]) points_[n++] = points_[i];
   points_.resize(n);
-  places_ = {};
+  forget_places();
 }
 
 DistributedMesh::Piece Incoming::piece() {
@@ -253,7 +258,7 @@ DistributedMesh::Piece Incoming::piece() {
     for (const CornerRecord& c : cells_) regions.push_back(c.region);
   points_ = {};
   cells_ = {};
-  places_ = {};
+  forget_places();
   piece.mesh = build(std::move(points), cells, {}, nullptr, NonManifold::kKeep, Turning::kConflicts);
   const auto was_turned = [&](CellHandle c) { return piece.mesh.cell(c).v[2].idx() != cells[c.idx()][2]; };
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -270,7 +275,7 @@ DistributedMesh::Piece Incoming::piece() {
 void Incoming::send_labels(Incoming& to) {
   std::vector<std::vector<LabelRecord>> sent(comm_.n_ranks());
   for (const LabelRecord& r : std::exchange(labels_, {}))
-    sent[static_cast<std::size_t>(points_[place(r.smallest_vertex(), 0)].owner)].push_back(r);
+    sent[static_cast<std::size_t>(points_[place(r.smallest_vertex())].owner)].push_back(r);
   std::vector<Packer> packed(comm_.n_ranks());
   for (std::size_t r = 0; r < sent.size(); ++r)
     if (!sent[r].empty()) packed[r].put_all(std::exchange(sent[r], {}));

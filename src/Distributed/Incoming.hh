@@ -63,7 +63,12 @@ class Incoming {
   struct Sets;
 
   void unite();
-  std::size_t place(std::uint64_t number, std::size_t hint) const;
+  void make_index();
+  std::size_t place(std::uint64_t number);
+  void forget_places() {
+    places_ = {};
+    block_begin_ = {};
+  }
   template <class Body>
   void for_cells(Body&& body);
   int owner(Index at) const { return points_[at].owner; }
@@ -82,7 +87,9 @@ class Incoming {
   Comm& comm_;
   std::vector<PointRecord> points_;
   std::vector<CornerRecord> cells_;
-  std::vector<Places> places_;  // of the corners of cells_, or none yet
+  std::vector<Places> places_;      // of the corners of cells_, or none yet
+  std::vector<Index> block_begin_;  // of the index of points_, or none yet; in points_
+  int block_bits_ = 0;
   std::vector<LabelRecord> labels_;
   std::uint64_t n_points_ = 0, n_cells_ = 0;
 };
