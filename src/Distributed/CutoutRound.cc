@@ -121,14 +121,14 @@ void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std:
   freed_.assign(back.rbegin(), back.rend());
 }
 
-auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+auto CutoutRound::select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
                          bool check_links) -> Selected {
   Comm& comm = parts_.comm();
   const Comm::InPhase phase(comm, Phase::kSelect);
   const auto& has_met = cutout_.rim().has_met;
   for (std::size_t c = 0; c < has_met.size(); ++c)
     if (has_met[c] != 0) met_.push_back(cutout_.number(CellHandle(c)));
-  if (!candidates.empty()) met_.push_back(kNoNumber);  // the same call tells that there are any
+  if (candidates.size() > 0) met_.push_back(kNoNumber);  // the same call tells that there are any
   met_ = comm.all_gather(std::span<const std::uint64_t>(met_));
   has_candidates_ = std::erase(met_, kNoNumber) > 0;
   std::sort(met_.begin(), met_.end());
@@ -136,17 +136,17 @@ auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_
   if (!met_.empty() || !has_candidates_) return selected;
   std::vector<Packer> to(comm.n_ranks());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& one = candidates[i];
-    const PlanBase& plan = *one.plan;
+    const PlanBase& plan = candidates.plan(i);
+    const SeedAddress seed = candidates.seed(i);
     to[0].put(Announcement{
-        one.key, one.name, one.seed.cell.is_valid() ? cutout_.number(one.seed.cell) : kNoNumber,
-        one.seed.place, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(plan.n_removed),
+        candidates.key(i), candidates.name(i), seed.cell.is_valid() ? cutout_.number(seed.cell) : kNoNumber,
+        seed.place, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(plan.n_removed),
         static_cast<std::uint32_t>(plan.n_created), plan.removes_vertex ? std::uint8_t{1} : std::uint8_t{0},
         plan.adds_vertex ? std::uint8_t{1} : std::uint8_t{0}});
     std::vector<std::uint64_t> cells;
-    for (CellHandle c : one.scope) cells.push_back(cutout_.number(c));
+    for (CellHandle c : candidates.scope(i)) cells.push_back(cutout_.number(c));
     to[0].put_all(cells);
-    to[0].put_all(one.made);
+    to[0].put_all(candidates.made(i));
   }
   std::vector<Contender> all;
   for (const Comm::Message& message : comm.exchange(to))
@@ -179,7 +179,7 @@ auto CutoutRound::select(std::span<const Candidate> candidates, std::size_t may_
   for (const Comm::Message& message : comm.exchange(to))
     for (Unpacker in(message.bytes); !in.at_end();) {
       const auto award = in.get<Award>();
-      Winner winner{award.number, candidates[award.number].seed, in.get_all<std::uint64_t>()};
+      Winner winner{award.number, candidates.seed(award.number), in.get_all<std::uint64_t>()};
       if (award.new_vertex != kNoNumber) new_vertices.push_back(award.new_vertex);
       selected.winners.push_back(std::move(winner));
     }

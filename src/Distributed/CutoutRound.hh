@@ -53,7 +53,7 @@ class CutoutRound : public RoundPlace {
   std::uint64_t number(CellHandle c) const override { return cutout_.number(c); }
   CellHandle slot(std::uint64_t number) override { return cutout_.add_slot(number); }
   /// None where an evaluation has come to the rim of a cutout: then the round is void.
-  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+  Selected select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
                   bool check_links) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;

@@ -160,7 +160,6 @@ std::shared_ptr<const DistributedMesh> DistributedMesh::copy() const {
   static_cast<State&>(*copy) = *this;
   copy->work_.star_size = work_.star_size;
   copy->work_.frozen = work_.frozen;
-  copy->work_.quality = work_.quality;
   return copy;
 }
 
@@ -168,7 +167,7 @@ void DistributedMesh::put_back(const DistributedMesh& copy) {
   static_cast<State&>(*this) = copy;
   work_.star_size = copy.work_.star_size;
   work_.frozen = copy.work_.frozen;
-  work_.quality = copy.work_.quality;
+  work_.quality.assign(mesh_.n_cells(), 0.0);
   work_.changed.assign(mesh_.n_vertices(), work_.clock);
   work_.pending.assign(mesh_.n_cells(), 0xff);
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);

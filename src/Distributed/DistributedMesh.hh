@@ -90,10 +90,10 @@ class DistributedMesh : private detail::PartState {
   /// smallest vertex. All take part.
   void hand_out_labels(std::span<const LabelRecord> records);
 
-  /// Of this part, to come back to: some 60 bytes a cell. It answers no questions on what lies near.
+  /// Of this part, to come back to: some 50 bytes a cell. It answers no questions on what lies near.
   std::shared_ptr<const DistributedMesh> copy() const;
-  /// Makes it what the copy is, all cells pending and all vertices changed now. What the workspace has of the
-  /// run goes on: clock, floor, and whether damage is held. All take part.
+  /// Makes it what the copy is, all cells pending, without qualities, and all vertices changed now. What the
+  /// workspace has of the run goes on: clock, floor, and whether damage is held. All take part.
   void put_back(const DistributedMesh& copy);
 
   /// Gives cells other numbers, to[slot] for each slot, and the slots the order of these; see is_dense().

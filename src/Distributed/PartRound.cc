@@ -56,7 +56,7 @@ struct Decision {
 
 std::uint64_t PartRound::seed_number(const Entry& entry) const {
   if (!is_own(entry)) return others_[entry.other].seed_number;
-  const SeedAddress& at = candidates_[entry.own].seed;
+  const SeedAddress at = candidates_->seed(entry.own);
   return at.cell.is_valid() ? mesh_.number(at.cell) : mesh_.number(at.vertex);
 }
 
@@ -66,10 +66,10 @@ bool PartRound::is_before(const Entry& a, const Entry& b) const {
   return std::tuple(seed_number(a), seed(a).place) < std::tuple(seed_number(b), seed(b).place);
 }
 
-auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+auto PartRound::select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
                        bool check_links) -> Selected {
   const Comm::InPhase phase(comm_, Phase::kSelect);
-  candidates_ = candidates;
+  candidates_ = &candidates;
   const bool is_anyone_told = announce();
   if (check_links)
     decide_on_first();
@@ -87,7 +87,7 @@ auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lo
   entries_ = {};
   told_ = {};
   others_ = {};
-  candidates_ = {};
+  candidates_ = nullptr;
   return selected;
 }
 
@@ -97,34 +97,27 @@ auto PartRound::select(std::span<const Candidate> candidates, std::size_t may_lo
 bool PartRound::announce() {
   const TetMesh& part = mesh_.part();
   std::vector<Packer> to(comm_.n_ranks());
-  entries_.resize(candidates_.size());
+  entries_.resize(candidates_->size());
   RankSet told(mesh_.within_two().words());
-  for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const Candidate& candidate = candidates_[i];
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = entries_[i];
     entry.own = static_cast<std::uint32_t>(i);
-    if (std::none_of(candidate.scope.begin(), candidate.scope.end(),
-                     [&](CellHandle c) { return mesh_.is_in_zone(c); }))
-      continue;
+    const auto cells = scope(entry);
+    if (std::none_of(cells.begin(), cells.end(), [&](CellHandle c) { return mesh_.is_in_zone(c); })) continue;
     told.clear();
-    for (CellHandle c : candidate.scope)
+    for (CellHandle c : cells)
       for (VertexHandle v : part.cell(c).v) told.add(mesh_.near(v));
     told.remove(comm_.rank());
     if (told.empty()) continue;
-    Announcement a{candidate.key,
-                   candidate.name,
-                   kNoNumber,
-                   kNoNumber,
-                   candidate.seed.place,
-                   candidate.seed.kind,
-                   static_cast<std::uint32_t>(i),
-                   static_cast<std::uint32_t>(candidate.scope.size())};
-    if (candidate.seed.cell.is_valid()) a.seed_cell = mesh_.number(candidate.seed.cell);
-    if (candidate.seed.vertex.is_valid()) a.seed_vertex = mesh_.number(candidate.seed.vertex);
+    const SeedAddress at = seed(entry);
+    Announcement a{key(entry), name(entry), kNoNumber, kNoNumber,
+                   at.place,   at.kind,     entry.own, static_cast<std::uint32_t>(cells.size())};
+    if (at.cell.is_valid()) a.seed_cell = mesh_.number(at.cell);
+    if (at.vertex.is_valid()) a.seed_vertex = mesh_.number(at.vertex);
     for_ranks(told.bits(), [&](int r) {
       Packer& out = to[static_cast<std::size_t>(r)];
       out.put(a);
-      for (CellHandle c : candidate.scope) out.put(mesh_.number(c));
+      for (CellHandle c : cells) out.put(mesh_.number(c));
     });
     entry.other = static_cast<std::uint32_t>(told_.size());
     told_.push_back(told);
@@ -132,7 +125,7 @@ bool PartRound::announce() {
   const Comm::Exchanged came = comm_.exchange(to, 0);
   for (const Comm::Message& message : came.messages) hear(message);
   const auto before = [&](const Entry& a, const Entry& b) { return is_before(a, b); };
-  const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates_.size());
+  const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates_->size());
   if (!std::is_sorted(entries_.begin(), middle, before)) std::sort(entries_.begin(), middle, before);
   if (middle != entries_.end()) {
     std::sort(middle, entries_.end(), before);
@@ -198,12 +191,11 @@ void PartRound::decide_on_first() {
   std::vector<Packer> to(comm_.n_ranks());
   for (const Entry& entry : entries_) {
     if (!is_own(entry)) continue;
-    const Candidate& candidate = candidates_[entry.own];
-    to[0].put(Contender{candidate.key, candidate.name, seed_number(entry), candidate.seed.place, entry.own});
+    to[0].put(Contender{key(entry), name(entry), seed_number(entry), seed(entry).place, entry.own});
     std::vector<std::uint64_t> cells;
-    for (CellHandle c : candidate.scope) cells.push_back(mesh_.number(c));
+    for (CellHandle c : scope(entry)) cells.push_back(mesh_.number(c));
     to[0].put_all(cells);
-    to[0].put_all(candidate.made);
+    to[0].put_all(candidates_->made(entry.own));
   }
   struct Heard {
     Contender contender;
@@ -313,7 +305,7 @@ std::size_t PartRound::hand_out_slots(std::size_t may_lose, std::size_t may_gain
   std::vector<std::uint64_t> my_freed;
   for (const Entry& entry : entries_) {
     if (entry.state != State::kWon || !is_own(entry)) continue;
-    const PlanBase& plan = *candidates_[entry.own].plan;
+    const PlanBase& plan = candidates_->plan(entry.own);
     SlotUse use{key(entry), name(entry)};
     for (const CavityPart& p :
          parts_of(plan.n_removed, plan.n_created, plan.n_removed_first, plan.n_created_first)) {
@@ -336,7 +328,10 @@ std::size_t PartRound::hand_out_slots(std::size_t may_lose, std::size_t may_gain
     gained += uses[i].gain;
   }
   const auto rank_of = [](const SlotUse& use) { return std::tie(use.key, use.name); };
-  const auto place_of = [&](const Entry& entry) { return std::tuple(key(entry), name(entry)); };
+  const auto compare = [&](const Entry& entry, const SlotUse& use) {
+    const auto by_key = key(entry) <=> use.key;
+    return by_key != 0 ? by_key : name(entry) <=> use.name;
+  };
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return rank_of(uses[a]) < rank_of(uses[b]); });
   const bool all_stay = lost <= may_lose && gained <= may_gain;
@@ -348,8 +343,8 @@ std::size_t PartRound::hand_out_slots(std::size_t may_lose, std::size_t may_gain
   };
   for (std::size_t i : order) {
     const SlotUse& use = uses[i];
-    for (skip(); e < entries_.size() && place_of(entries_[e]) < rank_of(use); skip()) ++e, ++w;
-    const bool is_here = e < entries_.size() && place_of(entries_[e]) == rank_of(use);
+    for (skip(); e < entries_.size() && compare(entries_[e], use) < 0; skip()) ++e, ++w;
+    const bool is_here = e < entries_.size() && compare(entries_[e], use) == 0;
     if (!all_stay && (use.loss > may_lose || use.gain > may_gain)) {
       ++n_given_up;
       if (is_here) given_up.push_back(w), dropped_.push_back(e);

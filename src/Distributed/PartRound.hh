@@ -34,7 +34,7 @@ class PartRound : public RoundPlace {
   std::uint64_t number(VertexHandle v) const override { return mesh_.number(v); }
   std::uint64_t number(CellHandle c) const override { return mesh_.number(c); }
   CellHandle slot(std::uint64_t number) override { return mesh_.slot_of(number); }
-  Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+  Selected select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
                   bool check_links) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;
@@ -83,17 +83,17 @@ class PartRound : public RoundPlace {
   void sweep();
   static bool is_own(const Entry& entry) { return entry.own != kNothing; }
   std::uint64_t key(const Entry& entry) const {
-    return is_own(entry) ? candidates_[entry.own].key : others_[entry.other].key;
+    return is_own(entry) ? candidates_->key(entry.own) : others_[entry.other].key;
   }
-  const SeedName& name(const Entry& entry) const {
-    return is_own(entry) ? candidates_[entry.own].name : others_[entry.other].name;
+  SeedName name(const Entry& entry) const {
+    return is_own(entry) ? candidates_->name(entry.own) : others_[entry.other].name;
   }
-  const SeedAddress& seed(const Entry& entry) const {
-    return is_own(entry) ? candidates_[entry.own].seed : others_[entry.other].seed;
+  SeedAddress seed(const Entry& entry) const {
+    return is_own(entry) ? candidates_->seed(entry.own) : others_[entry.other].seed;
   }
   std::uint64_t seed_number(const Entry& entry) const;
   std::span<const CellHandle> scope(const Entry& entry) const {
-    return is_own(entry) ? candidates_[entry.own].scope : others_[entry.other].scope;
+    return is_own(entry) ? candidates_->scope(entry.own) : others_[entry.other].scope;
   }
   /// By key, then name, then seed. Two seeds may have one name where both find the same: then the first in
   /// the order of numbers comes first, as it does where all cells are in one mesh.
@@ -129,9 +129,9 @@ class PartRound : public RoundPlace {
 
   DistributedMesh& mesh_;
   Comm& comm_;
-  std::span<const Candidate> candidates_;  // while select() lasts
-  std::vector<Entry> entries_;             // in the order of is_before()
-  std::vector<RankSet> told_;              // of own candidates: ranks that know of it
+  const Candidates* candidates_ = nullptr;  // while select() lasts
+  std::vector<Entry> entries_;              // in the order of is_before()
+  std::vector<RankSet> told_;               // of own candidates: ranks that know of it
   std::vector<OfOther> others_;
   std::vector<std::uint32_t> undecided_;
   std::vector<Pending> pending_;

@@ -74,18 +74,19 @@ std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
 /// smaller neighbours are. A neighbour counts as often as there are cells that both have.
 class PartSmoothing::Ready {
  public:
-  Ready(const PartSmoothing& pass)
-      : pass_(pass), n_waits_for_(pass.colour_.size(), 0), used_(pass.colour_.size(), 0) {
+  Ready(const PartSmoothing& pass) : pass_(pass), waits_(pass.colour_.size()) {
     for (VertexHandle v : pass_.own_) {
-      if (!is_waiting(v)) continue;
+      if (pass_.colour_[v.idx()] != kWaiting) continue;
       ++n_left_;
+      Wait& wait = waits_[v.idx()];
       for (HalfFaceHandle h : pass_.link(v))
         for (VertexHandle u : pass_.mesh_.part().cell(cell_of(h)).v) {
           if (!(u < v)) continue;
-          if (is_waiting(u))
-            ++n_waits_for_[v.idx()];
+          const std::uint8_t colour = pass_.colour_[u.idx()];
+          if (colour == kWaiting)
+            ++wait.n;
           else
-            used_[v.idx()] |= bit_of(u);
+            wait.used |= std::uint64_t{1} << colour;
         }
     }
   }
@@ -97,15 +98,18 @@ class PartSmoothing::Ready {
     const VertexHandle v = ready_.back();
     ready_.pop_back();
     --n_left_;
-    return {v, first_without(used_[v.idx()])};
+    return {v, first_without(waits_[v.idx()].used)};
   }
   /// A vertex within one edge of own ones has its colour. All its cells are here.
   void note_coloured(VertexHandle v) {
+    const std::uint64_t bit = std::uint64_t{1} << pass_.colour_[v.idx()];
     const auto tell = [&](CellHandle c) {
       for (VertexHandle w : pass_.mesh_.part().cell(c).v) {
-        if (!(v < w) || !is_waiting(w) || !pass_.mesh_.is_own(w)) continue;
-        used_[w.idx()] |= bit_of(v);
-        if (--n_waits_for_[w.idx()] == 0) ready_.push_back(w);
+        if (!(v < w)) continue;
+        Wait& wait = waits_[w.idx()];
+        if (wait.n == 0) continue;
+        wait.used |= bit;
+        if (--wait.n == 0) ready_.push_back(w);
       }
     };
     if (pass_.mesh_.is_own(v))
@@ -115,12 +119,13 @@ class PartSmoothing::Ready {
   }
 
  private:
-  bool is_waiting(VertexHandle v) const { return pass_.colour_[v.idx()] == kWaiting; }
-  std::uint64_t bit_of(VertexHandle v) const { return std::uint64_t{1} << pass_.colour_[v.idx()]; }
+  struct Wait {
+    std::uint64_t used = 0;  // colours of the smaller neighbours that have one
+    std::uint32_t n = 0;     // smaller neighbours without; 0 for what does not wait
+  };
 
   const PartSmoothing& pass_;
-  std::vector<std::uint32_t> n_waits_for_;  // by vertex: smaller neighbours without a colour
-  std::vector<std::uint64_t> used_;         // by vertex: colours of the others
+  std::vector<Wait> waits_;  // by vertex
   std::vector<VertexHandle> ready_;
   std::size_t n_left_ = 0;
 };

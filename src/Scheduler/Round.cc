@@ -215,19 +215,8 @@ class RoundCore::State {
       round_.scope(plan, out);
       require_sizes(plan, out.size());
     });
-    std::vector<RoundPlace::Candidate> candidates(keys_.size());
-    Cavity cavity;
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
-      const PlanBase& plan = round_.candidate(keys_[i].index);
-      candidates[i] = {keys_[i].key,         name_in_whole(identities_[keys_[i].index]),
-                       round_.address(plan), &plan,
-                       scopes_[i],           {}};
-      if (!options_.check_links) continue;
-      round_.cavity(plan, cavity);
-      candidates[i].made = hashes_of_created(cavity);
-    }
     RoundPlace::Selected selected =
-        options_.place->select(candidates, options_.may_lose, options_.may_gain, options_.check_links);
+        options_.place->select(Offered(*this), options_.may_lose, options_.may_gain, options_.check_links);
     counts.held_back = selected.held_back;
     winners_.clear();
     for (RoundPlace::Winner& one : selected.winners) {
@@ -242,11 +231,37 @@ class RoundCore::State {
                           {},
                           std::move(one.fresh)});
     }
+    scopes_ = {};  // before there are others
     scopes_ = ScopeList(options_.policy, winners_.size(),
                         [&](std::size_t w, Scope& out) { round_.scope(plan_of(winners_[w]), out); });
     for (std::size_t w = 0; w < winners_.size(); ++w)
       for (CellHandle c : scopes_[w]) work_.claim[c.idx()] = static_cast<std::uint32_t>(w);
   }
+
+  /// The candidates by rank.
+  class Offered : public RoundPlace::Candidates {
+   public:
+    explicit Offered(const State& state) : state_(state) {}
+    std::size_t size() const override { return state_.keys_.size(); }
+    std::uint64_t key(std::size_t i) const override { return state_.keys_[i].key; }
+    SeedName name(std::size_t i) const override {
+      return state_.name_in_whole(state_.identities_[state_.keys_[i].index]);
+    }
+    SeedAddress seed(std::size_t i) const override { return state_.round_.address(plan(i)); }
+    const PlanBase& plan(std::size_t i) const override {
+      return state_.round_.candidate(state_.keys_[i].index);
+    }
+    std::span<const CellHandle> scope(std::size_t i) const override { return state_.scopes_[i]; }
+    std::vector<std::uint64_t> made(std::size_t i) const override {
+      if (!state_.options_.check_links) return {};
+      Cavity cavity;
+      state_.round_.cavity(plan(i), cavity);
+      return state_.hashes_of_created(cavity);
+    }
+
+   private:
+    const State& state_;
+  };
 
   void finish_among_parts() {
     std::vector<RoundPlace::Commit> commits(winners_.size());

@@ -20,15 +20,19 @@ namespace hfr {
 /// of the whole mesh; handles and numbers of vertices have the same order.
 class RoundPlace {
  public:
-  /// One of this part's, which come in the order of their keys, then of their names.
-  struct Candidate {
-    std::uint64_t key = 0;
-    SeedName name{};
-    SeedAddress seed;
-    const PlanBase* plan = nullptr;
-    std::span<const CellHandle> scope;
+  /// Those of this part, which come in the order of their keys, then of their names: there are many, so
+  /// what is asked of one is made when it is asked.
+  class Candidates {
+   public:
+    virtual ~Candidates() = default;
+    virtual std::size_t size() const = 0;
+    virtual std::uint64_t key(std::size_t i) const = 0;
+    virtual SeedName name(std::size_t i) const = 0;
+    virtual SeedAddress seed(std::size_t i) const = 0;
+    virtual const PlanBase& plan(std::size_t i) const = 0;
+    virtual std::span<const CellHandle> scope(std::size_t i) const = 0;
     /// Where links are checked: hashes of the edges and faces that it would make, which may be made once.
-    std::vector<std::uint64_t> made;
+    virtual std::vector<std::uint64_t> made(std::size_t i) const = 0;
   };
   /// What has to be committed here: all winners, of any part, that lie near a vertex of this one.
   struct Winner {
@@ -55,7 +59,7 @@ class RoundPlace {
   virtual CellHandle slot(std::uint64_t number) = 0;
   /// The first independent set over all parts, within the bounds on cells of the whole. `check_links`: no two
   /// winners make the same edge or face; a candidate that would is refused when its turn comes.
-  virtual Selected select(std::span<const Candidate> candidates, std::size_t may_lose, std::size_t may_gain,
+  virtual Selected select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
                           bool check_links) = 0;
   /// After the winners were committed, in their order: brings what this part holds of others up to date.
   virtual void finish(std::span<const Commit> commits) = 0;

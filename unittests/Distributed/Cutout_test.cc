@@ -148,17 +148,33 @@ TEST(Cutout, WinnersMakeNothingTwice) {
   plan.adds_vertex = true;
   std::vector<CellHandle> scopes;
   for (std::uint64_t number : cutout.centres()) scopes.push_back(cutout.cell_at(number));
-  std::vector<RoundPlace::Candidate> candidates;
-  for (std::size_t k = 0; k < scopes.size(); ++k) {
-    const auto i = static_cast<std::uint64_t>(std::ranges::find(cells, cutout.centres()[k]) - cells.begin());
-    candidates.push_back(
-        {i, {}, {scopes[k], {}}, &plan, std::span(&scopes[k], 1), {i == 2 ? 5U : 4U, 6U + i}});
-  }
+  /// Each takes one cell; of three, the first two would make the same.
+  class Three : public RoundPlace::Candidates {
+   public:
+    Three(const PlanBase& plan, std::span<const CellHandle> scopes) : plan_(plan), scopes_(scopes) {}
+    std::vector<std::uint64_t> keys;
+
+    std::size_t size() const override { return keys.size(); }
+    std::uint64_t key(std::size_t i) const override { return keys[i]; }
+    SeedName name(std::size_t) const override { return {}; }
+    SeedAddress seed(std::size_t i) const override { return {scopes_[i], {}}; }
+    const PlanBase& plan(std::size_t) const override { return plan_; }
+    std::span<const CellHandle> scope(std::size_t i) const override { return scopes_.subspan(i, 1); }
+    std::vector<std::uint64_t> made(std::size_t i) const override {
+      return {keys[i] == 2 ? 5U : 4U, 6U + keys[i]};
+    }
+
+   private:
+    const PlanBase& plan_;
+    std::span<const CellHandle> scopes_;
+  } candidates(plan, scopes);
+  for (std::uint64_t centre : cutout.centres())
+    candidates.keys.push_back(static_cast<std::uint64_t>(std::ranges::find(cells, centre) - cells.begin()));
   const auto winners = [&](bool check_links, std::size_t may_gain) {
     std::vector<std::uint64_t> found;
     mpi::CutoutRound round(cutout, sides.parts);
     for (const auto& one : round.select(candidates, kNoLimit, may_gain, check_links).winners) {
-      found.push_back(candidates[one.candidate].key);
+      found.push_back(candidates.key(one.candidate));
       EXPECT_EQ(one.fresh.size(), 3U);
     }
     found = comm.all_gather(std::span<const std::uint64_t>(found));
