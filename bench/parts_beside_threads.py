@@ -58,7 +58,7 @@ def main():
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--args", type=shlex.split, default=[])
-    line = parser.parse_args()
+    line = parser.parse_intermixed_args()
     print(f"| mesh | hfremesh, {line.ranks} threads, s | improve, s | MB | parts, {line.ranks} ranks, s | improve, s "
           "| MB, all | seconds | improve | memory | bytes |\n|---|" + 9 * "---:|" + "---|")
     with tempfile.TemporaryDirectory() as name:

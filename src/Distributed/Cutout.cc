@@ -82,10 +82,10 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellHandle c = parts.cell_at(cells[i]);
     if (!c.is_valid() || part.is_deleted(c) || !parts.is_own(c)) continue;
-    spread.begin(c, depth[i], where == Where::kOnFirst ? 0 : comm.rank());
+    spread.begin(c, depth[i], where == Where::kOnAll ? 0 : comm.rank());
     if (where == Where::kOnOwners) centres_.push_back(cells[i]);
   }
-  if (where == Where::kOnFirst && comm.rank() == 0) centres_.assign(cells.begin(), cells.end());
+  if (where == Where::kOnAll) centres_.assign(cells.begin(), cells.end());
   spread.run();
   std::vector<Packer> to(comm.n_ranks());
   const auto asked_for = spread.own();
@@ -108,6 +108,19 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   std::sort(taken.begin(), taken.end());
   sort_by_number(vertices_);
   sort_by_number(cell_records);
+  if (where == Where::kOnAll) {  // by way of the first
+    Packer first;
+    first.put_all(taken);
+    first.put_all(vertices_);
+    first.put_all(cell_records);
+    first.put_all(labels);
+    const std::vector<std::byte> said = told_by_first(comm, first);
+    Unpacker in(said);
+    taken = in.get_all<std::uint64_t>();
+    vertices_ = in.get_all<VertexRecord>();
+    cell_records = in.get_all<CellRecord>();
+    labels = in.get_all<LabelRecord>();
+  }
   work_.clock = parts.work().clock;
   work_.floor = parts.work().floor;
   work_.holds_damage = parts.work().holds_damage;

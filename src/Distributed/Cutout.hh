@@ -18,8 +18,8 @@ namespace hfr::mpi {
 /// whole.
 class Cutout {
  public:
-  enum class Where : std::uint8_t { kOnOwners, kOnFirst };
-  /// `cells`: numbers, ascending, the same on all ranks, of which each takes its own ones, or rank 0 all;
+  enum class Where : std::uint8_t { kOnOwners, kOnAll };
+  /// `cells`: numbers, ascending, the same on all ranks, of which each takes its own ones, or all the same;
   /// `depth`, of each of them: vertices are taken that so many edges lead to, and all cells that have one of
   /// these. All take part. A cell of it whose vertices are all such has all its neighbours; others are its
   /// rim.

@@ -17,7 +17,8 @@
 namespace hfr::mpi {
 namespace {
 
-/// The cutout as the place of a search, on rank 0. Its list of free slots is the end of the whole's.
+/// The cutout as the place of a search, which all ranks have alike: each tries on some of the patches, and
+/// rank 0 puts back. Its list of free slots is the end of the whole's.
 class CutoutPatches : public PatchPlace {
  public:
   CutoutPatches(Cutout& cutout, const DistributedMesh& parts, std::span<const std::uint64_t> worst)
@@ -28,6 +29,10 @@ class CutoutPatches : public PatchPlace {
   TetMesh& mesh() override { return cutout_.mesh(); }
   std::span<const CellHandle> worst() const override { return worst_; }
   std::size_t n_cells() const override { return n_cells_; }
+  bool tries_on(std::size_t patch) const override {
+    return patch % parts_.comm().n_ranks() == static_cast<std::size_t>(parts_.comm().rank());
+  }
+  bool share(std::span<PatchVerdict> verdicts) override;
   void put_back(const Patch& patch, const TetMesh& changed) override;
 
   /// Adds what all ranks have to know of it.
@@ -52,6 +57,20 @@ class CutoutPatches : public PatchPlace {
   std::vector<int> new_owner_;  // of the vertices that have come
   std::vector<Change> changes_;
 };
+
+/// Where a rank has tried, and found nothing, it says so as those do that have not tried.
+bool CutoutPatches::share(std::span<PatchVerdict> verdicts) {
+  struct Told {
+    std::uint32_t patch = 0, best = 0, held_back = 0;
+  };
+  std::vector<Told> told;
+  for (std::size_t i = 0; i < verdicts.size(); ++i)
+    if (verdicts[i].best != PatchVerdict::kNone || verdicts[i].held_back)
+      told.push_back({static_cast<std::uint32_t>(i), verdicts[i].best, verdicts[i].held_back ? 1U : 0U});
+  for (const Told& one : parts_.comm().all_gather(std::span<const Told>(told)))
+    verdicts[one.patch] = {one.best, one.held_back != 0};
+  return parts_.comm().rank() == 0;
+}
 
 /// So many slots that are free, in the order in which the whole would hand them out.
 void CutoutPatches::make_room(std::size_t n) {
@@ -162,10 +181,11 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
   const std::vector<std::uint8_t> depth(cells.size(), static_cast<std::uint8_t>(layers));
   Packer first;
   {
-    Cutout cutout(parts, ascending, depth, Cutout::Where::kOnFirst);
+    Cutout cutout(parts, ascending, depth, Cutout::Where::kOnAll);
+    CutoutPatches place(cutout, parts, cells);
+    const PatchesDone done = search(place);
     if (parts.comm().rank() == 0) {
-      CutoutPatches place(cutout, parts, cells);
-      first.put(search(place));
+      first.put(done);
       place.say(first);
     }
   }

@@ -11,8 +11,9 @@
 
 namespace hfr::mpi {
 
-/// See MeshInParts::search_patches(): rank 0 searches, on a cutout of what lies within so many layers of
-/// these cells, the worst first. Patches that it puts back go to all ranks. All take part.
+/// See MeshInParts::search_patches(): all ranks search, on the same cutout of what lies within so many layers
+/// of these cells, the worst first; each tries on some of the patches. What rank 0 puts back goes to all.
+/// All take part.
 PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std::uint64_t> cells, int layers,
                                     const std::function<PatchesDone(PatchPlace&)>& search);
 

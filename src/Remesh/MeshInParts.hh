@@ -49,8 +49,8 @@ class MeshInParts {
   /// two that are alike the one with the smaller number. `but`: own ones that do not count, ascending.
   virtual std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,
                                                        std::span<const CellHandle> but) = 0;
-  /// Brings together, in one process, what lies within so many layers of these cells, and lets that one
-  /// search there. All processes have what it has made of it, and get what it says.
+  /// Brings together, in each process, what lies within so many layers of these cells, and lets all search
+  /// there, of which one puts back. All have what that one has made of it, and get what it says.
   virtual PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers,
                                      const std::function<PatchesDone(PatchPlace&)>& search) = 0;
   virtual std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) = 0;

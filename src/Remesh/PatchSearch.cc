@@ -35,8 +35,7 @@ constexpr double kAnyLoss = 0;
 
 struct Outcome {
   std::optional<TetMesh> mesh;
-  double worst = 0;
-  bool held_back = false;  // there was one that had too many cells, or too few
+  bool held_back = false;  // see PatchVerdict
   bool is_folded = false;  // its surface lies on or goes through itself now
 };
 
@@ -198,23 +197,34 @@ class PatchTries {
   }
 
   /// What the tries come to in their order.
-  Outcome outcome() {
-    Outcome best;
-    best.worst = worst_;
+  PatchVerdict verdict() const {
+    PatchVerdict found;
+    double worst = worst_;
     Try::Kind helped = Try::kNothing;
     for (std::size_t t = 0; t < tries_.size(); ++t) {
-      Attempt& one = attempts_[t];
-      if (best.worst >= enough_ || (best.mesh && tries_[t].kind != helped)) break;
-      if (!one.mesh || !(one.worst > std::max(best.worst, least_))) continue;
+      const Attempt& one = attempts_[t];
+      const bool has_helped = found.best != PatchVerdict::kNone;
+      if (worst >= enough_ || (has_helped && tries_[t].kind != helped)) break;
+      if (!one.mesh || !(one.worst > std::max(worst, least_))) continue;
       if (!one.has_room) {
-        best.held_back = true;
+        found.held_back = true;
         continue;
       }
       helped = tries_[t].kind;
-      best.worst = one.worst;
-      best.is_folded = one.is_folded;
-      best.mesh = std::move(one.mesh);
+      worst = one.worst;
+      found.best = static_cast<std::uint32_t>(t);
     }
+    return found;
+  }
+  /// Of a verdict on this patch, of this process or another, for which the try is made once more.
+  Outcome outcome(const PatchVerdict& verdict) {
+    Outcome best;
+    best.held_back = verdict.held_back;
+    if (verdict.best == PatchVerdict::kNone) return best;
+    Attempt& one = attempts_[verdict.best];
+    if (!one.mesh) one = attempt(tries_[verdict.best]);
+    best.is_folded = one.is_folded;
+    best.mesh = std::move(one.mesh);
     return best;
   }
 
@@ -222,7 +232,7 @@ class PatchTries {
   const PatchTrial& rules() const { return whole_.strategy.patch; }
 
   /// Whether a try that helps, of an earlier kind or to all that is asked for, comes before it: then
-  /// outcome() does not come to it.
+  /// verdict() does not come to it.
   bool is_idle(std::size_t t) {
     const auto value = [](auto& shared) {
       par::before_shared_access();
@@ -276,21 +286,26 @@ class PatchTries {
   std::size_t enough_from_ = kNoLimit;  // the first try that leaves enough
 };
 
-/// What the tries bring to each patch. Tries and patches share nothing, so all of them may run at once: the
-/// first try of each patch, then the second of each …, because one that helps saves those after it.
-std::vector<Outcome> search(const Run& run, std::size_t n_cells, std::span<const Patch> patches, double goal,
+/// What the tries bring to each patch; nothing where another process goes on. Tries and patches share
+/// nothing, so all of them may run at once: the first try of each patch, then the second of each …, because
+/// one that helps saves those after it.
+std::vector<Outcome> search(const Run& run, PatchPlace& place, std::span<const Patch> patches, double goal,
                             const PatchEffort& effort) {
   const std::vector<Try> tries = tries_of(effort, run.strategy.pass.sites_of_many);
   std::deque<PatchTries> all;
-  std::vector<std::size_t> open;  // numbers of those that are tried on
-  for (const Patch& patch : patches) {
-    all.emplace_back(patch, run, room_of(patch, n_cells, run.bounds), goal, tries);
-    if (all.back().is_worth_trying(effort.few)) open.push_back(all.size() - 1);
+  std::vector<std::size_t> open;  // numbers of those that are tried on here
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    all.emplace_back(patches[i], run, room_of(patches[i], place.n_cells(), run.bounds), goal, tries);
+    if (place.tries_on(i) && all.back().is_worth_trying(effort.few)) open.push_back(i);
   }
   par::for_each_dynamic(run.policy().for_items_of(kTryNanoseconds), open.size() * tries.size(), 1,
                         [&](std::size_t i) { all[open[i % open.size()]].make(i / open.size()); });
-  std::vector<Outcome> outcomes;
-  for (PatchTries& one : all) outcomes.push_back(one.outcome());
+  std::vector<PatchVerdict> verdicts;
+  for (const PatchTries& one : all) verdicts.push_back(one.verdict());
+  if (!place.share(verdicts)) return {};
+  std::vector<Outcome> outcomes(all.size());
+  par::for_each_dynamic(run.policy().for_items_of(kTryNanoseconds), all.size(), 1,
+                        [&](std::size_t i) { outcomes[i] = all[i].outcome(verdicts[i]); });
   return outcomes;
 }
 
@@ -315,7 +330,7 @@ std::vector<Patch> disjoint_patches(const Run& run, const TetMesh& mesh, std::sp
 void put_back(const Run& run, PatchPlace& place, std::span<const Patch> patches,
               std::span<const Outcome> outcomes, PatchesDone& done) {
   const bool may_overlap = run.findings.is_folded || !run.work.pinched.empty() || run.surface;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
     done.met_bound = done.met_bound || outcomes[i].held_back;
     if (!outcomes[i].mesh) continue;
     ++done.n_candidates;
@@ -336,8 +351,7 @@ PatchesDone search_at(const Run& run, PatchPlace& place, double goal, const Patc
   const std::vector<Patch> patches = disjoint_patches(run, place.mesh(), place.worst(), effort);
   PatchesDone done;
   done.n_patches = patches.size();
-  if (!patches.empty())
-    put_back(run, place, patches, search(run, place.n_cells(), patches, goal, effort), done);
+  if (!patches.empty()) put_back(run, place, patches, search(run, place, patches, goal, effort), done);
   return done;
 }
 
