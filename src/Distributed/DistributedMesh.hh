@@ -149,6 +149,8 @@ class DistributedMesh : private detail::PartState {
   void note_told();
   /// Own vertices whose within_two() may be another than told().
   std::span<const VertexHandle> renewed() const { return renewed_; }
+  /// True where no neighbour is another rank's.
+  bool is_among_own(VertexHandle v) const { return near1_.is_only(v.idx(), comm_.rank()); }
   /// True where no vertex within two edges is another rank's.
   bool is_inside(VertexHandle v) const { return near2_.is_only(v.idx(), comm_.rank()); }
   /// Slots of all cells with a vertex that is not inside, and of some others: which were such, or are gone.

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::uint8_t kNone = 63;      // as colour_vertices() has it: not in the pass, or alone
 constexpr std::uint8_t kWaiting = 255;  // not coloured yet
+// Vertices that a rank colours in a round of the colouring, about; those apart that others may wait for.
+constexpr std::size_t kLeast = 1024, kRounds = 256;
 
 /// The smallest colour that is not in the set; kNone where that would be the 64th.
 std::uint8_t first_without(std::uint64_t used) {
@@ -92,11 +94,18 @@ class PartSmoothing::Ready {
   }
 
   std::size_t n_left() const { return n_left_; }
-  bool is_empty() const { return ready_.empty(); }
-  /// It and its colour.
+  /// One that another rank may wait for.
+  bool has_near() const { return !near_.empty(); }
+  bool is_empty() const { return near_.empty() && n_taken_ == inner_.size(); }
+  /// It and its colour; those first that others may wait for, then in the order in which they were ready.
   std::pair<VertexHandle, std::uint8_t> take() {
-    const VertexHandle v = ready_.back();
-    ready_.pop_back();
+    VertexHandle v;
+    if (has_near()) {
+      v = near_.back();
+      near_.pop_back();
+    } else {
+      v = inner_[n_taken_++];
+    }
     --n_left_;
     return {v, first_without(waits_[v.idx()].used)};
   }
@@ -109,7 +118,7 @@ class PartSmoothing::Ready {
         Wait& wait = waits_[w.idx()];
         if (wait.n == 0) continue;
         wait.used |= bit;
-        if (--wait.n == 0) ready_.push_back(w);
+        if (--wait.n == 0) (pass_.mesh_.is_among_own(w) ? inner_ : near_).push_back(w);
       }
     };
     if (pass_.mesh_.is_own(v))
@@ -125,8 +134,9 @@ class PartSmoothing::Ready {
   };
 
   const PartSmoothing& pass_;
-  std::vector<Wait> waits_;  // by vertex
-  std::vector<VertexHandle> ready_;
+  std::vector<Wait> waits_;                 // by vertex
+  std::vector<VertexHandle> near_, inner_;  // that are ready
+  std::size_t n_taken_ = 0;                 // of the inner ones
   std::size_t n_left_ = 0;
 };
 
@@ -158,8 +168,11 @@ std::vector<std::vector<VertexHandle>> PartSmoothing::colour_groups() {
     if (colour_[v.idx()] == kWaiting)
       if (const std::uint8_t colour = first_fit(v); colour != kWaiting) set_colour(v, colour);
   Ready ready(*this);
+  // A chain of vertices that wait for each other goes to and fro between ranks. Who did all that is ready
+  // before it tells of it would keep the other waiting; so each does about as much in a round.
+  const std::size_t most = std::max(kLeast, ready.n_left() / kRounds);
   for (bool is_done = false; !is_done;) {
-    while (!ready.is_empty()) {
+    for (std::size_t n = 0; ready.has_near() || (n < most && !ready.is_empty()); ++n) {
       const auto [v, colour] = ready.take();
       set_colour(v, colour);
       ready.note_coloured(v);
