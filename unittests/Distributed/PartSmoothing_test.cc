@@ -40,6 +40,11 @@ void expect_colours_of_shared_memory(const TetMesh& mesh) {
 
 TEST(PartSmoothing, ColoursAreThoseOfSharedMemory) { expect_colours_of_shared_memory(jittered(7, 0.3, 5)); }
 
+/// More than a rank colours in a round.
+TEST(PartSmoothing, ManyThatWaitAreColouredAFewInEachRound) {
+  expect_colours_of_shared_memory(jittered(20, 0.3, 6));
+}
+
 TEST(PartSmoothing, WhatNeedsMoreThanSixtyThreeColoursHasAGroupEach) {
   expect_colours_of_shared_memory(built(neighbourly(70)));
 }
