@@ -92,14 +92,14 @@ class PartCheck {
     return suspects;
   }
 
-  /// True only where all is well round v, which has so many cells: they connect, no face has two of them that
-  /// are not mates, each edge one fan. Expects cells that look_at() has cleared. `place`: by vertex, all 0
-  /// between calls.
+  /// True only where all is well round v, which has so many cells: they connect, no face has more than two of
+  /// them, each edge one fan. Expects cells that look_at() has cleared. `place`: by vertex, all 0 between
+  /// calls. That a face has two cells without a mate is for compare_boundaries() to see.
   ///
   /// The faces opposite v in its cells make up a connected surface. Faces of v are its edges: where each is
-  /// met once in each direction at most, and not as open in both, none has two cells that are no mates. Were
-  /// a vertex of it counted once that has several fans, its Euler characteristic would come out too small: a
-  /// disk or a sphere has one fan everywhere. All other surfaces are left for a closer look.
+  /// met once in each direction at most, none has more than two cells. Were a vertex of it counted once that
+  /// has several fans, its Euler characteristic would come out too small: a disk or a sphere has one fan
+  /// everywhere. All other surfaces are left for a closer look.
   bool is_plain(VertexHandle v, std::size_t n_cells, std::vector<std::uint8_t>& place) const {
     const CellHandle incident = part_.incident_cell(v);
     if (part_.is_deleted(v)) return n_cells == 0;
@@ -112,7 +112,6 @@ class PartCheck {
     constexpr std::size_t kMost = 64;                // neighbours, each a bit
     std::array<std::uint64_t, kMost + 1> follows{};  // of each: those that come after it round a face
     std::array<VertexHandle, kMost> neighbours;
-    std::array<std::array<std::uint8_t, 2>, Star::kCapacity> open;
     std::size_t n_neighbours = 0, n_open = 0;
     const auto place_of = [&](VertexHandle u) {
       std::uint8_t& at = place[u.idx()];
@@ -134,13 +133,9 @@ class PartCheck {
           const std::uint64_t bit = std::uint64_t{1} << (b - 1);
           if ((follows[a] & bit) != 0) return false;
           follows[a] |= bit;
-          if (cell.mate[f[(k + 2) % 3]].is_valid()) continue;
-          if (n_open == open.size()) return false;
-          open[n_open++] = {a, b};
+          if (!cell.mate[f[(k + 2) % 3]].is_valid()) ++n_open;
         }
       }
-      for (std::size_t i = 0; i < n_open; ++i)
-        if ((follows[open[i][1]] >> (open[i][0] - 1) & 1) != 0) return false;
       // V - (3 F + O) / 2 + F, twice: each face has three edges, of which O are open.
       return 2 * n_neighbours == n_cells + n_open + (n_open > 0 ? 2 : 4);
     };

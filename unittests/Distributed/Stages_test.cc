@@ -271,6 +271,37 @@ TEST(PartPatchSearch, PatchesThatShrinkAndGrowComeHome) {
   }
 }
 
+TEST(PartPatchSearch, EachRankTriesOnSomeOfThePatchesAndAllLearnWhatCounts) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  Whole whole(valid_box(6, 0.3, 5), MinSine2{});
+  const auto owner =
+      mpi::partition(comm, comm.rank() == 0 ? &whole.mesh : nullptr, mpi::Partition::kCoordinates);
+  mpi::DistributedMesh parts(comm);
+  parts.scatter(&whole.mesh, &whole.work, owner);
+  const std::vector<std::uint64_t> centres = {whole.mesh.n_cells() - 100, 100};
+  bool was_here = false;
+  mpi::search_patches_in_parts(parts, centres, 1, [&](PatchPlace& place) {
+    was_here = true;
+    const auto n_cells = static_cast<double>(place.mesh().n_cells());
+    EXPECT_EQ(comm.min(n_cells), -comm.min(-n_cells)) << "ranks have other surroundings";
+    std::vector<PatchVerdict> verdicts(7);
+    std::uint64_t n_mine = 0;
+    for (std::uint32_t i = 0; i < verdicts.size(); ++i) {
+      if (!place.tries_on(i)) continue;
+      ++n_mine;
+      if (i != 4) verdicts[i] = {i + 10, i == 2};
+    }
+    EXPECT_EQ(comm.sum(n_mine), verdicts.size()) << "each patch is one rank's";
+    EXPECT_EQ(place.share(verdicts), comm.rank() == 0);
+    for (std::uint32_t i = 0; i < verdicts.size(); ++i) {
+      EXPECT_EQ(verdicts[i].best, i == 4 ? PatchVerdict::kNone : i + 10);
+      EXPECT_EQ(verdicts[i].held_back, i == 2);
+    }
+    return PatchesDone();
+  });
+  EXPECT_TRUE(was_here);
+}
+
 /// Cutouts, patches, percentiles and tries that are put back included.
 TEST_F(StagesInParts, ARankThatFailsAnywhereEndsAll) {
   if (comm.rank() == 0) io::write(path, cavity({2, 6, 6}, 0.4, 0.05));
