@@ -301,7 +301,7 @@ std::vector<FileUse> uses_of(const MoveLine& line) {
 /// What is said of a series: what ended it, then inverted cells, then angles; of the first step that has it.
 bool counts_before(ExitCode now, ExitCode so_far) {
   static constexpr std::array kOrder = {ExitCode::kCancelled, ExitCode::kLimit, ExitCode::kInvalidCells,
-                                 ExitCode::kGoalMissed, ExitCode::kDone};
+                                        ExitCode::kGoalMissed, ExitCode::kDone};
   return std::ranges::find(kOrder, now) < std::ranges::find(kOrder, so_far);
 }
 
