@@ -63,11 +63,12 @@ struct PartsResult {
 /// a run without a goal are scattered in memory, they are numbered anew first, as there.
 ///
 /// Candidates for new vertices and searched clusters come together on rank 0, some 300 bytes each, and on all
-/// ranks the surroundings of the last few cells, up to 32 patches. Unless it polishes a mesh of positive cells alone
-/// (options.polish_only), each rank keeps copies of its part to go back to; where the mesh has invalid cells,
-/// or a boundary that lies on itself, rank 0 selects the winners of all rounds. Throws InvalidInput, naming
-/// it, for what is not there in parts: another metric than volume-length for all cells, a surface that may
-/// change, fixed things, published pipelines, devices, time limits, callbacks, maps, other smoothers.
+/// ranks the surroundings of the last few cells, up to 32 patches. Unless it polishes a mesh of positive
+/// cells alone (options.polish_only), each rank keeps copies of its part to go back to; where the mesh has
+/// invalid cells, or a boundary that lies on itself, rank 0 selects the winners of all rounds. Throws
+/// InvalidInput, naming it, for what is not there in parts: another metric than volume-length for all cells,
+/// a surface that may change, fixed things, published pipelines, devices, time limits, callbacks, maps, other
+/// smoothers.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.
