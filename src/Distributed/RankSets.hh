@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "hfremesh/HalfFace/Handles.hh"
+
 namespace hfr::mpi {
 
 /// Calls visit(rank) for each rank in a set of bits, ascending.
@@ -44,6 +46,16 @@ class RankSets {
   void append_only(int rank) {
     bits_.resize(bits_.size() + words_, 0);
     add(bits_.size() / words_ - 1, rank);
+  }
+  /// As open_gaps() of HalfFace/Writer.hh, with empty sets between.
+  void open_gaps(std::span<const VertexHandle> to, std::size_t n) {
+    bits_.resize(n * words_, 0);
+    std::size_t i = to.size();
+    for (std::size_t place = n; place-- > 0;) {
+      const bool is_old = i > 0 && to[i - 1].idx() == place;
+      if (is_old && --i == place) return;
+      for (std::size_t w = 0; w < words_; ++w) bits_[place * words_ + w] = is_old ? bits_[i * words_ + w] : 0;
+    }
   }
   void set_only(std::size_t i, int rank) {
     for (std::size_t w = 0; w < words_; ++w) bits_[i * words_ + w] = 0;
