@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "Distributed/Ask.hh"
 #include "Distributed/CommonBox.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/Stretches.hh"
@@ -18,26 +19,6 @@ namespace {
 struct Placed {
   std::uint64_t place = 0, number = 0;
 };
-
-/// Each of these, on its rank, is answered by the rank that it was sent to: answers come by rank, in the
-/// order of the questions. All take part.
-template <class Question, class Answer>
-std::vector<std::vector<std::uint64_t>> ask(Comm& comm, std::vector<std::vector<Question>>& questions,
-                                            Answer&& answer) {
-  std::vector<Packer> to(comm.n_ranks());
-  for (std::size_t r = 0; r < to.size(); ++r)
-    if (!questions[r].empty()) to[r].put_all(std::exchange(questions[r], {}));
-  std::vector<std::vector<Question>> asked(comm.n_ranks());
-  for (const Comm::Message& message : comm.exchange(to))
-    asked[static_cast<std::size_t>(message.from)] = Unpacker(message.bytes).get_all<Question>();
-  std::vector<std::vector<std::uint64_t>> answers = answer(std::move(asked));
-  to = std::vector<Packer>(comm.n_ranks());
-  for (std::size_t r = 0; r < to.size(); ++r)
-    if (!answers[r].empty()) to[r].put_all(std::exchange(answers[r], {}));
-  for (const Comm::Message& message : comm.exchange(to))
-    answers[static_cast<std::size_t>(message.from)] = Unpacker(message.bytes).get_all<std::uint64_t>();
-  return answers;
-}
 
 /// The place in the order of all of each, those with a smaller `place` first, then those with a smaller
 /// number.
@@ -119,7 +100,7 @@ std::vector<std::uint64_t> numbers_along_curve(DistributedMesh& mesh) {
   };
   {
     const std::vector<CellHandle> own = own_cells(mesh);
-    const Stretches stretches(comm, own.size(), [&](std::size_t i) { return grid.place(part, own[i]); });
+    const Stretches<> stretches(comm, own.size(), [&](std::size_t i) { return grid.place(part, own[i]); });
     std::vector<std::vector<CellHandle>> cells(comm.n_ranks());
     std::vector<std::vector<Placed>> placed(comm.n_ranks());
     for (CellHandle c : own) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include "Distributed/CellOrder.hh"
 #include "Distributed/CommonBox.hh"
+#include "Distributed/Order.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/PartPasses.hh"
 #include "Distributed/PartPatchSearch.hh"
@@ -158,14 +158,8 @@ std::vector<std::uint64_t> Residents::worst_cells_below(double degrees, std::siz
 /// From the first bits to the last: by the next four, of the values that begin as the one that is looked for,
 /// all ranks count how many there are of each.
 double Residents::smallest(std::span<const double> mine, std::size_t rank) {
-  constexpr std::uint64_t kSign = std::uint64_t{1} << 63;
-  // Unsigned numbers in the order of the values.
-  const auto key_of = [](double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 as 0
-    return (bits & kSign) != 0 ? ~bits : bits | kSign;
-  };
   std::vector<std::uint64_t> keys(mine.size());
-  par::for_each(policy_, mine.size(), [&](std::size_t i) { keys[i] = key_of(mine[i]); });
+  par::for_each(policy_, mine.size(), [&](std::size_t i) { keys[i] = ordered_bits(mine[i]); });
   std::uint64_t found = 0, left = rank;
   for (int shift = 60; shift >= 0; shift -= 4) {
     std::array<std::uint64_t, Comm::kMostSums> counts{};
@@ -176,7 +170,7 @@ double Residents::smallest(std::span<const double> mine, std::size_t rank) {
     found |= digit << shift;
     std::erase_if(keys, [&](std::uint64_t key) { return (key >> shift & 15) != digit; });
   }
-  return std::bit_cast<double>((found & kSign) != 0 ? found & ~kSign : ~found);
+  return value_of_ordered(found);
 }
 
 /// What of the options is not there in parts; empty where all is.

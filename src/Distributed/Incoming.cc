@@ -2,13 +2,27 @@
 #include "Distributed/Incoming.hh"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "Distributed/Ask.hh"
 #include "HalfFace/Errors.hh"
 
 namespace hfr::mpi {
+namespace {
+
+std::uint64_t bits_of(Vec3 p) {
+  return mix64(mix64(mix64(std::bit_cast<std::uint64_t>(p.x)) ^ std::bit_cast<std::uint64_t>(p.y)) ^
+               std::bit_cast<std::uint64_t>(p.z));
+}
+
+std::string differing(std::uint64_t point) {
+  return "point " + std::to_string(point) + " comes with different coordinates";
+}
+
+}  // namespace
 
 /// A set of ranks for some points, by place.
 struct Incoming::Sets {
@@ -109,10 +123,16 @@ void Incoming::require_each_once(std::uint64_t n, const char* what, const std::v
 }
 
 void Incoming::find_owners() {
+  std::ranges::sort(points_, {}, &PointRecord::number);
+  const auto differ = [](const PointRecord& a, const PointRecord& b) {
+    return a.number == b.number && bits_of(a.point) != bits_of(b.point);
+  };
+  const auto other = std::ranges::adjacent_find(points_, differ);
+  HFR_REQUIRE(other == points_.end(), differing(other->number));
   unite();
   n_points_ = end_of(points_.empty() ? 0 : points_.back().number + 1);
   n_cells_ = end_of(cells_.empty() ? 0 : cells_.back().number + 1);
-  HFR_REQUIRE(n_points_ > 0 && n_cells_ > 0, "the pieces have no cells");
+  HFR_REQUIRE(n_points_ > 0 && n_cells_ > 0, "there are no cells");
   HFR_REQUIRE(n_points_ <= comm_.sum(points_.size()), "numbers of points have gaps");
   require_each_once(n_cells_, "cells", cells_, [](const CornerRecord&) { return true; });
   for (const auto& [kind, what] :
@@ -125,28 +145,43 @@ void Incoming::find_owners() {
   }
   const std::uint64_t n_ranks = comm_.n_ranks();
   const auto begin = [&](std::uint64_t r) { return (r * n_points_ + n_ranks - 1) / n_ranks; };
-  std::vector<Packer> to(comm_.n_ranks());
-  for (const PointRecord& p : points_) to[p.number * n_ranks / n_points_].put(p.number);
-  const auto me = static_cast<std::uint64_t>(comm_.rank());
-  std::vector<std::int32_t> first(begin(me + 1) - begin(me), -1);
-  std::vector<std::vector<std::uint64_t>> asked(comm_.n_ranks());
-  for (const Comm::Message& message : comm_.exchange(to))
-    for (Unpacker in(message.bytes); !in.at_end();) {
-      const auto number = in.get<std::uint64_t>();
-      asked[static_cast<std::size_t>(message.from)].push_back(number);
-      std::int32_t& owner = first[number - begin(me)];
-      if (owner < 0) owner = message.from;  // messages come by rank
-    }
-  HFR_REQUIRE(std::find(first.begin(), first.end(), -1) == first.end(), "numbers of points have gaps");
-  std::vector<Packer> answers(comm_.n_ranks());
-  for (std::size_t r = 0; r < asked.size(); ++r)
-    for (std::uint64_t number : asked[r]) answers[r].put(first[number - begin(me)]);
-  std::vector<std::vector<std::byte>> came(comm_.n_ranks());
-  for (Comm::Message& message : comm_.exchange(answers))
-    came[static_cast<std::size_t>(message.from)] = std::move(message.bytes);
-  std::vector<Unpacker> in;
-  for (const auto& bytes : came) in.emplace_back(bytes);
-  for (PointRecord& p : points_) p.owner = in[p.number * n_ranks / n_points_].get<std::int32_t>();
+  struct Held {
+    std::uint64_t number = 0, n_cells = 0, bits = 0;
+  };
+  std::vector<std::uint64_t> n_cells(points_.size(), 0);
+  for_cells([&](const CornerRecord&, const Places& at) {
+    for (Index i : at) ++n_cells[i];
+  });
+  std::vector<std::vector<Held>> questions(comm_.n_ranks());
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    questions[points_[i].number * n_ranks / n_points_].push_back(
+        {points_[i].number, n_cells[i], bits_of(points_[i].point)});
+  const auto answers = ask(comm_, questions, [&](const std::vector<std::vector<Held>>& asked) {
+    const auto me = static_cast<std::uint64_t>(comm_.rank());
+    struct Owner {
+      std::int32_t rank = -1;
+      std::uint64_t n_cells = 0, bits = 0;
+    };
+    std::vector<Owner> owners(begin(me + 1) - begin(me));
+    for (std::size_t r = 0; r < asked.size(); ++r)
+      for (const Held& held : asked[r]) {
+        Owner& owner = owners[held.number - begin(me)];
+        HFR_REQUIRE(owner.rank < 0 || held.bits == owner.bits, differing(held.number));
+        if (owner.rank < 0 || held.n_cells > owner.n_cells)
+          owner = {static_cast<std::int32_t>(r), held.n_cells, held.bits};
+      }
+    HFR_REQUIRE(std::all_of(owners.begin(), owners.end(), [](const Owner& o) { return o.rank >= 0; }),
+                "numbers of points have gaps");
+    std::vector<std::vector<std::int32_t>> ranks(asked.size());
+    for (std::size_t r = 0; r < asked.size(); ++r)
+      for (const Held& held : asked[r]) ranks[r].push_back(owners[held.number - begin(me)].rank);
+    return ranks;
+  });
+  std::vector<std::size_t> next(comm_.n_ranks(), 0);
+  for (PointRecord& p : points_) {
+    const std::size_t r = p.number * n_ranks / n_points_;
+    p.owner = answers[r][next[r]++];
+  }
 }
 
 /// Each cell to the ranks that `receivers` adds to the list, with its points.

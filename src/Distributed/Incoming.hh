@@ -42,8 +42,8 @@ class Incoming {
   void add(const LabelRecord& label) { labels_.push_back(label); }
   void reserve_cells(std::size_t n) { cells_.reserve(n); }
 
-  /// The first rank that has a point owns it. Each rank answers for a range of numbers; that it has seen all
-  /// of them says that there are no gaps. All take part.
+  /// The rank that has most cells of a point owns it, the first of several. Each rank answers for a range of
+  /// numbers; that it has seen all of them says that there are no gaps. All take part.
   void find_owners();
   /// For whoever has given points their owners: what the whole has.
   void set_size(std::uint64_t n_points, std::uint64_t n_cells) {

@@ -56,7 +56,7 @@ class CurveOwners {
 
  private:
   CurveGrid grid_;
-  Stretches stretches_;
+  Stretches<> stretches_;
 };
 
 /// Cells on their way: a range of them at a time goes to the owners of its vertices, whose points and owners
