@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
 #include <new>
-#include <optional>
 #include <span>
 
 #include "Plex.hh"
 #include "hfremesh/Distributed/Improve.hh"
+#include "hfremesh/Distributed/InParts.hh"
 #include "hfremesh/HalfFace/Errors.hh"
 #include "hfremesh/Remesh/NamedOptions.hh"
 
@@ -13,11 +15,13 @@ namespace {
 
 /// What came of the work of all ranks.
 struct Outcome {
-  std::optional<TetMesh> mesh;  ///< on rank 0
-  Labelling labelling;          ///< on all; what its numbers stand for on rank 0 alone
-  std::size_t n_cells_before = 0, n_invalid = 0;
-  int code = 0;      ///< of PETSc, and the same everywhere; 0: all is well
-  std::string line;  ///< what went wrong
+  NewPlex mine;         ///< what of it this rank gives
+  Labelling labelling;  ///< names on all; values on the ranks that give something
+  std::size_t n_cells_before = 0, n_cells = 0, n_invalid = 0;  ///< on rank 0, or on all in parts
+  bool in_parts = false;
+  std::string why_together;  ///< where they are not
+  int code = 0;              ///< of PETSc, and the same everywhere; 0: all is well
+  std::string line;          ///< what went wrong
 };
 
 int code_of(const std::exception& error) {
@@ -39,8 +43,8 @@ std::string unpack_text(mpi::Unpacker& in) {
 std::vector<LocalPlex> gather(mpi::Comm& comm, const LocalPlex& mine) {
   std::vector<mpi::Packer> to(comm.n_ranks());
   mpi::Packer& out = to[0];
-  out.put_all(mine.numbers);
-  out.put_all(mine.points);
+  out.put_all(std::span(mine.numbers).first(mine.n_own));
+  out.put_all(std::span(mine.points).first(mine.n_own));
   out.put_all(mine.cells);
   out.put_all(mine.largest);
   out.put_all(mine.marks);
@@ -52,6 +56,7 @@ std::vector<LocalPlex> gather(mpi::Comm& comm, const LocalPlex& mine) {
     LocalPlex& part = parts.emplace_back();
     part.numbers = in.get_all<std::int64_t>();
     part.points = in.get_all<Vec3>();
+    part.n_own = part.points.size();
     part.cells = in.get_all<std::array<std::int64_t, 4>>();
     part.largest = in.get_all<double>();
     part.marks = in.get_all<Mark>();
@@ -79,14 +84,16 @@ void share_labels(mpi::Comm& comm, Labelling& labelling) {
   }
 }
 
-void work(mpi::Comm& comm, const LocalPlex& mine, const ImproveOptions& options, Outcome& outcome) {
+/// On rank 0, which has the whole.
+void work_together(mpi::Comm& comm, const LocalPlex& mine, const ImproveOptions& options, Outcome& outcome) {
   const std::vector<LocalPlex> parts = gather(comm, mine);
   if (comm.rank() == 0) {
     WholePlex whole = put_together(parts);
     outcome.n_cells_before = whole.mesh.n_cells();
     bisect(whole.mesh, whole.largest);
     outcome.n_invalid = mpi::improve(whole.mesh, options, comm).invalid_cells.size();
-    outcome.mesh = std::move(whole.mesh);
+    outcome.n_cells = whole.mesh.n_cells();
+    outcome.mine = new_plex(whole.mesh);
     outcome.labelling = std::move(whole.labelling);
     mpi::dismiss(comm);
   } else {
@@ -95,20 +102,65 @@ void work(mpi::Comm& comm, const LocalPlex& mine, const ImproveOptions& options,
   share_labels(comm, outcome.labelling);
 }
 
+/// What the whole is put together for nevertheless; empty where it can stay in parts.
+std::string reason_against_parts(mpi::Comm& comm, const LocalPlex& mine, const ImproveOptions& options) {
+  if (comm.size() == 1) return "one rank";
+  const auto is_kept = [](double largest) { return largest == kKeep; };
+  std::array<std::uint64_t, 2> ranks_with = {
+      mine.cells.empty() ? 0U : 1U, std::all_of(mine.largest.begin(), mine.largest.end(), is_kept) ? 0U : 1U};
+  comm.sum(ranks_with);
+  if (ranks_with[0] <= 1) return "one rank has all cells";
+  if (ranks_with[1] > 0) return "there are cells to refine";
+  return mpi::reason_against(options);
+}
+
+/// What fails on one rank ends on all of them: with the code of PETSc, as RankFailed.
+template <class Act>
+void with_all(mpi::Comm& comm, Act&& act) {
+  try {
+    act();
+  } catch (const mpi::RankFailed&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw comm.fail(code_of(error), error.what());
+  }
+}
+
+/// Each rank on what it has. Where the mesh has what meshes in parts cannot have, nothing is done, and what
+/// is returned says so, on all ranks.
+std::string work_in_parts(MPI_Comm on, const LocalPlex& mine, const ImproveOptions& options,
+                          Outcome& outcome) {
+  mpi::Comm comm(on);
+  mpi::DistributedMesh mesh(comm);
+  try {
+    with_all(comm, [&] { outcome.labelling = put_in_parts(mesh, mine); });
+  } catch (const mpi::RankFailed& failed) {
+    if (failed.code() != PETSC_ERR_ARG_WRONG) throw;
+    outcome.labelling = {};
+    return failed.what();
+  }
+  with_all(comm, [&] {
+    const mpi::PartsResult result = mpi::improve(mesh, options);
+    outcome.in_parts = true;
+    outcome.n_cells_before = result.before.n_cells;
+    outcome.n_cells = result.after.n_cells;
+    outcome.n_invalid = result.after.n_invalid;
+    outcome.mine = new_plex(mesh);
+  });
+  return {};
+}
+
 Outcome run(MPI_Comm on, const LocalPlex& mine, const ImproveOptions& options) {
   Outcome outcome;
-  const auto note = [&](int code, const std::string& line) {
-    outcome.code = code;
-    outcome.line = line;
-  };
   mpi::Comm comm(on);
   try {
-    work(comm, mine, options, outcome);
+    with_all(comm, [&] { outcome.why_together = reason_against_parts(comm, mine, options); });
+    // With messages of its own: after a refusal they begin anew.
+    if (outcome.why_together.empty()) outcome.why_together = work_in_parts(on, mine, options, outcome);
+    if (!outcome.in_parts) with_all(comm, [&] { work_together(comm, mine, options, outcome); });
   } catch (const mpi::RankFailed& failed) {
-    note(failed.code(), failed.what());
-  } catch (const std::exception& error) {
-    const mpi::RankFailed failed = comm.fail(code_of(error), error.what());
-    note(failed.code(), failed.what());
+    outcome.code = failed.code();
+    outcome.line = failed.what();
   }
   return outcome;
 }
@@ -157,11 +209,10 @@ PetscErrorCode adapt_by(DM dm, DMLabel marks, DM* out) {
   const Outcome outcome = run(comm, mine, options);
   PetscCheck(outcome.code == 0, comm, static_cast<PetscErrorCode>(outcome.code), "hfremesh: %s",
              outcome.line.c_str());
-  if (outcome.mesh)
-    PetscCall(PetscInfo(dm, "hfremesh: %zu cells before, %zu after, %zu of them inverted or flat\n",
-                        outcome.n_cells_before, static_cast<std::size_t>(outcome.mesh->n_cells()),
-                        outcome.n_invalid));
-  PetscCall(write_plex(dm, outcome.mesh ? &*outcome.mesh : nullptr, outcome.labelling, out));
+  PetscCall(PetscInfo(dm, "hfremesh: %zu cells before, %zu after, %zu of them inverted or flat; %s%s\n",
+                      outcome.n_cells_before, outcome.n_cells, outcome.n_invalid,
+                      outcome.in_parts ? "in parts" : "put together: ", outcome.why_together.c_str()));
+  PetscCall(write_plex(dm, outcome.mine, outcome.labelling, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "hfremesh/Distributed/DistributedMesh.hh"
 #include "hfremesh/HalfFace/TetMesh.hh"
 
 // From 3.19 on.
@@ -29,10 +30,11 @@ struct Mark {
   std::array<std::int64_t, 4> v = {};  ///< their numbers over all ranks
 };
 
-/// What one rank has of a DMPlex: of each point one rank alone.
+/// What one rank has of a DMPlex: of each point one rank alone, but for vertices.
 struct LocalPlex {
   std::vector<std::int64_t> numbers;  ///< of the vertices, over all ranks
   std::vector<Vec3> points;           ///< of the vertices
+  std::size_t n_own = 0;              ///< of the vertices: the first ones; the others are other ranks'
   std::vector<std::array<std::int64_t, 4>> cells;
   /// By cell: the largest volume that it may have; kKeep for any, kRefine for an eighth of what it has.
   std::vector<double> largest;
@@ -71,14 +73,31 @@ struct WholePlex {
 };
 WholePlex put_together(const std::vector<LocalPlex>& parts);
 
+/// The same in parts: each rank gives what it has, and none has the whole. Vertices and cells have the order
+/// of put_together(). Throws InvalidInput for what a mesh in parts cannot have.
+Labelling put_in_parts(mpi::DistributedMesh& mesh, const LocalPlex& mine);
+
+/// What one rank gives of a new DMPlex.
+struct NewPlex {
+  std::uint64_t n_vertices = 0;  ///< over all ranks
+  /// Of its share of them, by number: ranks have about as many each.
+  std::vector<Vec3> points;
+  std::vector<std::array<std::uint64_t, 4>> cells;  ///< numbers of their vertices
+  std::vector<std::int32_t> regions;                ///< by cell, or none
+  /// Values of faces, edges and vertices of these cells.
+  std::vector<mpi::LabelRecord> labels;
+};
+NewPlex new_plex(const TetMesh& mesh);         ///< all of it
+NewPlex new_plex(mpi::DistributedMesh& mesh);  ///< the cells of each rank; all take part
+
 /// Halves cells by their longest edge until none is larger than `largest` allows. Neighbours are halved where
 /// their longest edge is the one (M.-C. Rivara, Mesh refinement processes based on the generalized bisection
 /// of simplices, SIAM J. Numer. Anal. 21, 1984).
 void bisect(TetMesh& mesh, const std::vector<double>& largest);
 
-/// The new DMPlex, interpolated and with labels, on the ranks of `old`; collective. `mesh`: on rank 0 the
-/// mesh, nullptr elsewhere; `labelling`: its labels, on every rank.
-PetscErrorCode write_plex(DM old, const TetMesh* mesh, const Labelling& labelling, DM* out);
+/// The new DMPlex, interpolated and with labels, on the ranks of `old`; collective. `mine`: what each rank
+/// gives, maybe nothing; `labelling`: what its values stand for, names of labels on every rank.
+PetscErrorCode write_plex(DM old, const NewPlex& mine, const Labelling& labelling, DM* out);
 
 /// The adaptor: DMGenerateRegister() takes it. `metric`: nullptr, or it is refused; with one the labels would
 /// be those that DMAdaptMetric() names.

@@ -1,60 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
 #include <utility>
 
 #include "Plex.hh"
+#include "Tuples.hh"
 #include "hfremesh/HalfFace/Errors.hh"
 
 namespace hfr::petsc {
 namespace {
 
-using Tuple = std::array<Index, 4>;
-constexpr Index kNone = std::numeric_limits<Index>::max();
-
-/// Vertices of a point in ascending order, kNone after the last.
-Tuple point_of(Tuple v) {
-  std::sort(v.begin(), v.end());
-  return v;
-}
-
-int n_vertices(const Tuple& point) {
-  return static_cast<int>(std::find(point.begin(), point.end(), kNone) - point.begin());
-}
-
-/// The points that bound a point: its vertices but one.
-std::vector<Tuple> faces_of(const Tuple& point) {
-  std::vector<Tuple> faces;
-  const int n = n_vertices(point);
-  for (int i = 0; n > 1 && i < n; ++i) {
-    Tuple face = point;
-    face[static_cast<std::size_t>(i)] = kNone;
-    faces.push_back(point_of(face));
-  }
-  return faces;
-}
-
-/// The same four vertices, the smallest first, then the smallest of the others, by even permutations alone.
-Tuple turned(Tuple v) {
-  const auto smallest = static_cast<std::size_t>(std::min_element(v.begin(), v.end()) - v.begin());
-  if (smallest > 0) {
-    std::swap(v[0], v[smallest]);
-    std::swap(v[smallest], v[smallest == 3 ? 2 : 3]);
-  }
-  std::rotate(v.begin() + 1, std::min_element(v.begin() + 1, v.end()), v.end());
-  return v;
-}
+using Place = Index;
+using Point = Tuple<Place>;
 
 /// What place a vertex of the DMPlex has among the vertices of the mesh.
 struct Places {
   std::vector<Vec3> points;
   std::vector<Index> place;
 
-  Tuple at(const std::array<std::int64_t, 4>& numbers, int n) const {
-    Tuple v = {kNone, kNone, kNone, kNone};
+  Point at(const std::array<std::int64_t, 4>& numbers, int n) const {
+    Point v;
+    v.fill(kNone<Place>);
     for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
       HFR_REQUIRE(numbers[i] >= 0 && static_cast<std::size_t>(numbers[i]) < place.size(),
                   "the DMPlex names a vertex that no rank has");
@@ -67,11 +35,11 @@ struct Places {
 Places place_vertices(const std::vector<LocalPlex>& parts) {
   std::vector<std::pair<std::array<double, 3>, std::int64_t>> order;
   for (const LocalPlex& part : parts)
-    for (std::size_t i = 0; i < part.points.size(); ++i)
+    for (std::size_t i = 0; i < part.n_own; ++i)
       order.push_back({{part.points[i].x, part.points[i].y, part.points[i].z}, part.numbers[i]});
   std::sort(order.begin(), order.end());
   Places places;
-  places.place.assign(order.size(), kNone);
+  places.place.assign(order.size(), kNone<Place>);
   for (const auto& [x, number] : order) {
     HFR_REQUIRE(number >= 0 && static_cast<std::size_t>(number) < order.size(),
                 "the DMPlex numbers a vertex beyond their number");
@@ -82,9 +50,9 @@ Places place_vertices(const std::vector<LocalPlex>& parts) {
 }
 
 /// Points with a value of one label.
-using Marks = std::set<std::pair<Tuple, int>>;
+using Marks = std::set<std::pair<Point, int>>;
 
-bool has_any(const Marks& marks, const Tuple& point) {
+bool has_any(const Marks& marks, const Point& point) {
   const auto at = marks.lower_bound({point, std::numeric_limits<int>::min()});
   return at != marks.end() && at->first == point;
 }
@@ -92,7 +60,7 @@ bool has_any(const Marks& marks, const Tuple& point) {
 bool is_closed(const Marks& marks) {
   bool has_inner = false;
   for (const auto& [point, value] : marks)
-    for (const Tuple& face : faces_of(point)) {
+    for (const Point& face : faces_of(point)) {
       has_inner = true;
       if (!has_any(marks, face)) return false;
     }
@@ -103,14 +71,14 @@ bool is_closed(const Marks& marks) {
 Marks without_closures(const Marks& marks) {
   Marks implied, left;
   for (const auto& [point, value] : marks)
-    for (const Tuple& face : faces_of(point)) implied.insert({face, value});
+    for (const Point& face : faces_of(point)) implied.insert({face, value});
   std::set_difference(marks.begin(), marks.end(), implied.begin(), implied.end(),
                       std::inserter(left, left.end()));
   return left;
 }
 
 /// All values of each point, by label.
-std::map<Tuple, std::vector<Labelling::Value>> values_of(const std::vector<LocalPlex>& parts,
+std::map<Point, std::vector<Labelling::Value>> values_of(const std::vector<LocalPlex>& parts,
                                                          const Places& places, Labelling& labelling) {
   std::map<std::string, Marks> by_name;
   for (const LocalPlex& part : parts) {
@@ -119,7 +87,7 @@ std::map<Tuple, std::vector<Labelling::Value>> values_of(const std::vector<Local
       by_name[part.names.at(static_cast<std::size_t>(m.label))].insert(
           {point_of(places.at(m.v, m.n)), m.value});
   }
-  std::map<Tuple, std::vector<Labelling::Value>> values;
+  std::map<Point, std::vector<Labelling::Value>> values;
   for (auto& [name, marks] : by_name) {
     const bool closed = is_closed(marks);
     const auto label = static_cast<int>(labelling.labels.size());
@@ -131,7 +99,7 @@ std::map<Tuple, std::vector<Labelling::Value>> values_of(const std::vector<Local
 }
 
 /// Gives the points their numbers: regions of cells, labels of faces, edges and vertices.
-void attach(const std::map<Tuple, std::vector<Labelling::Value>>& values, const std::vector<Tuple>& cells,
+void attach(const std::map<Point, std::vector<Labelling::Value>>& values, const std::vector<Point>& cells,
             WholePlex& whole) {
   std::map<std::vector<Labelling::Value>, int> numbers;
   for (const auto& [point, set] : values) numbers[set] = 0;
@@ -166,13 +134,13 @@ void attach(const std::map<Tuple, std::vector<Labelling::Value>>& values, const 
 
 WholePlex put_together(const std::vector<LocalPlex>& parts) {
   const Places places = place_vertices(parts);
-  std::vector<std::pair<Tuple, double>> ordered;
+  std::vector<std::pair<Point, double>> ordered;
   for (const LocalPlex& part : parts)
     for (std::size_t c = 0; c < part.cells.size(); ++c)
       ordered.push_back({turned(places.at(part.cells[c], 4)), part.largest[c]});
   std::sort(ordered.begin(), ordered.end());
   WholePlex whole;
-  std::vector<Tuple> cells;
+  std::vector<Point> cells;
   for (const auto& [v, largest] : ordered) {
     cells.push_back(v);
     whole.largest.push_back(largest);

@@ -125,12 +125,15 @@ PetscErrorCode read_vertices(const Points& points, LocalPlex* out) {
   PetscCall(DMGetCoordinateSection(points.dm, &section));
   PetscCall(DMGetCoordinatesLocal(points.dm, &coordinates));
   PetscCall(VecGetArrayRead(coordinates, &x));
-  for (PetscInt v = points.begin[0]; v < points.end[0]; ++v) {
-    PetscInt at = 0;
-    if (!points.is_mine(v)) continue;
-    PetscCall(PetscSectionGetOffset(section, v, &at));
-    out->numbers.push_back(points.number[static_cast<std::size_t>(v - points.begin[0])]);
-    out->points.push_back({PetscRealPart(x[at]), PetscRealPart(x[at + 1]), PetscRealPart(x[at + 2])});
+  for (bool own : {true, false}) {
+    for (PetscInt v = points.begin[0]; v < points.end[0]; ++v) {
+      PetscInt at = 0;
+      if (points.is_mine(v) != own) continue;
+      PetscCall(PetscSectionGetOffset(section, v, &at));
+      out->numbers.push_back(points.number[static_cast<std::size_t>(v - points.begin[0])]);
+      out->points.push_back({PetscRealPart(x[at]), PetscRealPart(x[at + 1]), PetscRealPart(x[at + 2])});
+    }
+    if (own) out->n_own = out->points.size();
   }
   PetscCall(VecRestoreArrayRead(coordinates, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstring>
+#include <algorithm>
 
 #include "Plex.hh"
 #include "hfremesh/HalfFace/Circulators.hh"
@@ -7,32 +7,36 @@
 namespace hfr::petsc {
 namespace {
 
-PetscErrorCode create(MPI_Comm comm, const TetMesh* mesh, DM* out) {
+/// `vertices`: their numbers over all ranks, ascending: so a rank's DMPlex has those of its cells.
+PetscErrorCode create(MPI_Comm comm, const NewPlex& mine, std::vector<std::uint64_t>* vertices, DM* out) {
   std::vector<PetscInt> cells;
   std::vector<PetscReal> points;
-  PetscInt n_cells = 0, n_vertices = 0;
+  PetscInt begin = 0, end = 0;
 
   PetscFunctionBegin;
-  if (mesh) {
-    n_cells = static_cast<PetscInt>(mesh->n_cells());
-    n_vertices = static_cast<PetscInt>(mesh->n_vertices());
-    for (CellHandle c : mesh->cells()) {
-      const auto& v = mesh->cell_vertices(c);
-      for (std::size_t i : {1, 0, 2, 3})
-        cells.push_back(static_cast<PetscInt>(v[i].idx()));  // as PETSc has them
-    }
-    for (VertexHandle v : mesh->vertices())
-      for (int d = 0; d < 3; ++d) points.push_back(mesh->point(v)[d]);
+  for (const auto& v : mine.cells) {
+    for (std::size_t i : {1, 0, 2, 3}) cells.push_back(static_cast<PetscInt>(v[i]));  // as PETSc has them
+    vertices->insert(vertices->end(), v.begin(), v.end());
   }
-  PetscCall(DMPlexCreateFromCellListParallelPetsc(comm, 3, n_cells, n_vertices, PETSC_DECIDE, 4, PETSC_TRUE,
-                                                  cells.data(), 3, points.data(), nullptr, nullptr, out));
+  std::sort(vertices->begin(), vertices->end());
+  vertices->erase(std::unique(vertices->begin(), vertices->end()), vertices->end());
+  for (const Vec3& p : mine.points)
+    for (int d = 0; d < 3; ++d) points.push_back(p[d]);
+  PetscCall(DMPlexCreateFromCellListParallelPetsc(
+      comm, 3, static_cast<PetscInt>(mine.cells.size()), static_cast<PetscInt>(mine.points.size()),
+      PETSC_DECIDE, 4, PETSC_TRUE, cells.data(), 3, points.data(), nullptr, nullptr, out));
+  PetscCall(DMPlexGetDepthStratum(*out, 0, &begin, &end));
+  PetscCheck(static_cast<std::size_t>(end - begin) == vertices->size(), PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "a new DMPlex has %" PetscInt_FMT " vertices, and its cells %zu", end - begin, vertices->size());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Rank 0: gives the points with number `number` their labels again.
+/// Gives the points of this rank that have a value their labels again.
 class Marker {
  public:
-  Marker(DM dm, const Labelling& labelling) : dm_(dm), labelling_(labelling) {}
+  /// `vertices`: see create().
+  Marker(DM dm, const Labelling& labelling, const std::vector<std::uint64_t>& vertices)
+      : dm_(dm), labelling_(labelling), vertices_(vertices) {}
 
   PetscErrorCode find_labels() {
     PetscFunctionBegin;
@@ -44,6 +48,15 @@ class Marker {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
+  PetscErrorCode mark_all(const NewPlex& mine) {
+    PetscFunctionBegin;
+    for (std::size_t c = 0; c < mine.regions.size(); ++c)
+      PetscCall(mark(static_cast<PetscInt>(c), mine.regions[c]));
+    for (const mpi::LabelRecord& record : mine.labels) PetscCall(mark(record));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+
+ private:
   PetscErrorCode mark(PetscInt point, int number) {
     PetscFunctionBegin;
     if (number < 1) PetscFunctionReturn(PETSC_SUCCESS);
@@ -52,52 +65,47 @@ class Marker {
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  /// The face or edge between vertices.
-  template <std::size_t N>
-  PetscErrorCode mark(const std::array<VertexHandle, N>& vertices, int number) {
-    PetscInt v[N], n = 0, begin = 0, end = 0, found = -1;
+  /// The vertex, or the face or edge between these vertices.
+  PetscErrorCode mark(const mpi::LabelRecord& record) {
+    PetscInt v[3] = {}, n_given = 0, n = 0, begin = 0, end = 0, found = -1;
     const PetscInt* points = nullptr;
 
     PetscFunctionBegin;
-    for (std::size_t i = 0; i < N; ++i) v[i] = first_vertex_ + static_cast<PetscInt>(vertices[i].idx());
-    PetscCall(DMPlexGetDepthStratum(dm_, N - 1, &begin, &end));
-    PetscCall(DMPlexGetFullJoin(dm_, N, v, &n, &points));
+    for (std::uint64_t number : record.v) {
+      if (number == mpi::kNoNumber) continue;
+      const auto at = std::lower_bound(vertices_.begin(), vertices_.end(), number);
+      if (at == vertices_.end() || *at != number) PetscFunctionReturn(PETSC_SUCCESS);  // no cell has it
+      v[n_given++] = first_vertex_ + static_cast<PetscInt>(at - vertices_.begin());
+    }
+    if (n_given == 1) {
+      PetscCall(mark(v[0], record.value));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(DMPlexGetDepthStratum(dm_, n_given - 1, &begin, &end));
+    PetscCall(DMPlexGetFullJoin(dm_, n_given, v, &n, &points));
     for (PetscInt i = 0; i < n; ++i)
       if (points[i] >= begin && points[i] < end) found = points[i];
-    PetscCall(DMPlexRestoreJoin(dm_, N, v, &n, &points));
+    PetscCall(DMPlexRestoreJoin(dm_, n_given, v, &n, &points));
     PetscCheck(found >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a labelled face or edge is not in the new mesh");
-    PetscCall(mark(found, number));
+    PetscCall(mark(found, record.value));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
 
-  PetscErrorCode mark_all(const TetMesh& mesh) {
-    const Labels& labels = mesh.labels();
-
-    PetscFunctionBegin;
-    for (CellHandle c : mesh.cells()) PetscCall(mark(static_cast<PetscInt>(c.idx()), mesh.region(c)));
-    for (const auto& face : labels.faces.entries()) PetscCall(mark(face.vertices, face.value));
-    for (const auto& edge : labels.edges.entries()) PetscCall(mark(edge.vertices, edge.value));
-    for (VertexHandle v : mesh.vertices())
-      PetscCall(mark(first_vertex_ + static_cast<PetscInt>(v.idx()), labels.vertex(v)));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-
- private:
   DM dm_;
   const Labelling& labelling_;
+  const std::vector<std::uint64_t>& vertices_;
   std::vector<DMLabel> labels_;
   PetscInt first_vertex_ = 0;
 };
 
-PetscErrorCode set_labels(DM dm, const TetMesh* mesh, const Labelling& labelling) {
-  Marker marker(dm, labelling);
+PetscErrorCode set_labels(DM dm, const NewPlex& mine, const std::vector<std::uint64_t>& vertices,
+                          const Labelling& labelling) {
+  Marker marker(dm, labelling, vertices);
 
   PetscFunctionBegin;
   for (const Labelling::Label& label : labelling.labels) PetscCall(DMCreateLabel(dm, label.name.c_str()));
-  if (mesh) {
-    PetscCall(marker.find_labels());
-    PetscCall(marker.mark_all(*mesh));
-  }
+  PetscCall(marker.find_labels());
+  PetscCall(marker.mark_all(mine));
   for (const Labelling::Label& l : labelling.labels) {
     DMLabel label = nullptr;
     if (!l.is_closed) continue;
@@ -131,15 +139,41 @@ PetscErrorCode distribute(DM old, DM* dm) {
 
 }  // namespace
 
-PetscErrorCode write_plex(DM old, const TetMesh* mesh, const Labelling& labelling, DM* out) {
+NewPlex new_plex(const TetMesh& mesh) {
+  using mpi::LabelRecord;
+  NewPlex all;
+  all.n_vertices = mesh.n_vertices();
+  all.points.assign(mesh.points().begin(), mesh.points().end());
+  for (CellHandle c : mesh.cells()) {
+    auto& corners = all.cells.emplace_back();
+    std::ranges::transform(mesh.cell_vertices(c), corners.begin(), [](VertexHandle v) { return v.idx(); });
+    all.regions.push_back(mesh.region(c));
+  }
+  const auto add = [&](LabelRecord::Kind kind, const auto& vertices, int value) {
+    LabelRecord r;
+    r.kind = kind;
+    r.value = value;
+    std::ranges::transform(vertices, r.v.begin(), [](VertexHandle v) { return v.idx(); });
+    all.labels.push_back(r);
+  };
+  const Labels& labels = mesh.labels();
+  for (const auto& face : labels.faces.entries()) add(LabelRecord::Kind::kFace, face.vertices, face.value);
+  for (const auto& edge : labels.edges.entries()) add(LabelRecord::Kind::kEdge, edge.vertices, edge.value);
+  for (VertexHandle v : mesh.vertices())
+    if (labels.vertex(v) != 0) add(LabelRecord::Kind::kVertex, std::array{v}, labels.vertex(v));
+  return all;
+}
+
+PetscErrorCode write_plex(DM old, const NewPlex& mine, const Labelling& labelling, DM* out) {
   MPI_Comm comm = MPI_COMM_NULL;
   PetscMPIInt n_ranks = 1;
+  std::vector<std::uint64_t> vertices;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(old), &comm));
   PetscCallMPI(MPI_Comm_size(comm, &n_ranks));
-  PetscCall(create(comm, mesh, out));
-  PetscCall(set_labels(*out, mesh, labelling));
+  PetscCall(create(comm, mine, &vertices, out));
+  PetscCall(set_labels(*out, mine, vertices, labelling));
   if (n_ranks > 1) PetscCall(distribute(old, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,7 +5,6 @@
 #include <span>
 #include <utility>
 
-#include "Distributed/Ask.hh"
 #include "Distributed/CommonBox.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/Stretches.hh"
@@ -109,7 +108,7 @@ std::vector<std::uint64_t> numbers_along_curve(DistributedMesh& mesh) {
       cells[rank].push_back(c);
       placed[rank].push_back({place, mesh.number(c)});
     }
-    take(cells, ask(comm, placed, [&](const auto& asked) { return ranked(comm, asked); }));
+    take(cells, comm.ask(std::move(placed), [&](const auto& asked) { return ranked(comm, asked); }));
   }
   std::vector<std::vector<CellHandle>> cells(comm.n_ranks());
   std::vector<std::vector<std::uint64_t>> old(comm.n_ranks());
@@ -121,11 +120,11 @@ std::vector<std::uint64_t> numbers_along_curve(DistributedMesh& mesh) {
     cells[rank].push_back(c);
     old[rank].push_back(mesh.number(c));
   }
-  take(cells, ask(comm, old, [&](std::vector<std::vector<std::uint64_t>> asked) {
-         for (auto& of_rank : asked)
-           for (std::uint64_t& number : of_rank) number = numbers[mesh.cell_at(number).idx()];
-         return asked;
-       }));
+  take(cells, comm.ask(std::move(old), [&](std::vector<std::vector<std::uint64_t>> asked) {
+    for (auto& of_rank : asked)
+      for (std::uint64_t& number : of_rank) number = numbers[mesh.cell_at(number).idx()];
+    return asked;
+  }));
   return numbers;
 }
 

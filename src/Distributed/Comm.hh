@@ -13,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hfremesh/Distributed/Buffer.hh"
@@ -100,6 +101,13 @@ class Comm {
     std::uint64_t n_messages = 0;  ///< between two ranks, over all of them
   };
   Exchanged exchange(std::vector<Packer>& to, std::uint64_t value);
+  /// Sends questions[r] to rank r, and returns what each rank has answered: by rank, in the order of the
+  /// questions. `answer`: by rank what was asked → by rank the answers, as many.
+  template <class Question, class Answer>
+  auto ask(std::vector<std::vector<Question>> questions, Answer&& answer) {
+    auto answers = answer(swap_all(std::move(questions)));
+    return swap_all(std::move(answers));
+  }
   /// Each rank gets make(rank) of rank 0, in the order of ranks but for rank 0 itself, which is last: while
   /// one is made, that before it is on its way. What is sent may be of any size.
   Block hand_out(const std::function<Block(int)>& make);
@@ -172,6 +180,17 @@ class Comm {
   void agree() {
     Question question;
     agree(question);
+  }
+  /// values[r] to rank r; what came from each.
+  template <class T>
+  std::vector<std::vector<T>> swap_all(std::vector<std::vector<T>> values) {
+    std::vector<Packer> to(n_ranks());
+    for (std::size_t r = 0; r < to.size(); ++r)
+      if (!values[r].empty()) to[r].put_all(std::exchange(values[r], {}));
+    std::vector<std::vector<T>> came(n_ranks());
+    for (const Message& message : exchange(to))
+      came[static_cast<std::size_t>(message.from)] = Unpacker(message.bytes).get_all<T>();
+    return came;
   }
   static void require(int result);
   void require_short(std::size_t n) const;

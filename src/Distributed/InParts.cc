@@ -173,24 +173,6 @@ double Residents::smallest(std::span<const double> mine, std::size_t rank) {
   return value_of_ordered(found);
 }
 
-/// What of the options is not there in parts; empty where all is.
-std::string reason_against(const ImproveOptions& options) {
-  if (!options.polish_only && options.metric != Metric::kVolumeLength)
-    return "bulk passes in another metric than volume-length";
-  const SurfaceOptions& surface = options.surface;
-  if (surface.mode != SurfaceMode::kFrozen) return "surfaces that may change";
-  if (!surface.fixed_patches.empty() || !surface.fixed_vertices.empty() || !surface.fixed_edges.empty() ||
-      !surface.fixed_faces.empty())
-    return "fixed patches, faces, edges and vertices";
-  if (options.compat != Compat::kNone) return "published pipelines";
-  if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
-  if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
-  if (options.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
-  if (options.progress || options.cancel) return "callbacks";
-  if (options.maps) return "maps";
-  return {};
-}
-
 /// Whether the boundary lies on itself at a vertex of any rank, which has all faces of the boundary there.
 /// What a part ends with elsewhere is no boundary.
 bool is_folded(DistributedMesh& mesh, par::Policy policy) {
@@ -221,6 +203,23 @@ void begin(DistributedMesh& mesh) {
 }
 
 }  // namespace
+
+std::string reason_against(const ImproveOptions& options) {
+  if (!options.polish_only && options.metric != Metric::kVolumeLength)
+    return "bulk passes in another metric than volume-length";
+  const SurfaceOptions& surface = options.surface;
+  if (surface.mode != SurfaceMode::kFrozen) return "surfaces that may change";
+  if (!surface.fixed_patches.empty() || !surface.fixed_vertices.empty() || !surface.fixed_edges.empty() ||
+      !surface.fixed_faces.empty())
+    return "fixed patches, faces, edges and vertices";
+  if (options.compat != Compat::kNone) return "published pipelines";
+  if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
+  if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
+  if (options.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
+  if (options.progress || options.cancel) return "callbacks";
+  if (options.maps) return "maps";
+  return {};
+}
 
 InParts survey(DistributedMesh& mesh, double goal, par::Policy policy) {
   struct Found {

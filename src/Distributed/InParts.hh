@@ -59,6 +59,8 @@ struct PartsResult {
   double seconds = 0;
   RankFigures mine;  ///< of this rank: rounds, and its part at the end; see gather_figures()
 };
+/// What of these options is not there in parts, as in "meshes in parts do not have …"; empty where all is.
+std::string reason_against(const ImproveOptions& options);
 /// hfr::improve() with a frozen surface: the same bits, for each number of ranks and threads. Where cells of
 /// a run without a goal are scattered in memory, they are numbered anew first, as there.
 ///
@@ -66,7 +68,7 @@ struct PartsResult {
 /// ranks the surroundings of the last few cells, up to 32 patches. Unless it polishes a mesh of positive
 /// cells alone (options.polish_only), each rank keeps copies of its part to go back to; where the mesh has
 /// invalid cells, or a boundary that lies on itself, rank 0 selects the winners of all rounds. Throws
-/// InvalidInput, naming it, for what is not there in parts: another metric than volume-length for all cells,
+/// InvalidInput for what reason_against() names: another metric than volume-length for all cells,
 /// a surface that may change, fixed things, published pipelines, devices, time limits, callbacks, maps, other
 /// smoothers.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);

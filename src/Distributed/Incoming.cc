@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "Distributed/Ask.hh"
 #include "HalfFace/Errors.hh"
 
 namespace hfr::mpi {
@@ -156,7 +155,7 @@ void Incoming::find_owners() {
   for (std::size_t i = 0; i < points_.size(); ++i)
     questions[points_[i].number * n_ranks / n_points_].push_back(
         {points_[i].number, n_cells[i], bits_of(points_[i].point)});
-  const auto answers = ask(comm_, questions, [&](const std::vector<std::vector<Held>>& asked) {
+  const auto answers = comm_.ask(std::move(questions), [&](const std::vector<std::vector<Held>>& asked) {
     const auto me = static_cast<std::uint64_t>(comm_.rank());
     struct Owner {
       std::int32_t rank = -1;

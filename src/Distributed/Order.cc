@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "Distributed/Ask.hh"
 #include "Distributed/Stretches.hh"
 
 namespace hfr::mpi {
@@ -42,7 +41,7 @@ std::vector<std::uint64_t> places_in_order(Comm& comm, std::span<const OrderKey>
     questions[static_cast<std::size_t>(asked.back())].push_back(key);
   }
   const auto answers =
-      ask(comm, questions, [&](const auto& of_ranks) { return places_of_stretch(comm, of_ranks); });
+      comm.ask(std::move(questions), [&](const auto& of_ranks) { return places_of_stretch(comm, of_ranks); });
   std::vector<std::size_t> next(comm.n_ranks(), 0);
   std::vector<std::uint64_t> places;
   places.reserve(keys.size());

@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "ScratchFolder.hh"
 #include "hfremesh/HalfFace/Generate.hh"
 
 namespace hfr::test {
@@ -227,14 +231,16 @@ std::uint64_t fingerprint(DM dm, PetscInt depth, const char* name) {
   return total;
 }
 
+/// With cells to refine on the first rank, without in parts.
 TEST(PetscAdaptor, AnyNumberOfRanksGivesTheMeshOfOne) {
-  for (PetscInt overlap : {0, 1}) {
+  for (const auto& [overlap, flag] :
+       {std::pair<PetscInt, Flag>(0, corner), {1, corner}, {0, nothing}, {1, nothing}}) {
     const Plex alone = cube(PETSC_COMM_SELF, tangled()),
                together = cube(PETSC_COMM_WORLD, tangled(), overlap);
     ASSERT_EQ(fingerprint(alone.get(), 3, "halves"), fingerprint(together.get(), 3, "halves"));
     Plex one, many;
-    ASSERT_EQ(adapt(alone.get(), corner, one), 0);
-    ASSERT_EQ(adapt(together.get(), corner, many), 0);
+    ASSERT_EQ(adapt(alone.get(), flag, one), 0);
+    ASSERT_EQ(adapt(together.get(), flag, many), 0);
     EXPECT_EQ(comm_of(many.get()) == MPI_COMM_NULL, false);
     EXPECT_EQ(n_ranks(comm_of(many.get())), n_ranks(PETSC_COMM_WORLD));
     EXPECT_NE(fingerprint(one.get(), 3, "halves"), fingerprint(alone.get(), 3, "halves"));
@@ -244,6 +250,66 @@ TEST(PetscAdaptor, AnyNumberOfRanksGivesTheMeshOfOne) {
     ok(DMPlexGetOverlap(many.get(), &layers));
     EXPECT_EQ(layers, n_ranks(PETSC_COMM_WORLD) > 1 ? overlap : 0);
   }
+}
+
+/// What is said with -info, by rank 0.
+std::string info_of(const std::function<void()>& act) {
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder.path() / "info";
+  ok(PetscInfoSetFile(path.c_str(), "w"));
+  ok(PetscInfoAllow(PETSC_TRUE));
+  act();
+  ok(PetscInfoAllow(PETSC_FALSE));
+  ok(PetscInfoSetFile(nullptr, nullptr));
+  std::string all;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    std::ifstream in(entry.path());
+    all.append(std::istreambuf_iterator<char>(in), {});
+  }
+  int size = static_cast<int>(all.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, PETSC_COMM_WORLD);
+  all.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(all.data(), size, MPI_CHAR, 0, PETSC_COMM_WORLD);
+  return all;
+}
+
+/// No rank has the whole, unless it had to be put together, which is said.
+TEST(PetscAdaptor, AMeshStaysInPartsWhereItCan) {
+  const bool alone = n_ranks(PETSC_COMM_WORLD) == 1;
+  const Plex before = cube(PETSC_COMM_WORLD, tangled());
+  Plex a, b, c;
+  EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, a); }),
+              HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
+  EXPECT_THAT(info_of([&] { adapt(before.get(), corner, b); }),
+              HasSubstr(alone ? "put together: one rank" : "put together: there are cells to refine"));
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-dm_hfremesh_surface", "flat"), 0);
+  EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, c); }),
+              HasSubstr(alone ? "put together: one rank" : "put together: surfaces that may change"));
+  ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_surface"), 0);
+}
+
+/// Two boxes that meet in one vertex alone: no mesh in parts can have that.
+TEST(PetscAdaptor, WhatPartsCannotHaveIsPutTogether) {
+  generate::Arrays arrays = regular();
+  const generate::Arrays other = regular();
+  const auto n = static_cast<Index>(arrays.points.size());
+  Index common = 0;  // of the first: the corner (1, 1, 1)
+  for (Index v = 0; v < n; ++v)
+    if (arrays.points[v] == Vec3{1, 1, 1}) common = v;
+  for (Vec3 p : other.points) arrays.points.push_back(p + Vec3{1, 1, 1});
+  for (auto cell : other.cells) {
+    for (Index& v : cell) v = other.points[v] == Vec3{0, 0, 0} ? common : v + n;
+    arrays.cells.push_back(cell);
+  }
+  for (Index v = 0; v < n; ++v)
+    if (other.points[v] == Vec3{0, 0, 0}) arrays.points[n + v] = {9, 9, 9};  // of no cell
+  const Plex before = cube(PETSC_COMM_WORLD, arrays);
+  Plex after;
+  const std::string line = info_of([&] { EXPECT_EQ(adapt(before.get(), nothing, after), 0); });
+  EXPECT_THAT(line, HasSubstr(n_ranks(PETSC_COMM_WORLD) == 1 ? "put together: one rank"
+                                                             : "do not connect through faces"));
+  EXPECT_EQ(n_inverted(after.get()), 0);
+  EXPECT_GT(n_cells(after.get()), 600);
 }
 
 TEST(PetscAdaptor, InvertedCellsAreMendedAndLabelsKept) {
@@ -279,33 +345,35 @@ TEST(PetscAdaptor, MarkedCellsAreHalvedToAnEighthAndOthersKeepTheirSize) {
 
 /// As programs have them that set boundary conditions: each labelled face with its edges and vertices.
 TEST(PetscAdaptor, CompleteLabelsAreCompleteAgain) {
-  const Plex before = cube(PETSC_COMM_WORLD, tangled());
-  ASSERT_EQ(DMCreateLabel(before.get(), "marker"), 0);
-  ASSERT_EQ(DMPlexMarkBoundaryFaces(before.get(), 1, label_of(before.get(), "marker")), 0);
-  ASSERT_EQ(DMPlexLabelComplete(before.get(), label_of(before.get(), "marker")), 0);
-  Plex after;
-  ASSERT_EQ(adapt(before.get(), corner, after), 0);
-  for (PetscInt depth : {0, 1}) {
-    double n_marked = 0, n_missing = 0;
-    const auto range = points(after.get(), depth);
-    for (PetscInt p = range[0]; p < range[1]; ++p) {
-      PetscInt n = 0, value = -1, *star = nullptr;
-      bool is_on_surface = false;
-      ok(DMPlexGetTransitiveClosure(after.get(), p, PETSC_FALSE, &n, &star));
-      const auto faces = points(after.get(), 2);
-      for (PetscInt i = 0; i < n; ++i) {
-        PetscInt side = -1;
-        if (star[2 * i] < faces[0] || star[2 * i] >= faces[1]) continue;
-        ok(DMLabelGetValue(label_of(after.get(), "sides"), star[2 * i], &side));
-        is_on_surface = is_on_surface || side > 0;
+  for (const Flag& flag : {Flag(corner), Flag(nothing)}) {
+    const Plex before = cube(PETSC_COMM_WORLD, tangled());
+    ASSERT_EQ(DMCreateLabel(before.get(), "marker"), 0);
+    ASSERT_EQ(DMPlexMarkBoundaryFaces(before.get(), 1, label_of(before.get(), "marker")), 0);
+    ASSERT_EQ(DMPlexLabelComplete(before.get(), label_of(before.get(), "marker")), 0);
+    Plex after;
+    ASSERT_EQ(adapt(before.get(), flag, after), 0);
+    for (PetscInt depth : {0, 1}) {
+      double n_marked = 0, n_missing = 0;
+      const auto range = points(after.get(), depth);
+      for (PetscInt p = range[0]; p < range[1]; ++p) {
+        PetscInt n = 0, value = -1, *star = nullptr;
+        bool is_on_surface = false;
+        ok(DMPlexGetTransitiveClosure(after.get(), p, PETSC_FALSE, &n, &star));
+        const auto faces = points(after.get(), 2);
+        for (PetscInt i = 0; i < n; ++i) {
+          PetscInt side = -1;
+          if (star[2 * i] < faces[0] || star[2 * i] >= faces[1]) continue;
+          ok(DMLabelGetValue(label_of(after.get(), "sides"), star[2 * i], &side));
+          is_on_surface = is_on_surface || side > 0;
+        }
+        ok(DMPlexRestoreTransitiveClosure(after.get(), p, PETSC_FALSE, &n, &star));
+        ok(DMLabelGetValue(label_of(after.get(), "marker"), p, &value));
+        n_marked += value == 1;
+        n_missing += is_on_surface && value != 1;
       }
-      ok(DMPlexRestoreTransitiveClosure(after.get(), p, PETSC_FALSE, &n, &star));
-      ok(DMLabelGetValue(label_of(after.get(), "marker"), p, &value));
-      n_marked += value == 1;
-      n_missing += is_on_surface && value != 1;
+      EXPECT_GT(sum(after.get(), n_marked), 100);
+      EXPECT_EQ(sum(after.get(), n_missing), 0);
     }
-    EXPECT_GT(sum(after.get(), n_marked), 100);
-    EXPECT_EQ(sum(after.get(), n_missing), 0);
   }
 }
 
@@ -317,16 +385,18 @@ TEST(PetscAdaptor, AClosedLabelOfAllCellsHoldsNothing) {
   for (PetscInt c = points(labelled.get(), 3)[0]; c < points(labelled.get(), 3)[1]; ++c)
     ASSERT_EQ(DMLabelSetValue(body, c, 7), 0);
   ASSERT_EQ(DMPlexLabelComplete(labelled.get(), body), 0);
-  Plex a, b;
-  ASSERT_EQ(adapt(plain.get(), corner, a), 0);
-  ASSERT_EQ(adapt(labelled.get(), corner, b), 0);
-  EXPECT_EQ(fingerprint(a.get(), 3, "halves"), fingerprint(b.get(), 3, "halves"));
-  for (PetscInt depth = 0; depth < 4; ++depth)
-    for_own(b.get(), depth, [&](PetscInt p) {
-      PetscInt value = -1;
-      ok(DMLabelGetValue(label_of(b.get(), "body"), p, &value));
-      EXPECT_EQ(value, 7);
-    });
+  for (const Flag& flag : {Flag(corner), Flag(nothing)}) {
+    Plex a, b;
+    ASSERT_EQ(adapt(plain.get(), flag, a), 0);
+    ASSERT_EQ(adapt(labelled.get(), flag, b), 0);
+    EXPECT_EQ(fingerprint(a.get(), 3, "halves"), fingerprint(b.get(), 3, "halves"));
+    for (PetscInt depth = 0; depth < 4; ++depth)
+      for_own(b.get(), depth, [&](PetscInt p) {
+        PetscInt value = -1;
+        ok(DMLabelGetValue(label_of(b.get(), "body"), p, &value));
+        EXPECT_EQ(value, 7);
+      });
+  }
 }
 
 TEST(PetscAdaptor, RefinementLimitsOfADmAreKept) {
