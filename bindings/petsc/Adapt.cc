@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <array>
 #include <new>
-#include <span>
+#include <string>
+#include <utility>
 
 #include "Plex.hh"
 #include "hfremesh/Distributed/Improve.hh"
@@ -15,9 +14,9 @@ namespace {
 
 /// What came of the work of all ranks.
 struct Outcome {
-  NewPlex mine;         ///< what of it this rank gives
-  Labelling labelling;  ///< names on all; values on the ranks that give something
-  std::size_t n_cells_before = 0, n_cells = 0, n_invalid = 0;  ///< on rank 0, or on all in parts
+  NewPlex mine;                                                ///< what of it this rank gives
+  Labelling labelling;                                         ///< of all ranks
+  std::size_t n_cells_before = 0, n_cells = 0, n_invalid = 0;  ///< the latter on rank 0, or on all in parts
   bool in_parts = false;
   std::string why_together;  ///< where they are not
   int code = 0;              ///< of PETSc, and the same everywhere; 0: all is well
@@ -32,85 +31,25 @@ int code_of(const std::exception& error) {
   return PETSC_ERR_LIB;
 }
 
-void pack(const std::string& text, mpi::Packer& out) { out.put_all(std::span<const char>(text)); }
-
-std::string unpack_text(mpi::Unpacker& in) {
-  const std::vector<char> text = in.get_all<char>();
-  return {text.begin(), text.end()};
-}
-
-/// The parts of all ranks, on rank 0.
-std::vector<LocalPlex> gather(mpi::Comm& comm, const LocalPlex& mine) {
-  std::vector<mpi::Packer> to(comm.n_ranks());
-  mpi::Packer& out = to[0];
-  out.put_all(std::span(mine.numbers).first(mine.n_own));
-  out.put_all(std::span(mine.points).first(mine.n_own));
-  out.put_all(mine.cells);
-  out.put_all(mine.largest);
-  out.put_all(mine.marks);
-  out.put(static_cast<std::uint64_t>(mine.names.size()));
-  for (const std::string& name : mine.names) pack(name, out);
-  std::vector<LocalPlex> parts;
-  for (const mpi::Comm::Message& message : comm.exchange(to)) {
-    mpi::Unpacker in(message.bytes);
-    LocalPlex& part = parts.emplace_back();
-    part.numbers = in.get_all<std::int64_t>();
-    part.points = in.get_all<Vec3>();
-    part.n_own = part.points.size();
-    part.cells = in.get_all<std::array<std::int64_t, 4>>();
-    part.largest = in.get_all<double>();
-    part.marks = in.get_all<Mark>();
-    for (auto n = in.get<std::uint64_t>(); n > 0; --n) part.names.push_back(unpack_text(in));
-  }
-  return parts;
-}
-
-/// Names of labels, and whether they are closed, from rank 0 to all.
-void share_labels(mpi::Comm& comm, Labelling& labelling) {
-  mpi::Packer out;
-  if (comm.rank() == 0) {
-    out.put(static_cast<std::uint64_t>(labelling.labels.size()));
-    for (const Labelling::Label& label : labelling.labels) {
-      pack(label.name, out);
-      out.put(label.is_closed);
-    }
-  }
-  const std::vector<std::byte> bytes = comm.all_gather(std::span<const std::byte>(out.bytes()));
-  if (comm.rank() == 0) return;
-  mpi::Unpacker in(bytes);
-  for (auto n = in.get<std::uint64_t>(); n > 0; --n) {
-    const std::string name = unpack_text(in);
-    labelling.labels.push_back({name, in.get<bool>()});
-  }
-}
-
 /// On rank 0, which has the whole.
-void work_together(mpi::Comm& comm, const LocalPlex& mine, const ImproveOptions& options, Outcome& outcome) {
-  const std::vector<LocalPlex> parts = gather(comm, mine);
-  if (comm.rank() == 0) {
-    WholePlex whole = put_together(parts);
-    outcome.n_cells_before = whole.mesh.n_cells();
-    bisect(whole.mesh, whole.largest);
-    outcome.n_invalid = mpi::improve(whole.mesh, options, comm).invalid_cells.size();
-    outcome.n_cells = whole.mesh.n_cells();
-    outcome.mine = new_plex(whole.mesh);
-    outcome.labelling = std::move(whole.labelling);
-    mpi::dismiss(comm);
-  } else {
+void work_together(mpi::Comm& comm, const mpi::RankArrays& mine, const ImproveOptions& options,
+                   Outcome& outcome) {
+  TetMesh mesh = put_together(comm, mine);
+  if (comm.rank() > 0) {
     mpi::serve(comm);
+    return;
   }
-  share_labels(comm, outcome.labelling);
+  outcome.n_invalid = mpi::improve(mesh, options, comm).invalid_cells.size();
+  outcome.n_cells = mesh.n_cells();
+  outcome.mine = new_plex(mesh);
+  mpi::dismiss(comm);
 }
 
 /// What the whole is put together for nevertheless; empty where it can stay in parts.
-std::string reason_against_parts(mpi::Comm& comm, const LocalPlex& mine, const ImproveOptions& options) {
+std::string reason_against_parts(mpi::Comm& comm, const mpi::RankArrays& mine,
+                                 const ImproveOptions& options) {
   if (comm.size() == 1) return "one rank";
-  const auto is_kept = [](double largest) { return largest == kKeep; };
-  std::array<std::uint64_t, 2> ranks_with = {
-      mine.cells.empty() ? 0U : 1U, std::all_of(mine.largest.begin(), mine.largest.end(), is_kept) ? 0U : 1U};
-  comm.sum(ranks_with);
-  if (ranks_with[0] <= 1) return "one rank has all cells";
-  if (ranks_with[1] > 0) return "there are cells to refine";
+  if (comm.sum(mine.cells.empty() ? 0 : 1) <= 1) return "one rank has all cells";
   return mpi::reason_against(options);
 }
 
@@ -128,21 +67,19 @@ void with_all(mpi::Comm& comm, Act&& act) {
 
 /// Each rank on what it has. Where the mesh has what meshes in parts cannot have, nothing is done, and what
 /// is returned says so, on all ranks.
-std::string work_in_parts(MPI_Comm on, const LocalPlex& mine, const ImproveOptions& options,
+std::string work_in_parts(MPI_Comm on, const mpi::RankArrays& mine, const ImproveOptions& options,
                           Outcome& outcome) {
   mpi::Comm comm(on);
   mpi::DistributedMesh mesh(comm);
   try {
-    with_all(comm, [&] { outcome.labelling = put_in_parts(mesh, mine); });
+    with_all(comm, [&] { mpi::from_arrays(mesh, mine); });
   } catch (const mpi::RankFailed& failed) {
     if (failed.code() != PETSC_ERR_ARG_WRONG) throw;
-    outcome.labelling = {};
     return failed.what();
   }
   with_all(comm, [&] {
     const mpi::PartsResult result = mpi::improve(mesh, options);
     outcome.in_parts = true;
-    outcome.n_cells_before = result.before.n_cells;
     outcome.n_cells = result.after.n_cells;
     outcome.n_invalid = result.after.n_invalid;
     outcome.mine = new_plex(mesh);
@@ -150,14 +87,21 @@ std::string work_in_parts(MPI_Comm on, const LocalPlex& mine, const ImproveOptio
   return {};
 }
 
-Outcome run(MPI_Comm on, const LocalPlex& mine, const ImproveOptions& options) {
+Outcome run(MPI_Comm on, LocalPlex mine, const ImproveOptions& options) {
   Outcome outcome;
   mpi::Comm comm(on);
   try {
-    with_all(comm, [&] { outcome.why_together = reason_against_parts(comm, mine, options); });
+    Arrangement arranged;
+    with_all(comm, [&] {
+      outcome.n_cells_before = comm.sum(mine.cells.size());
+      arranged = arrange(comm, std::move(mine));
+      outcome.labelling = std::move(arranged.labelling);
+      outcome.why_together = reason_against_parts(comm, arranged.arrays, options);
+    });
     // With messages of its own: after a refusal they begin anew.
-    if (outcome.why_together.empty()) outcome.why_together = work_in_parts(on, mine, options, outcome);
-    if (!outcome.in_parts) with_all(comm, [&] { work_together(comm, mine, options, outcome); });
+    if (outcome.why_together.empty())
+      outcome.why_together = work_in_parts(on, arranged.arrays, options, outcome);
+    if (!outcome.in_parts) with_all(comm, [&] { work_together(comm, arranged.arrays, options, outcome); });
   } catch (const mpi::RankFailed& failed) {
     outcome.code = failed.code();
     outcome.line = failed.what();
@@ -206,7 +150,7 @@ PetscErrorCode adapt_by(DM dm, DMLabel marks, DM* out) {
   PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(dm), &comm));
   PetscCall(read_options(dm, &options));
   PetscCall(read_plex(dm, marks, &mine));
-  const Outcome outcome = run(comm, mine, options);
+  const Outcome outcome = run(comm, std::move(mine), options);
   PetscCheck(outcome.code == 0, comm, static_cast<PetscErrorCode>(outcome.code), "hfremesh: %s",
              outcome.line.c_str());
   PetscCall(PetscInfo(dm, "hfremesh: %zu cells before, %zu after, %zu of them inverted or flat; %s%s\n",

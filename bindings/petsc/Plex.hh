@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hfremesh/Distributed/DistributedMesh.hh"
+#include "hfremesh/Distributed/RankArrays.hh"
 #include "hfremesh/HalfFace/TetMesh.hh"
 
 // From 3.19 on.
@@ -26,16 +27,16 @@ namespace hfr::petsc {
 struct Mark {
   int label = 0;  ///< index into the names
   int value = 0;
-  int n = 0;                           ///< vertices of the point
-  std::array<std::int64_t, 4> v = {};  ///< their numbers over all ranks
+  int n = 0;                    ///< vertices of the point
+  std::array<Index, 4> v = {};  ///< these, by their index on this rank
 };
 
 /// What one rank has of a DMPlex: of each point one rank alone, but for vertices.
 struct LocalPlex {
-  std::vector<std::int64_t> numbers;  ///< of the vertices, over all ranks
-  std::vector<Vec3> points;           ///< of the vertices
-  std::size_t n_own = 0;              ///< of the vertices: the first ones; the others are other ranks'
-  std::vector<std::array<std::int64_t, 4>> cells;
+  std::vector<std::int64_t> numbers;    ///< of the vertices, over all ranks
+  std::vector<Vec3> points;             ///< of the vertices
+  std::vector<std::uint8_t> is_shared;  ///< by vertex: other ranks have it, too
+  std::vector<std::array<Index, 4>> cells;
   /// By cell: the largest volume that it may have; kKeep for any, kRefine for an eighth of what it has.
   std::vector<double> largest;
   std::vector<std::string> names;  ///< of the labels
@@ -63,40 +64,32 @@ struct Labelling {
   std::vector<std::vector<Value>> values;  ///< of the numbers from 1 on
 };
 
-/// The mesh of all ranks on one of them. It does not depend on how cells and vertices were distributed and
-/// numbered, as long as no two vertices have one place: vertices stand in the order of their coordinates,
-/// cells in that of their vertices. `largest`: as LocalPlex has it, by cell.
-struct WholePlex {
-  TetMesh mesh;
-  std::vector<double> largest;
-  Labelling labelling;
+/// What one rank has, halved where it is larger than it may be, with numbers that do not depend on how
+/// cells and vertices were distributed and numbered, as long as no two vertices have one place: vertices
+/// stand in the order of their coordinates, cells in that of their vertices.
+struct Arrangement {
+  mpi::RankArrays arrays;  ///< labels and regions are those of `labelling`
+  Labelling labelling;     ///< the same on all ranks
 };
-WholePlex put_together(const std::vector<LocalPlex>& parts);
+/// All take part.
+Arrangement arrange(mpi::Comm& comm, LocalPlex mine);
 
-/// The same in parts: each rank gives what it has, and none has the whole. Vertices and cells have the order
-/// of put_together(). Throws InvalidInput for what a mesh in parts cannot have.
-Labelling put_in_parts(mpi::DistributedMesh& mesh, const LocalPlex& mine);
+/// The mesh of what all ranks have, on rank 0; an empty one elsewhere. All take part.
+TetMesh put_together(mpi::Comm& comm, const mpi::RankArrays& mine);
 
 /// What one rank gives of a new DMPlex.
 struct NewPlex {
-  std::uint64_t n_vertices = 0;  ///< over all ranks
-  /// Of its share of them, by number: ranks have about as many each.
+  /// Of its share of all vertices, by number: ranks have about as many each.
   std::vector<Vec3> points;
   std::vector<std::array<std::uint64_t, 4>> cells;  ///< numbers of their vertices
   std::vector<std::int32_t> regions;                ///< by cell, or none
-  /// Values of faces, edges and vertices of these cells.
-  std::vector<mpi::LabelRecord> labels;
+  std::vector<mpi::LabelRecord> labels;             ///< of faces, edges and vertices of these cells
 };
 NewPlex new_plex(const TetMesh& mesh);         ///< all of it
 NewPlex new_plex(mpi::DistributedMesh& mesh);  ///< the cells of each rank; all take part
 
-/// Halves cells by their longest edge until none is larger than `largest` allows. Neighbours are halved where
-/// their longest edge is the one (M.-C. Rivara, Mesh refinement processes based on the generalized bisection
-/// of simplices, SIAM J. Numer. Anal. 21, 1984).
-void bisect(TetMesh& mesh, const std::vector<double>& largest);
-
 /// The new DMPlex, interpolated and with labels, on the ranks of `old`; collective. `mine`: what each rank
-/// gives, maybe nothing; `labelling`: what its values stand for, names of labels on every rank.
+/// gives, maybe nothing; `labelling`: what its values stand for, the same on all ranks.
 PetscErrorCode write_plex(DM old, const NewPlex& mine, const Labelling& labelling, DM* out);
 
 /// The adaptor: DMGenerateRegister() takes it. `metric`: nullptr, or it is refused; with one the labels would

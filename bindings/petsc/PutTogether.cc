@@ -1,153 +1,64 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <map>
-#include <numeric>
-#include <set>
-#include <utility>
+#include <tuple>
+#include <vector>
 
 #include "Plex.hh"
-#include "Tuples.hh"
 #include "hfremesh/HalfFace/Errors.hh"
 
 namespace hfr::petsc {
-namespace {
 
-using Place = Index;
-using Point = Tuple<Place>;
+using mpi::LabelRecord;
 
-/// What place a vertex of the DMPlex has among the vertices of the mesh.
-struct Places {
+TetMesh put_together(mpi::Comm& comm, const mpi::RankArrays& mine) {
+  std::vector<mpi::Packer> to(comm.n_ranks());
+  mpi::Packer& out = to[0];
+  out.put_all(mine.vertex_number);
+  out.put_all(mine.points);
+  out.put_all(mine.cell_number);
+  out.put_all(mine.cells);
+  out.put_all(mine.regions);
+  out.put_all(mine.labels);
   std::vector<Vec3> points;
-  std::vector<Index> place;
-
-  Point at(const std::array<std::int64_t, 4>& numbers, int n) const {
-    Point v;
-    v.fill(kNone<Place>);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-      HFR_REQUIRE(numbers[i] >= 0 && static_cast<std::size_t>(numbers[i]) < place.size(),
-                  "the DMPlex names a vertex that no rank has");
-      v[i] = place[static_cast<std::size_t>(numbers[i])];
+  std::vector<std::array<Index, 4>> cells;
+  std::vector<int> regions;
+  std::vector<LabelRecord> labels;
+  for (const mpi::Comm::Message& message : comm.exchange(to)) {
+    mpi::Unpacker in(message.bytes);
+    const auto put = [](auto& all, std::uint64_t number, const auto& value) {
+      if (number >= all.size()) all.resize(static_cast<std::size_t>(number) + 1);
+      all[static_cast<std::size_t>(number)] = value;
+    };
+    const auto vertex_numbers = in.get_all<std::uint64_t>();
+    const auto its_points = in.get_all<Vec3>();
+    for (std::size_t i = 0; i < vertex_numbers.size(); ++i) put(points, vertex_numbers[i], its_points[i]);
+    const auto cell_numbers = in.get_all<std::uint64_t>();
+    const auto its_cells = in.get_all<std::array<std::uint64_t, 4>>();
+    const auto its_regions = in.get_all<std::int32_t>();
+    for (std::size_t c = 0; c < cell_numbers.size(); ++c) {
+      std::array<Index, 4> corners{};
+      std::ranges::transform(its_cells[c], corners.begin(),
+                             [](std::uint64_t v) { return static_cast<Index>(v); });
+      put(cells, cell_numbers[c], corners);
+      put(regions, cell_numbers[c], its_regions[c]);
     }
-    return v;
+    const auto its_labels = in.get_all<LabelRecord>();
+    labels.insert(labels.end(), its_labels.begin(), its_labels.end());
   }
-};
-
-Places place_vertices(const std::vector<LocalPlex>& parts) {
-  std::vector<std::pair<std::array<double, 3>, std::int64_t>> order;
-  for (const LocalPlex& part : parts)
-    for (std::size_t i = 0; i < part.n_own; ++i)
-      order.push_back({{part.points[i].x, part.points[i].y, part.points[i].z}, part.numbers[i]});
-  std::sort(order.begin(), order.end());
-  Places places;
-  places.place.assign(order.size(), kNone<Place>);
-  for (const auto& [x, number] : order) {
-    HFR_REQUIRE(number >= 0 && static_cast<std::size_t>(number) < order.size(),
-                "the DMPlex numbers a vertex beyond their number");
-    places.place[static_cast<std::size_t>(number)] = static_cast<Index>(places.points.size());
-    places.points.push_back({x[0], x[1], x[2]});
+  if (comm.rank() != 0) return {};
+  TetMesh mesh = build(std::move(points), cells);
+  for (std::size_t c = 0; c < regions.size(); ++c)
+    if (regions[c] != 0) mesh.set_region(CellHandle(c), regions[c]);
+  std::ranges::sort(labels, {}, [](const LabelRecord& r) { return std::tuple(r.kind, r.key()); });
+  for (const LabelRecord& r : labels) {
+    const VertexHandle a(r.v[0]), b(r.v[1]), c(r.v[2]);
+    if (r.kind == LabelRecord::Kind::kFace) mesh.labels().faces.set({a, b, c}, r.value);
+    if (r.kind == LabelRecord::Kind::kEdge) mesh.labels().edges.set({a, b}, r.value);
+    if (r.kind != LabelRecord::Kind::kVertex) continue;
+    mesh.labels().vertices.resize(mesh.n_vertices(), 0);
+    mesh.labels().vertices[a.idx()] = r.value;
   }
-  return places;
-}
-
-/// Points with a value of one label.
-using Marks = std::set<std::pair<Point, int>>;
-
-bool has_any(const Marks& marks, const Point& point) {
-  const auto at = marks.lower_bound({point, std::numeric_limits<int>::min()});
-  return at != marks.end() && at->first == point;
-}
-
-bool is_closed(const Marks& marks) {
-  bool has_inner = false;
-  for (const auto& [point, value] : marks)
-    for (const Point& face : faces_of(point)) {
-      has_inner = true;
-      if (!has_any(marks, face)) return false;
-    }
-  return has_inner;
-}
-
-/// Without what is part of the closure of another one with the same value.
-Marks without_closures(const Marks& marks) {
-  Marks implied, left;
-  for (const auto& [point, value] : marks)
-    for (const Point& face : faces_of(point)) implied.insert({face, value});
-  std::set_difference(marks.begin(), marks.end(), implied.begin(), implied.end(),
-                      std::inserter(left, left.end()));
-  return left;
-}
-
-/// All values of each point, by label.
-std::map<Point, std::vector<Labelling::Value>> values_of(const std::vector<LocalPlex>& parts,
-                                                         const Places& places, Labelling& labelling) {
-  std::map<std::string, Marks> by_name;
-  for (const LocalPlex& part : parts) {
-    for (const std::string& name : part.names) by_name[name];
-    for (const Mark& m : part.marks)
-      by_name[part.names.at(static_cast<std::size_t>(m.label))].insert(
-          {point_of(places.at(m.v, m.n)), m.value});
-  }
-  std::map<Point, std::vector<Labelling::Value>> values;
-  for (auto& [name, marks] : by_name) {
-    const bool closed = is_closed(marks);
-    const auto label = static_cast<int>(labelling.labels.size());
-    labelling.labels.push_back({name, closed});
-    for (const auto& [point, value] : closed ? without_closures(marks) : marks)
-      values[point].push_back({label, value});
-  }
-  return values;
-}
-
-/// Gives the points their numbers: regions of cells, labels of faces, edges and vertices.
-void attach(const std::map<Point, std::vector<Labelling::Value>>& values, const std::vector<Point>& cells,
-            WholePlex& whole) {
-  std::map<std::vector<Labelling::Value>, int> numbers;
-  for (const auto& [point, set] : values) numbers[set] = 0;
-  for (auto& [set, number] : numbers) {
-    whole.labelling.values.push_back(set);
-    number = static_cast<int>(whole.labelling.values.size());
-  }
-  TetMesh& mesh = whole.mesh;
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    if (const auto at = values.find(point_of(cells[c])); at != values.end())
-      mesh.set_region(CellHandle(c), numbers.at(at->second));
-  for (const auto& [point, set] : values) {
-    const VertexHandle a(point[0]), b(point[1]), c(point[2]);
-    switch (n_vertices(point)) {
-      case 1:
-        mesh.labels().vertices.resize(mesh.n_vertices(), 0);
-        mesh.labels().vertices[a.idx()] = numbers.at(set);
-        break;
-      case 2:
-        mesh.labels().edges.set({a, b}, numbers.at(set));
-        break;
-      case 3:
-        mesh.labels().faces.set({a, b, c}, numbers.at(set));
-        break;
-      default:  // cells are done
-        break;
-    }
-  }
-}
-
-}  // namespace
-
-WholePlex put_together(const std::vector<LocalPlex>& parts) {
-  const Places places = place_vertices(parts);
-  std::vector<std::pair<Point, double>> ordered;
-  for (const LocalPlex& part : parts)
-    for (std::size_t c = 0; c < part.cells.size(); ++c)
-      ordered.push_back({turned(places.at(part.cells[c], 4)), part.largest[c]});
-  std::sort(ordered.begin(), ordered.end());
-  WholePlex whole;
-  std::vector<Point> cells;
-  for (const auto& [v, largest] : ordered) {
-    cells.push_back(v);
-    whole.largest.push_back(largest);
-  }
-  whole.mesh = build(places.points, cells);
-  attach(values_of(parts, places, whole.labelling), cells, whole);
-  return whole;
+  return mesh;
 }
 
 }  // namespace hfr::petsc

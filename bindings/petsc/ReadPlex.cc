@@ -13,8 +13,8 @@ struct Points {
   DM dm = nullptr;
   PetscInt begin[4] = {}, end[4] = {};  ///< by dimension
   PetscInt first = 0;                   ///< of the chart
-  std::vector<char> is_other;           ///< of the chart: another rank has the point
-  std::vector<std::int64_t> number;     ///< of the vertices of this rank, over all ranks
+  std::vector<std::uint8_t> is_other;   ///< of the chart: another rank has the point
+  std::vector<std::uint8_t> is_shared;  ///< of the chart: more than one rank know of it
 
   bool is_mine(PetscInt p) const { return !is_other[static_cast<std::size_t>(p - first)]; }
 };
@@ -65,9 +65,7 @@ PetscErrorCode require_tetrahedra(DM dm) {
 PetscErrorCode find_points(DM dm, Points* out) {
   PetscSF sf = nullptr;
   PetscInt end = 0, n_roots = 0, n_leaves = 0;
-  const PetscInt* leaves = nullptr;
-  IS numbers = nullptr;
-  const PetscInt* number = nullptr;
+  const PetscInt *leaves = nullptr, *n_copies = nullptr;
 
   PetscFunctionBegin;
   out->dm = dm;
@@ -78,20 +76,22 @@ PetscErrorCode find_points(DM dm, Points* out) {
   PetscCall(PetscSFGetGraph(sf, &n_roots, &n_leaves, &leaves, nullptr));
   for (PetscInt i = 0; i < n_leaves; ++i)  // -1 leaves where nothing is shared
     out->is_other[static_cast<std::size_t>((leaves ? leaves[i] : i) - out->first)] = 1;
-  PetscCall(DMPlexGetVertexNumbering(dm, &numbers));
-  PetscCall(ISGetIndices(numbers, &number));
-  for (PetscInt v = 0; v < out->end[0] - out->begin[0]; ++v)
-    out->number.push_back(number[v] < 0 ? -(number[v] + 1) : number[v]);
-  PetscCall(ISRestoreIndices(numbers, &number));
+  out->is_shared = out->is_other;
+  if (n_roots >= 0) {
+    PetscCall(PetscSFComputeDegreeBegin(sf, &n_copies));
+    PetscCall(PetscSFComputeDegreeEnd(sf, &n_copies));
+    for (PetscInt p = 0; p < n_roots; ++p)
+      if (n_copies[p] > 0) out->is_shared[static_cast<std::size_t>(p - out->first)] = 1;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /// What there is to know of a point from its closure.
 struct Closure {
-  std::array<std::int64_t, 4> v = {};  ///< numbers of its vertices, in the order in which PETSc has them
-  int n = 0;                           ///< of them
-  bool is_to_refine = false;           ///< a point of it is marked DM_ADAPT_REFINE
-  int unknown = DM_ADAPT_KEEP;         ///< a flag of a point of it that is none of PETSc's
+  std::array<Index, 4> v = {};  ///< its vertices, in the order in which PETSc has them
+  int n = 0;                    ///< of them
+  bool is_to_refine = false;    ///< a point of it is marked DM_ADAPT_REFINE
+  int unknown = DM_ADAPT_KEEP;  ///< a flag of a point of it that is none of PETSc's
 };
 
 /// `marks` may be nullptr.
@@ -109,8 +109,7 @@ PetscErrorCode look_at(const Points& points, PetscInt p, DMLabel marks, Closure*
     if (flag < DM_ADAPT_DETERMINE || flag > DM_ADAPT_COARSEN) out->unknown = static_cast<int>(flag);
     out->is_to_refine = out->is_to_refine || flag == DM_ADAPT_REFINE;
     if (q >= points.begin[0] && q < points.end[0] && out->n < 4)
-      out->v[static_cast<std::size_t>(out->n++)] =
-          points.number[static_cast<std::size_t>(q - points.begin[0])];
+      out->v[static_cast<std::size_t>(out->n++)] = static_cast<Index>(q - points.begin[0]);
   }
   PetscCall(DMPlexRestoreTransitiveClosure(points.dm, p, PETSC_TRUE, &size, &closure));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -120,21 +119,24 @@ PetscErrorCode read_vertices(const Points& points, LocalPlex* out) {
   PetscSection section = nullptr;
   Vec coordinates = nullptr;
   const PetscScalar* x = nullptr;
+  IS numbers = nullptr;
+  const PetscInt* number = nullptr;
 
   PetscFunctionBegin;
   PetscCall(DMGetCoordinateSection(points.dm, &section));
   PetscCall(DMGetCoordinatesLocal(points.dm, &coordinates));
+  PetscCall(DMPlexGetVertexNumbering(points.dm, &numbers));
   PetscCall(VecGetArrayRead(coordinates, &x));
-  for (bool own : {true, false}) {
-    for (PetscInt v = points.begin[0]; v < points.end[0]; ++v) {
-      PetscInt at = 0;
-      if (points.is_mine(v) != own) continue;
-      PetscCall(PetscSectionGetOffset(section, v, &at));
-      out->numbers.push_back(points.number[static_cast<std::size_t>(v - points.begin[0])]);
-      out->points.push_back({PetscRealPart(x[at]), PetscRealPart(x[at + 1]), PetscRealPart(x[at + 2])});
-    }
-    if (own) out->n_own = out->points.size();
+  PetscCall(ISGetIndices(numbers, &number));
+  for (PetscInt v = points.begin[0]; v < points.end[0]; ++v) {
+    const PetscInt global = number[v - points.begin[0]];  // -1 - n of others' ones
+    PetscInt at = 0;
+    PetscCall(PetscSectionGetOffset(section, v, &at));
+    out->numbers.push_back(global < 0 ? -(global + 1) : global);
+    out->points.push_back({PetscRealPart(x[at]), PetscRealPart(x[at + 1]), PetscRealPart(x[at + 2])});
+    out->is_shared.push_back(points.is_shared[static_cast<std::size_t>(v - points.first)]);
   }
+  PetscCall(ISRestoreIndices(numbers, &number));
   PetscCall(VecRestoreArrayRead(coordinates, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

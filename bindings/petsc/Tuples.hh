@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -11,46 +12,43 @@
 /// Points of a mesh (cells, faces, edges, vertices) by the places of their vertices.
 namespace hfr::petsc {
 
-/// kNone after the last.
-template <class Place>
-using Tuple = std::array<Place, 4>;
-template <class Place>
+using Place = std::uint64_t;
+using Tuple = std::array<Place, 4>;  ///< kNone after the last
 inline constexpr Place kNone = std::numeric_limits<Place>::max();
 
 /// Vertices in ascending order.
-template <class Place>
-Tuple<Place> point_of(Tuple<Place> v) {
+inline Tuple point_of(Tuple v) {
   std::sort(v.begin(), v.end());
   return v;
 }
 
-template <class Place>
-int n_vertices(const Tuple<Place>& point) {
-  return static_cast<int>(std::find(point.begin(), point.end(), kNone<Place>) - point.begin());
+inline int n_vertices(const Tuple& point) {
+  return static_cast<int>(std::find(point.begin(), point.end(), kNone) - point.begin());
 }
 
 /// The points that bound a point: its vertices but one.
-template <class Place>
-std::vector<Tuple<Place>> faces_of(const Tuple<Place>& point) {
-  std::vector<Tuple<Place>> faces;
+inline std::vector<Tuple> faces_of(const Tuple& point) {
+  std::vector<Tuple> faces;
   const int n = n_vertices(point);
   for (int i = 0; n > 1 && i < n; ++i) {
-    Tuple<Place> face = point;
-    face[static_cast<std::size_t>(i)] = kNone<Place>;
+    Tuple face = point;
+    face[static_cast<std::size_t>(i)] = kNone;
     faces.push_back(point_of(face));
   }
   return faces;
 }
 
-/// The same four vertices, the smallest first, then the smallest of the others, by even permutations alone.
-template <class Place>
-Tuple<Place> turned(Tuple<Place> v) {
-  const auto smallest = static_cast<std::size_t>(std::min_element(v.begin(), v.end()) - v.begin());
-  if (smallest > 0) {
-    std::swap(v[0], v[smallest]);
-    std::swap(v[smallest], v[smallest == 3 ? 2 : 3]);
+/// The same four things, the one of the smallest place first, then that of the smallest of the others, by
+/// even permutations alone.
+template <class T, class PlaceOf>
+std::array<T, 4> turned(std::array<T, 4> v, PlaceOf&& place_of) {
+  const auto smallest = [&](auto begin) { return std::ranges::min_element(begin, v.end(), {}, place_of); };
+  const auto first = static_cast<std::size_t>(smallest(v.begin()) - v.begin());
+  if (first > 0) {
+    std::swap(v[0], v[first]);
+    std::swap(v[first], v[first == 3 ? 2 : 3]);
   }
-  std::rotate(v.begin() + 1, std::min_element(v.begin() + 1, v.end()), v.end());
+  std::rotate(v.begin() + 1, smallest(v.begin() + 1), v.end());
   return v;
 }
 

@@ -142,7 +142,6 @@ PetscErrorCode distribute(DM old, DM* dm) {
 NewPlex new_plex(const TetMesh& mesh) {
   using mpi::LabelRecord;
   NewPlex all;
-  all.n_vertices = mesh.n_vertices();
   all.points.assign(mesh.points().begin(), mesh.points().end());
   for (CellHandle c : mesh.cells()) {
     auto& corners = all.cells.emplace_back();

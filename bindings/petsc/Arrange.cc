@@ -1,59 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What put_together() does on one rank, without it: vertices and cells get their places from an order over
-// all ranks, and what is to be known of a point with a label is known on a rank that its vertices choose.
+// Vertices and cells get their places from an order over all ranks, and what is to be known of a point with a
+// label is known on a rank that its vertices choose.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
-#include <unordered_map>
+#include <tuple>
 #include <utility>
 
+#include "Bisect.hh"
 #include "Plex.hh"
 #include "Tuples.hh"
 #include "hfremesh/Distributed/Order.hh"
-#include "hfremesh/Distributed/RankArrays.hh"
 #include "hfremesh/HalfFace/Errors.hh"
+#include "hfremesh/HalfFace/TupleMap.hh"
 
 namespace hfr::petsc {
 namespace {
 
 using mpi::Comm;
 using mpi::LabelRecord;
-using Place = std::uint64_t;
-using Point = Tuple<Place>;
 using Values = std::vector<Labelling::Value>;
 
-/// Places of this rank's vertices among those of all: by coordinates, then by their numbers.
-class Places {
- public:
-  Places(Comm& comm, const LocalPlex& mine) {
-    std::vector<mpi::OrderKey> keys;
-    keys.reserve(mine.points.size());
-    for (std::size_t i = 0; i < mine.points.size(); ++i) {
-      const Vec3& p = mine.points[i];
-      keys.push_back({mpi::ordered_bits(p.x), mpi::ordered_bits(p.y), mpi::ordered_bits(p.z),
-                      static_cast<std::uint64_t>(mine.numbers[i])});
-    }
-    places_ = mpi::places_in_order(comm, keys);
-    for (std::size_t i = 0; i < places_.size(); ++i) of_number_.emplace(mine.numbers[i], places_[i]);
-  }
+/// Of vertices among those of all ranks: by coordinates, and where these are equal by `ties`.
+std::vector<Place> places_of(Comm& comm, const std::vector<Vec3>& points,
+                             const std::vector<std::uint64_t>& ties) {
+  std::vector<mpi::OrderKey> keys;
+  keys.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    keys.push_back({mpi::ordered_bits(points[i].x), mpi::ordered_bits(points[i].y),
+                    mpi::ordered_bits(points[i].z), ties[i]});
+  return mpi::places_in_order(comm, keys);
+}
 
-  const std::vector<Place>& all() const { return places_; }
-  Point at(const std::array<std::int64_t, 4>& numbers, int n) const {
-    Point v;
-    v.fill(kNone<Place>);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(n); ++i) {
-      const auto found = of_number_.find(numbers[i]);
-      HFR_REQUIRE(found != of_number_.end(), "the DMPlex names a vertex that no rank has");
-      v[i] = found->second;
-    }
-    return v;
-  }
-
- private:
-  std::vector<Place> places_;
-  std::unordered_map<std::int64_t, Place> of_number_;
-};
+/// The places of the first n of these vertices.
+Tuple tuple_of(const std::vector<Place>& places, std::span<const Index> v) {
+  Tuple tuple;
+  tuple.fill(kNone);
+  std::ranges::transform(v, tuple.begin(), [&](Index i) { return places[i]; });
+  return tuple;
+}
 
 /// The names of all ranks, in alphabetical order.
 std::vector<std::string> common_names(Comm& comm, const std::vector<std::string>& mine) {
@@ -71,11 +59,11 @@ std::vector<std::string> common_names(Comm& comm, const std::vector<std::string>
 
 /// A point with a value of a label, or one that bounds such a point.
 struct Item {
-  Point point;
+  Tuple point;
   std::int32_t label = 0, value = 0;
   std::uint8_t bounds = 0;
 
-  std::tuple<Point, int> place() const { return {point, label}; }
+  std::tuple<Tuple, int> place() const { return {point, label}; }
 };
 
 /// Of the points that came to one rank: which labels are closed as far as it sees, and which items another
@@ -100,28 +88,28 @@ class Home {
   }
 
  private:
-  std::map<std::tuple<Point, int>, std::set<int>> marked_, implied_;
+  std::map<std::tuple<Tuple, int>, std::set<int>> marked_, implied_;
 };
 
 /// Fills in the names of labels and whether they are closed. Returns the values of this rank's points that
 /// are kept as constraints.
-std::map<Point, Values> values_of(Comm& comm, const LocalPlex& mine, const Places& places,
+std::map<Tuple, Values> values_of(Comm& comm, const LocalPlex& mine, const std::vector<Place>& places,
                                   Labelling& labelling) {
   const std::vector<std::string> names = common_names(comm, mine.names);
   std::vector<std::int32_t> label_of;  // by own name
   for (const std::string& name : mine.names)
     label_of.push_back(static_cast<std::int32_t>(std::ranges::lower_bound(names, name) - names.begin()));
-  const auto home_of = [&](const Point& point) {
+  const auto home_of = [&](const Tuple& point) {
     std::uint64_t hash = 0;
     for (Place v : point) hash = mix64(hash ^ v);
     return hash % comm.n_ranks();
   };
   std::vector<std::vector<Item>> items(comm.n_ranks());
   for (const Mark& mark : mine.marks) {
-    const Item item{point_of(places.at(mark.v, mark.n)), label_of[static_cast<std::size_t>(mark.label)],
-                    mark.value, 0};
+    const Item item{point_of(tuple_of(places, std::span(mark.v).first(static_cast<std::size_t>(mark.n)))),
+                    label_of[static_cast<std::size_t>(mark.label)], mark.value, 0};
     items[home_of(item.point)].push_back(item);
-    for (const Point& face : faces_of(item.point))
+    for (const Tuple& face : faces_of(item.point))
       items[home_of(face)].push_back({face, item.label, item.value, 1});
   }
   std::vector<std::uint8_t> is_closed(names.size(), 0);
@@ -140,7 +128,7 @@ std::map<Point, Values> values_of(Comm& comm, const LocalPlex& mine, const Place
     return answers;
   });
   for (std::size_t l = 0; l < names.size(); ++l) labelling.labels.push_back({names[l], is_closed[l] != 0});
-  std::map<Point, Values> values;
+  std::map<Tuple, Values> values;
   for (std::size_t r = 0; r < items.size(); ++r)
     for (std::size_t i = 0; i < items[r].size(); ++i) {
       const Item& item = items[r][i];
@@ -156,7 +144,7 @@ std::map<Point, Values> values_of(Comm& comm, const LocalPlex& mine, const Place
 }
 
 /// Numbers from 1 on for the sets of all ranks.
-std::map<Values, int> number_sets(Comm& comm, const std::map<Point, Values>& values, Labelling& labelling) {
+std::map<Values, int> number_sets(Comm& comm, const std::map<Tuple, Values>& values, Labelling& labelling) {
   std::set<Values> mine, all;
   for (const auto& [point, set] : values) mine.insert(set);
   mpi::Packer out;
@@ -171,46 +159,85 @@ std::map<Values, int> number_sets(Comm& comm, const std::map<Point, Values>& val
   return numbers;
 }
 
-LabelRecord::Kind kind_of(int n_vertices) {
-  return n_vertices == 1   ? LabelRecord::Kind::kVertex
-         : n_vertices == 2 ? LabelRecord::Kind::kEdge
-                           : LabelRecord::Kind::kFace;
+/// What a rank has, by its indices of vertices, as it is before anything is halved.
+Simplices simplices_of(Comm& comm, LocalPlex& mine, const std::vector<Place>& places, Labelling& labelling,
+                       std::vector<std::int32_t>& vertex_values) {
+  const std::map<Tuple, Values> values = values_of(comm, mine, places, labelling);
+  const std::map<Values, int> numbers = number_sets(comm, values, labelling);
+  const auto value_at = [&](const Tuple& v) {
+    const auto at = values.find(point_of(v));
+    return at == values.end() ? 0 : numbers.at(at->second);
+  };
+  Simplices out;
+  for (Place place : places) out.ids.push_back({0, place});
+  out.points = std::move(mine.points);
+  out.is_shared = std::move(mine.is_shared);
+  out.cells.reserve(mine.cells.size());
+  for (std::size_t c = 0; c < mine.cells.size(); ++c) {
+    Simplices::Cell& cell = out.cells.emplace_back();
+    cell.v = turned(mine.cells[c], [&](Index v) { return places[v]; });
+    cell.value = value_at(tuple_of(places, cell.v));
+    cell.largest = mine.largest[c];
+    if (cell.largest == kRefine) cell.largest = volume_of(out, cell) / 8;
+  }
+  vertex_values.assign(out.points.size(), 0);
+  std::set<Tuple> done;
+  for (const Mark& mark : mine.marks) {
+    const Tuple v = tuple_of(places, std::span(mark.v).first(static_cast<std::size_t>(mark.n)));
+    const int value = value_at(v);
+    if (value == 0 || mark.n == 4 || !done.insert(point_of(v)).second) continue;
+    if (mark.n == 3) out.faces.push_back({{mark.v[0], mark.v[1], mark.v[2]}, value});
+    if (mark.n == 2) out.edges.push_back({{mark.v[0], mark.v[1]}, value});
+    if (mark.n == 1) vertex_values[mark.v[0]] = value;
+  }
+  return out;
 }
 
-/// Gives points their values: regions of cells, labels of the others.
-void attach(const std::map<Point, Values>& values, const std::map<Values, int>& numbers,
-            mpi::RankArrays& arrays) {
-  for (const auto& [point, set] : values) {
-    const int n = n_vertices(point);
-    if (n == 4) continue;
-    LabelRecord r;
-    r.kind = kind_of(n);
-    std::copy_n(point.begin(), n, r.v.begin());
-    r.value = numbers.at(set);
-    arrays.labels.push_back(r);
-  }
-  for (const Point& cell : arrays.cells) {
-    const auto at = values.find(point_of(cell));
-    arrays.regions.push_back(at == values.end() ? 0 : numbers.at(at->second));
+template <std::size_t N>
+void add_labels(const std::vector<Simplices::Labelled<N>>& items, const std::vector<Place>& places,
+                LabelRecord::Kind kind, std::vector<LabelRecord>& labels) {
+  LabelRecord r;
+  r.kind = kind;
+  for (const auto& item : items) {
+    std::ranges::transform(item.v, r.v.begin(), [&](Index i) { return places[i]; });
+    r.value = item.value;
+    labels.push_back(r);
   }
 }
 
 }  // namespace
 
-Labelling put_in_parts(mpi::DistributedMesh& mesh, const LocalPlex& mine) {
-  Comm& comm = mesh.comm();
-  const Places places(comm, mine);
-  mpi::RankArrays arrays;
-  arrays.vertex_number = places.all();
-  arrays.points = mine.points;
-  arrays.cells.reserve(mine.cells.size());
-  for (const auto& cell : mine.cells) arrays.cells.push_back(turned(places.at(cell, 4)));
+Arrangement arrange(Comm& comm, LocalPlex mine) {
+  for (const Vec3& p : mine.points)  // halving would come to no end
+    HFR_REQUIRE(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z),
+                "a coordinate of the DMPlex is not a finite number");
+  Arrangement arranged;
+  std::vector<std::uint64_t> ties(mine.numbers.begin(), mine.numbers.end());
+  std::vector<Place> places = places_of(comm, mine.points, ties);
+  std::vector<std::int32_t> vertex_values;
+  Simplices simplices = simplices_of(comm, mine, places, arranged.labelling, vertex_values);
+  mine = {};
+  const std::size_t n_before = simplices.points.size();
+  bisect(comm, simplices);
+  for (std::size_t v = n_before; v < simplices.points.size(); ++v) ties.push_back(simplices.ids[v].a);
+  if (comm.sum(simplices.points.size() - n_before) > 0) places = places_of(comm, simplices.points, ties);
+
+  mpi::RankArrays& arrays = arranged.arrays;
+  add_labels(simplices.faces, places, LabelRecord::Kind::kFace, arrays.labels);
+  add_labels(simplices.edges, places, LabelRecord::Kind::kEdge, arrays.labels);
+  LabelRecord r;
+  for (std::size_t v = 0; v < vertex_values.size(); ++v)
+    if (r.v[0] = places[v], r.value = vertex_values[v]; r.value != 0) arrays.labels.push_back(r);
+  arrays.cells.reserve(simplices.cells.size());
+  for (const Simplices::Cell& c : simplices.cells) {
+    arrays.cells.push_back(turned(tuple_of(places, c.v), [](Place place) { return place; }));
+    arrays.regions.push_back(c.value);
+  }
+  simplices.cells = {};
+  arrays.vertex_number = std::move(places);
+  arrays.points = std::move(simplices.points);
   arrays.cell_number = mpi::places_in_order(comm, arrays.cells);
-  Labelling labelling;
-  const std::map<Point, Values> values = values_of(comm, mine, places, labelling);
-  attach(values, number_sets(comm, values, labelling), arrays);
-  mpi::from_arrays(mesh, arrays);
-  return labelling;
+  return arranged;
 }
 
 NewPlex new_plex(mpi::DistributedMesh& mesh) {
@@ -219,14 +246,12 @@ NewPlex new_plex(mpi::DistributedMesh& mesh) {
   std::uint64_t n_own = 0;
   for (int owner : arrays.owner) n_own += owner == comm.rank() ? 1 : 0;
   NewPlex mine;
-  mine.n_vertices = comm.sum(n_own);
-  const auto begin = [&](std::uint64_t r) {
-    return (r * mine.n_vertices + comm.n_ranks() - 1) / comm.n_ranks();
-  };
+  const std::uint64_t n_vertices = comm.sum(n_own);
+  const auto begin = [&](std::uint64_t r) { return (r * n_vertices + comm.n_ranks() - 1) / comm.n_ranks(); };
   std::vector<mpi::Packer> to(comm.n_ranks());
   for (std::size_t i = 0; i < arrays.points.size(); ++i) {
     if (arrays.owner[i] != comm.rank()) continue;
-    mpi::Packer& out = to[arrays.vertex_number[i] * comm.n_ranks() / mine.n_vertices];
+    mpi::Packer& out = to[arrays.vertex_number[i] * comm.n_ranks() / n_vertices];
     out.put(arrays.vertex_number[i]);
     out.put(arrays.points[i]);
   }
