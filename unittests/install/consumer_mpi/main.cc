@@ -5,7 +5,9 @@
 #include <hfremesh/Distributed/Buffer.hh>
 #include <hfremesh/Distributed/Comm.hh>
 #include <hfremesh/Distributed/Improve.hh>
+#include <hfremesh/Distributed/Order.hh>
 #include <hfremesh/Distributed/Partition.hh>
+#include <hfremesh/Distributed/RankArrays.hh>
 #include <hfremesh/HalfFace/Generate.hh>
 
 #if __has_include(<Distributed/Improve.hh>)

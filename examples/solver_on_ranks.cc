@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A solver on several ranks whose mesh moves: each rank has its cells and their points as arrays, a swirl
+// carries the inner vertices along, and all ranks repair the mesh where it has to be, without any of them
+// having the whole. Prints a line a step; ends with 1 where a step has left an inverted cell or an angle
+// below the goal. Usage: mpirun -n 2 example_solver_on_ranks [N STEPS]     6 N³ cells (16)
+#include <mpi.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <hfremesh/Distributed/InParts.hh>
+#include <hfremesh/Distributed/RankArrays.hh>
+#include <hfremesh/HalfFace/Generate.hh>
+#include <map>
+#include <numbers>
+
+namespace {
+
+using hfr::Vec3;
+using hfr::mpi::RankArrays;
+
+constexpr double kGoal = 12;  // degrees
+
+/// A slab of a cube: cells of this rank, with the points that they need, numbered as in the whole.
+RankArrays slab(hfr::Index n, int rank, int n_ranks) {
+  const hfr::generate::Arrays cube = hfr::generate::box({n, n, n});
+  const std::size_t n_cells = cube.cells.size(), size = static_cast<std::size_t>(n_ranks);
+  RankArrays mine;
+  std::map<std::uint64_t, Vec3> points;
+  for (std::size_t c = 0; c < n_cells; ++c) {
+    if (static_cast<int>(c * size / n_cells) != rank) continue;
+    auto& corners = mine.cells.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      corners[k] = cube.cells[c][k];
+      points[corners[k]] = cube.points[cube.cells[c][k]];
+    }
+  }
+  for (const auto& [number, point] : points) {
+    mine.vertex_number.push_back(number);
+    mine.points.push_back(point);
+  }
+  return mine;  // without numbers of cells: they are given in the order of ranks
+}
+
+/// A step along a swirl that leaves the surface of the cube where it is.
+Vec3 moved(Vec3 p, double dt) {
+  constexpr double kPi = std::numbers::pi;
+  const auto hump = [](double t) { return std::sin(kPi * t) * std::sin(kPi * t); };
+  const double speed = dt * hump(p.z);
+  return {p.x + speed * hump(p.x) * std::sin(2 * kPi * p.y),
+          p.y - speed * std::sin(2 * kPi * p.x) * hump(p.y), p.z};
+}
+
+bool run(hfr::mpi::Comm& comm, hfr::Index n, int n_steps) {
+  hfr::ImproveOptions options;
+  options.min_dihedral = kGoal;
+  options.policy.threads = 1;  // a core for each rank
+  options.statistics = false;
+  RankArrays arrays = slab(n, comm.rank(), comm.size());
+  bool is_good = true;
+  for (int step = 1; step <= n_steps; ++step) {
+    for (Vec3& p : arrays.points) p = moved(p, 0.02);
+    hfr::mpi::DistributedMesh mesh(comm);
+    hfr::mpi::from_arrays(mesh, arrays);
+    const hfr::mpi::PartsResult result = hfr::mpi::improve(mesh, options);
+    arrays = hfr::mpi::own_arrays(mesh);  // what the solver goes on with
+    is_good = is_good && result.goal_reached;
+    if (comm.rank() == 0)
+      std::printf("step %2d: %llu cells, smallest angle %5.2f, now %5.2f\n", step,
+                  static_cast<unsigned long long>(result.after.n_cells), result.before.min_dihedral,
+                  result.after.min_dihedral);
+  }
+  return is_good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int level = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
+  const auto argument = [&](int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; };
+  int code = 0;
+  {
+    hfr::mpi::Comm comm(MPI_COMM_WORLD);
+    try {
+      code = run(comm, static_cast<hfr::Index>(argument(1, 16)), argument(2, 20)) ? 0 : 1;
+    } catch (const hfr::mpi::RankFailed& failed) {
+      code = failed.code();
+    } catch (const std::exception& error) {  // the other ranks end, too
+      const hfr::mpi::RankFailed failed = comm.fail(2, error.what());
+      code = failed.code();
+      std::fprintf(stderr, "%s\n", failed.what());
+    }
+  }
+  MPI_Finalize();
+  return code;
+}
