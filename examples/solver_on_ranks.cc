@@ -8,8 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <hfremesh/Distributed/InParts.hh>
-#include <hfremesh/Distributed/RankArrays.hh>
+#include <hfremesh/Distributed/Remesher.hh>
 #include <hfremesh/HalfFace/Generate.hh>
 #include <map>
 #include <numbers>
@@ -19,7 +18,7 @@ namespace {
 using hfr::Vec3;
 using hfr::mpi::RankArrays;
 
-constexpr double kGoal = 12;  // degrees
+constexpr double kTrigger = 10, kGoal = 15;  // degrees
 
 /// A slab of a cube: cells of this rank, with the points that they need, numbered as in the whole.
 RankArrays slab(hfr::Index n, int rank, int n_ranks) {
@@ -42,33 +41,30 @@ RankArrays slab(hfr::Index n, int rank, int n_ranks) {
   return mine;  // without numbers of cells: they are given in the order of ranks
 }
 
-/// A step along a swirl that leaves the surface of the cube where it is.
-Vec3 moved(Vec3 p, double dt) {
-  constexpr double kPi = std::numbers::pi;
+/// The displacement of a point in a step, along a swirl that leaves the surface of the cube where it is.
+Vec3 displacement(Vec3 p) {
+  constexpr double kPi = std::numbers::pi, kStep = 0.02;
   const auto hump = [](double t) { return std::sin(kPi * t) * std::sin(kPi * t); };
-  const double speed = dt * hump(p.z);
-  return {p.x + speed * hump(p.x) * std::sin(2 * kPi * p.y),
-          p.y - speed * std::sin(2 * kPi * p.x) * hump(p.y), p.z};
+  const double speed = kStep * hump(p.z);
+  return {speed * hump(p.x) * std::sin(2 * kPi * p.y), -speed * std::sin(2 * kPi * p.x) * hump(p.y), 0};
 }
 
 bool run(hfr::mpi::Comm& comm, hfr::Index n, int n_steps) {
-  hfr::ImproveOptions options;
-  options.min_dihedral = kGoal;
-  options.policy.threads = 1;  // a core for each rank
-  options.statistics = false;
-  RankArrays arrays = slab(n, comm.rank(), comm.size());
+  hfr::RemesherOptions options;
+  options.improve.min_dihedral = kGoal;
+  options.improve.policy.threads = 1;  // a core for each rank
+  options.triggers.min_dihedral = kTrigger;
+  hfr::mpi::Remesher remesher(comm, slab(n, comm.rank(), comm.size()), options);
   bool is_good = true;
   for (int step = 1; step <= n_steps; ++step) {
-    for (Vec3& p : arrays.points) p = moved(p, 0.02);
-    hfr::mpi::DistributedMesh mesh(comm);
-    hfr::mpi::from_arrays(mesh, arrays);
-    const hfr::mpi::PartsResult result = hfr::mpi::improve(mesh, options);
-    arrays = hfr::mpi::own_arrays(mesh);  // what the solver goes on with
-    is_good = is_good && result.goal_reached;
+    const RankArrays mine = remesher.arrays();  // what the solver goes on with: its cells, points and numbers
+    std::vector<Vec3> displacements;
+    for (const Vec3& p : mine.points) displacements.push_back(displacement(p));
+    const hfr::mpi::PartsStep done = remesher.step(displacements);
+    is_good = is_good && done.n_inverted == 0 && done.min_dihedral >= kTrigger;
     if (comm.rank() == 0)
-      std::printf("step %2d: %llu cells, smallest angle %5.2f, now %5.2f\n", step,
-                  static_cast<unsigned long long>(result.after.n_cells), result.before.min_dihedral,
-                  result.after.min_dihedral);
+      std::printf("step %2d: smallest angle %5.2f%s\n", step, done.min_dihedral,
+                  done.changed ? ", repaired: other cells now" : "");
   }
   return is_good;
 }

@@ -107,7 +107,7 @@ void CellWatch::update(CellHandle c, double value) {
   quality_[i] = value;
   bad_[i] = badness(c);
   unsigned excused = excused_[i] & bad_[i];
-  if (value < kStepEffort.much_worse * left_[i])
+  if (kStepEffort.is_much_worse(value, left_[i]))
     excused &= ~static_cast<unsigned>(kIsBelow | kHasMetric | kIsSqueezed);
   excused_[i] = static_cast<std::uint8_t>(excused);
 }

@@ -35,6 +35,8 @@ double mean_edge(const TetMesh& mesh) {
   return sum / (6.0 * static_cast<double>(std::max<std::size_t>(mesh.n_logical_cells(), 1)));
 }
 
+}  // namespace
+
 void validate(const RemesherOptions& options) {
   hfr::validate(options.improve);
   const RepairTriggers& triggers = options.triggers;
@@ -55,8 +57,6 @@ void validate(const RemesherOptions& options) {
                 "trigger min_dihedral: must not be above the goal, or every step would repair");
 }
 
-}  // namespace
-
 class Remesher::State {
  public:
   State(TetMesh& mesh, RemesherOptions options)
@@ -71,10 +71,7 @@ class Remesher::State {
                                  [](const FieldTransfer& field) { return field.how == Transfer::kInherit; });
     options_.improve.maps = true;
     options_.improve.statistics = false;
-    const std::size_t n = mesh.n_logical_cells();
-    if (options_.improve.min_cells == 0) options_.improve.min_cells = n * kStepEffort.fewest_of_hundred / 100;
-    if (options_.improve.max_cells == 0)
-      options_.improve.max_cells = (n * kStepEffort.most_of_hundred + 99) / 100;
+    kStepEffort.bound(options_.improve, mesh.n_logical_cells());
     reset();
     prepare();
   }

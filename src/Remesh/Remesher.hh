@@ -113,6 +113,9 @@ struct RemesherOptions {
   RemesherOptions() { improve.min_dihedral = 15; }
 };
 
+/// Throws InvalidInput, with a line, for options out of range.
+void validate(const RemesherOptions& options);
+
 /// Moves a mesh, looks at what has moved, repairs what is bad, and carries fields over. The mesh belongs to
 /// the caller and outlives this object. Between calls its points may be read, its fields written; whoever
 /// changes its points, connectivity or regions himself calls reset() after that.

@@ -82,6 +82,16 @@ struct StepEffort {
   /// Cells that the mesh is held to, of 100 that it had, where the caller gives no bounds: those of a run
   /// alone let the turning body lose a third of its cells in 40 steps.
   std::size_t fewest_of_hundred = 82, most_of_hundred = 118;
+
+  /// Than the value that a repair has left, which may be that of an inverted cell.
+  bool is_much_worse(double value, double left) const {
+    return value < (left > 0 ? much_worse * left : left / much_worse);
+  }
+  /// The bounds where the caller gives none.
+  void bound(ImproveOptions& options, std::size_t n_cells) const {
+    if (options.min_cells == 0) options.min_cells = n_cells * fewest_of_hundred / 100;
+    if (options.max_cells == 0) options.max_cells = (n_cells * most_of_hundred + 99) / 100;
+  }
 };
 inline constexpr StepEffort kStepEffort;
 
