@@ -374,6 +374,21 @@ TetMesh flat_cell() {
                std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
 }
 
+/// Whether the others move or not: a value below 0 is no worse for being looked at again.
+TEST(Remesher, AnInvertedCellThatIsLeftCallsForNoOtherWhereInversionIsNoTrigger) {
+  TetMesh mesh = built(generate::box({1, 1, 1}));
+  mesh.set_point(V(0), {1.2, 1.2, 1.2});  // all six cells have it, and none can be mended
+  ASSERT_GT(inverted_cells(mesh), 0U);
+  RemesherOptions options = options_for();
+  options.triggers.inverted = false;
+  Remesher remesher(mesh, options);
+  const std::vector<Vec3> all(mesh.n_vertices(), {0.5, 0.25, 0.125});  // no angle changes by it
+  EXPECT_EQ(remesher.step(all).cause, RepairCause::kAngle);
+  ASSERT_GT(remesher.n_inverted(), 0U);
+  EXPECT_EQ(remesher.step(std::vector<Vec3>(mesh.n_vertices(), {0.5, 0.25, 0.125})).cause,
+            RepairCause::kNone);
+}
+
 TEST(Remesher, WhatAMetricHadToLeaveCallsAgainWhenItIsWorse) {
   for (const bool of_volume : {false, true}) {
     TetMesh mesh = flat_cell();
