@@ -378,7 +378,7 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> fresh) {
   open_gaps(to, n, std::uint32_t{0}, work_.star_size);
   open_gaps(to, n, std::uint32_t{0}, work_.changed);
   open_gaps(to, n, std::uint8_t{0}, work_.frozen);
-  for (RankSets* sets : {&near1_, &near2_, &told_}) sets->open_gaps(to, n);
+  for (RankSets* sets : {&near1_, &near2_, &told_}) open_gaps(to, n, RankSets::kEmpty, sets->ids());
   for (auto* list : {&dirty_, &renewed_})
     for (VertexHandle& v : *list) v = to[v.idx()];
   marks_.assign(n, 0);

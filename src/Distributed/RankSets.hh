@@ -2,12 +2,17 @@
 #ifndef HFR_DISTRIBUTED_RANK_SETS_HH
 #define HFR_DISTRIBUTED_RANK_SETS_HH
 
+#include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "hfremesh/HalfFace/Handles.hh"
+#include "hfremesh/HalfFace/TupleMap.hh"
 
 namespace hfr::mpi {
 
@@ -19,61 +24,92 @@ void for_ranks(std::span<const std::uint64_t> set, Visit&& visit) {
       visit(static_cast<int>(64 * w) + std::countr_zero(bits));
 }
 
-/// A set of ranks for each of many things: a bit a rank.
+/// A set of ranks for each of many things. Few sets are different: each is kept once, a bit a rank, and a
+/// thing has its number, which is 4 bytes for any number of ranks. Sets that no thing has any more stay.
 class RankSets {
  public:
+  using Id = std::uint32_t;
+  static constexpr Id kEmpty = 0;
+
   RankSets() = default;
   RankSets(std::size_t n, int n_ranks)
-      : words_((static_cast<std::size_t>(n_ranks) + 63) / 64), bits_(n * words_, 0) {}
+      : words_((static_cast<std::size_t>(n_ranks) + 63) / 64), ids_(n, kEmpty), sets_(words_, 0) {}
 
   std::size_t words() const { return words_; }
+  /// The same for equal sets of this object alone.
+  Id id(std::size_t i) const { return ids_[i]; }
+  /// Until a set is changed.
   std::span<const std::uint64_t> operator[](std::size_t i) const {
-    return {bits_.data() + i * words_, words_};
+    return {sets_.data() + ids_[i] * words_, words_};
   }
-  bool has(std::size_t i, int rank) const {
-    return (bits_[i * words_ + static_cast<std::size_t>(rank) / 64] >> (rank % 64) & 1) != 0;
-  }
+  bool has(std::size_t i, int rank) const { return (word_of((*this)[i], rank) >> (rank % 64) & 1) != 0; }
   bool is_only(std::size_t i, int rank) const {
+    const auto set = (*this)[i];
     bool others = false;
-    for (std::size_t w = 0; w < words_; ++w) {
-      const std::uint64_t mine =
-          w == static_cast<std::size_t>(rank) / 64 ? std::uint64_t{1} << (rank % 64) : 0;
-      others = others || (bits_[i * words_ + w] & ~mine) != 0;
-    }
+    for (std::size_t w = 0; w < words_; ++w)
+      others = others || (set[w] & ~(w == static_cast<std::size_t>(rank) / 64 ? bit(rank) : 0)) != 0;
     return !others;
   }
   /// One more at the end.
-  void append_only(int rank) {
-    bits_.resize(bits_.size() + words_, 0);
-    add(bits_.size() / words_ - 1, rank);
-  }
-  /// As open_gaps() of HalfFace/Writer.hh, with empty sets between.
-  void open_gaps(std::span<const VertexHandle> to, std::size_t n) {
-    bits_.resize(n * words_, 0);
-    std::size_t i = to.size();
-    for (std::size_t place = n; place-- > 0;) {
-      const bool is_old = i > 0 && to[i - 1].idx() == place;
-      if (is_old && --i == place) return;
-      for (std::size_t w = 0; w < words_; ++w) bits_[place * words_ + w] = is_old ? bits_[i * words_ + w] : 0;
-    }
-  }
-  void set_only(std::size_t i, int rank) {
-    for (std::size_t w = 0; w < words_; ++w) bits_[i * words_ + w] = 0;
-    add(i, rank);
-  }
+  void append_only(int rank) { ids_.push_back(only(rank)); }
+  /// By thing, for whoever moves things; kEmpty is that of the empty set.
+  std::vector<Id>& ids() { return ids_; }
+  void set_only(std::size_t i, int rank) { ids_[i] = only(rank); }
   void add(std::size_t i, int rank) {
-    bits_[i * words_ + static_cast<std::size_t>(rank) / 64] |= std::uint64_t{1} << (rank % 64);
+    if (has(i, rank)) return;
+    start_from(i);
+    scratch_[static_cast<std::size_t>(rank) / 64] |= bit(rank);
+    ids_[i] = number();
   }
+  /// `set`: none of this object.
   void add(std::size_t i, std::span<const std::uint64_t> set) {
-    for (std::size_t w = 0; w < words_; ++w) bits_[i * words_ + w] |= set[w];
+    bool has_all = true;
+    const auto mine = (*this)[i];
+    for (std::size_t w = 0; w < words_; ++w) has_all = has_all && (set[w] & ~mine[w]) == 0;
+    if (has_all) return;
+    start_from(i);
+    for (std::size_t w = 0; w < words_; ++w) scratch_[w] |= set[w];
+    ids_[i] = number();
   }
   void set(std::size_t i, std::span<const std::uint64_t> set) {
-    for (std::size_t w = 0; w < words_; ++w) bits_[i * words_ + w] = set[w];
+    scratch_.assign(set.begin(), set.end());
+    ids_[i] = number();
   }
 
  private:
+  static std::uint64_t bit(int rank) { return std::uint64_t{1} << (rank % 64); }
+  static std::uint64_t word_of(std::span<const std::uint64_t> set, int rank) {
+    return set[static_cast<std::size_t>(rank) / 64];
+  }
+  void start_from(std::size_t i) { scratch_.assign((*this)[i].begin(), (*this)[i].end()); }
+  Id only(int rank) {
+    if (rank == last_only_.first) return last_only_.second;
+    scratch_.assign(words_, 0);
+    scratch_[static_cast<std::size_t>(rank) / 64] = bit(rank);
+    last_only_ = {rank, number()};
+    return last_only_.second;
+  }
+  /// Of the set in scratch_, which is not empty.
+  Id number() {
+    std::uint64_t hash = 0;
+    for (std::uint64_t word : scratch_) hash = mix64(hash ^ word);
+    const auto [begin, end] = numbers_.equal_range(hash);
+    for (auto at = begin; at != end; ++at)
+      if (std::equal(scratch_.begin(), scratch_.end(),
+                     sets_.begin() + static_cast<std::ptrdiff_t>(at->second * words_)))
+        return at->second;
+    const auto id = static_cast<Id>(sets_.size() / words_);
+    sets_.insert(sets_.end(), scratch_.begin(), scratch_.end());
+    numbers_.emplace(hash, id);
+    return id;
+  }
+
   std::size_t words_ = 1;
-  std::vector<std::uint64_t> bits_;
+  std::vector<Id> ids_;                                 // by thing
+  std::vector<std::uint64_t> sets_ = {0};               // by number; the first is empty
+  std::unordered_multimap<std::uint64_t, Id> numbers_;  // by hash, of all but the empty one
+  std::pair<int, Id> last_only_ = {-1, kEmpty};
+  std::vector<std::uint64_t> scratch_;
 };
 
 /// One set by itself.

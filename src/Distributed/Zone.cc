@@ -84,11 +84,10 @@ std::vector<Index> DistributedMesh::zone_round(std::span<const VertexHandle> ver
 template <class Fill>
 std::vector<VertexHandle> DistributedMesh::renew(RankSets& sets, std::span<const VertexHandle> vertices,
                                                  std::span<const Index> cells, Fill&& fill) {
-  const std::size_t words = sets.words();
-  std::vector<std::uint64_t> before;
-  before.reserve(vertices.size() * words);
+  std::vector<RankSets::Id> before;
+  before.reserve(vertices.size());
   for (VertexHandle v : vertices) {
-    before.insert(before.end(), sets[v.idx()].begin(), sets[v.idx()].end());
+    before.push_back(sets.id(v.idx()));
     sets.set_only(v.idx(), owner(v));
     marks_[v.idx()] = 1;
   }
@@ -101,10 +100,7 @@ std::vector<VertexHandle> DistributedMesh::renew(RankSets& sets, std::span<const
   for (VertexHandle v : vertices) marks_[v.idx()] = 0;
   std::vector<VertexHandle> others;
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    if (!std::equal(before.begin() + static_cast<std::ptrdiff_t>(i * words),
-                    before.begin() + static_cast<std::ptrdiff_t>((i + 1) * words),
-                    sets[vertices[i].idx()].begin()))
-      others.push_back(vertices[i]);
+    if (sets.id(vertices[i].idx()) != before[i]) others.push_back(vertices[i]);
   return others;
 }
 
