@@ -46,11 +46,8 @@ void work_together(mpi::Comm& comm, const mpi::RankArrays& mine, const ImproveOp
 }
 
 /// What the whole is put together for nevertheless; empty where it can stay in parts.
-std::string reason_against_parts(mpi::Comm& comm, const mpi::RankArrays& mine,
-                                 const ImproveOptions& options) {
-  if (comm.size() == 1) return "one rank";
-  if (comm.sum(mine.cells.empty() ? 0 : 1) <= 1) return "one rank has all cells";
-  return mpi::reason_against(options);
+std::string reason_against_parts(const mpi::Comm& comm, const ImproveOptions& options) {
+  return comm.size() == 1 ? "one rank" : mpi::reason_against(options);
 }
 
 /// What fails on one rank ends on all of them: with the code of PETSc, as RankFailed.
@@ -72,7 +69,7 @@ std::string work_in_parts(MPI_Comm on, const mpi::RankArrays& mine, const Improv
   mpi::Comm comm(on);
   mpi::DistributedMesh mesh(comm);
   try {
-    with_all(comm, [&] { mpi::from_arrays(mesh, mine); });
+    with_all(comm, [&] { mpi::from_arrays(mesh, mine, mpi::Keep::kIfEven); });
   } catch (const mpi::RankFailed& failed) {
     if (failed.code() != PETSC_ERR_ARG_WRONG) throw;
     return failed.what();
@@ -96,7 +93,7 @@ Outcome run(MPI_Comm on, LocalPlex mine, const ImproveOptions& options) {
       outcome.n_cells_before = comm.sum(mine.cells.size());
       arranged = arrange(comm, std::move(mine));
       outcome.labelling = std::move(arranged.labelling);
-      outcome.why_together = reason_against_parts(comm, arranged.arrays, options);
+      outcome.why_together = reason_against_parts(comm, options);
     });
     // With messages of its own: after a refusal they begin anew.
     if (outcome.why_together.empty())

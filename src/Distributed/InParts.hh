@@ -112,10 +112,11 @@ std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesyst
                                       const io::WriteOptions& options = {});
 
 /// What write_pvtu() has written, by any number of ranks: piece i is read by rank i mod n, and points that
-/// several ranks have belong to the one with most of their cells. Throws InvalidInput where pieces have no
-/// "number", numbers have gaps, or there are other elements than tetrahedra, triangles and edges; IoError
-/// where a file is missing. Labels, names and fixed vertices come along; returns the names of other arrays,
-/// which are left out, of the pieces that this rank has read.
+/// several ranks have belong to the one with most of their cells; parts are cut anew where these are uneven,
+/// as when there are more ranks than pieces. Throws InvalidInput where pieces have no "number", numbers have
+/// gaps, or there are other elements than tetrahedra, triangles and edges; IoError where a file is missing.
+/// Labels, names and fixed vertices come along; returns the names of other arrays, which are left out, of the
+/// pieces that this rank has read.
 std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// One file, of which each rank reads a range of the points and one of the elements, and none the whole: .vtu
 /// whose arrays are raw appended data, as write_vtu() and io::write() make it; .mesh, .meshb, and .msh as

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "Distributed/CurveOwners.hh"
 #include "HalfFace/Errors.hh"
 
 namespace hfr::mpi {
@@ -317,6 +318,19 @@ void Incoming::send_labels(Incoming& to) {
     const auto came = Unpacker(message.bytes).get_all<LabelRecord>();
     to.labels_.insert(to.labels_.end(), came.begin(), came.end());
   }
+}
+
+void Incoming::even_out() {
+  constexpr double kUneven = 1.5;
+  std::uint64_t n_own = 0;
+  for (const PointRecord& p : points_) n_own += p.owner == comm_.rank() ? 1 : 0;
+  const double most = -comm_.min(-static_cast<double>(n_own));
+  if (most * static_cast<double>(comm_.n_ranks()) <= kUneven * static_cast<double>(n_points_)) return;
+  std::vector<Index> own;  // each point once in the sample
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (points_[i].owner == comm_.rank()) own.push_back(static_cast<Index>(i));
+  const CurveOwners owner(comm_, own.size(), [&](std::size_t i) { return points_[own[i]].point; });
+  for (PointRecord& p : points_) p.owner = owner(p.point);
 }
 
 void Incoming::hand_to_owners(Incoming& to) {

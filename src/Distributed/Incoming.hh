@@ -45,6 +45,9 @@ class Incoming {
   /// The rank that has most cells of a point owns it, the first of several. Each rank answers for a range of
   /// numbers; that it has seen all of them says that there are no gaps. All take part.
   void find_owners();
+  /// After that: where a rank owns half as many points again as all do on average, points get other owners,
+  /// by where they lie: about as many each. All take part.
+  void even_out();
   /// For whoever has given points their owners: what the whole has.
   void set_size(std::uint64_t n_points, std::uint64_t n_cells) {
     n_points_ = n_points;

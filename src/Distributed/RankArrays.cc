@@ -103,7 +103,7 @@ void add_labels(Comm& comm, const RankArrays& arrays, Incoming& incoming) {
 
 }  // namespace
 
-std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays) {
+std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays, Keep keep) {
   Comm& comm = mesh.comm();
   const Comm::InPhase phase(comm, Phase::kHandOut);
   require_sound(arrays);
@@ -113,6 +113,7 @@ std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& ar
     incoming.add(PointRecord{arrays.vertex_number[i], arrays.points[i], comm.rank()});
   add_cells(comm, arrays, incoming);
   incoming.find_owners();
+  if (keep == Keep::kIfEven) incoming.even_out();
   add_labels(comm, arrays, incoming);
   incoming.hand_to_owners(incoming);
   return incoming.make_parts(mesh, "the arrays");

@@ -26,6 +26,12 @@ struct RankArrays {
   std::vector<LabelRecord> labels;
 };
 
+/// Whether cells stay on the ranks that give them.
+enum class Keep : std::uint8_t {
+  kAlways,
+  kIfEven,  ///< unless a rank gets half as many vertices again as all do on average: then parts are cut anew
+};
+
 /// Makes the parts of what the ranks have. A point may come from several ranks, with the same coordinates: of
 /// those, the one that gives most of its cells owns it. A cell is given by one rank, which gives its points
 /// as well. `owner` and the numbers of labels are not looked at: these have the order of ranks, then that of
@@ -34,7 +40,8 @@ struct RankArrays {
 /// other lengths, numbers that have gaps or come twice, points that are not finite or differ between ranks,
 /// cells and labels whose points are not given, and for what a mesh in parts cannot have
 /// (docs/distributed.md).
-std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays);
+std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays,
+                                     Keep keep = Keep::kAlways);
 
 /// The cells that belong to this rank, in the order of their numbers, with their points, and points of this
 /// rank that no cell has, in the order of theirs. Labels: what hangs on these points, and on edges and faces

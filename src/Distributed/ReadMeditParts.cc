@@ -423,6 +423,7 @@ std::vector<std::string> read_medit_parts(DistributedMesh& mesh, const std::file
     notes = parts.notes();
   }
   incoming.find_owners();
+  incoming.even_out();
   incoming.hand_to_owners(incoming);
   // What lies between parts is in the files of all of them: that it comes several times is no news.
   incoming.make_parts(mesh, path);

@@ -150,6 +150,7 @@ std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem:
     for (std::string& note : read_piece(pieces[i], mesh.comm().rank(), incoming, names))
       if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
   incoming.find_owners();
+  incoming.even_out();
   incoming.hand_to_owners(incoming);
   for (std::string& note : incoming.make_parts(mesh, path)) notes.push_back(std::move(note));
   const auto all = mesh.comm().all_gather(std::span<const char>(names.data(), names.size()));

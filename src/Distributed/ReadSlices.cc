@@ -10,12 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "Distributed/CommonBox.hh"
+#include "Distributed/CurveOwners.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/Incoming.hh"
-#include "Distributed/Stretches.hh"
 #include "HalfFace/Errors.hh"
-#include "HalfFace/Reorder.hh"
 #include "IO/MeshShare.hh"
 
 namespace hfr::mpi {
@@ -37,26 +35,6 @@ class Slices {
 
  private:
   std::span<const std::uint64_t> begins_;
-};
-
-CurveGrid common_grid(Comm& comm, const std::vector<Vec3>& mine) {
-  const Box box = common_box(comm, mine.size(), [&](std::size_t i) { return mine[i]; });
-  return {SpaceCurve::kHilbert, box.low, box.high};
-}
-
-/// Who owns what: stretches of Hilbert's curve through the box of all points, about as many points on each.
-class CurveOwners {
- public:
-  /// `mine`: the points that this rank has read. All take part.
-  CurveOwners(Comm& comm, const std::vector<Vec3>& mine)
-      : grid_(common_grid(comm, mine)),
-        stretches_(comm, mine.size(), [&](std::size_t i) { return grid_.place(mine[i]); }) {}
-
-  std::int32_t operator()(Vec3 p) const { return stretches_.rank_of(grid_.place(p)); }
-
- private:
-  CurveGrid grid_;
-  Stretches<> stretches_;
 };
 
 /// Cells on their way: a range of them at a time goes to the owners of its vertices, whose points and owners
@@ -145,7 +123,7 @@ class ShareReader {
 
   std::vector<PointRecord> points() {
     const io::SharePoints read = share_.points();
-    const CurveOwners owner(comm_, read.points);
+    const CurveOwners owner(comm_, read.points.size(), [&](std::size_t i) { return read.points[i]; });
     std::vector<PointRecord> records;
     records.reserve(read.points.size());
     std::uint64_t number = read.first;

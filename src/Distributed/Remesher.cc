@@ -141,7 +141,7 @@ void Remesher::rebuild(const RankArrays& arrays) {
   if (mesh_) names = std::move(mesh_->part().labels().names);
   mesh_.reset();
   mesh_ = std::make_unique<DistributedMesh>(comm_);
-  from_arrays(*mesh_, arrays);
+  from_arrays(*mesh_, arrays, Keep::kIfEven);
   mesh_->part().labels().names = std::move(names);
   points_.clear();
   for (std::uint64_t number : own_arrays(*mesh_).vertex_number) points_.push_back(mesh_->vertex_at(number));

@@ -43,7 +43,8 @@ std::string reason_against(const RemesherOptions& options);
 /// ids, and what mpi::improve() does not have. A step looks at all cells of a rank.
 class Remesher {
  public:
-  /// Of what from_arrays() takes, which says what it throws.
+  /// Of what from_arrays() takes, which says what it throws. Here and after each repair that has changed
+  /// something, cells stay where they are if parts are even (Keep::kIfEven).
   Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options = {});
   ~Remesher();
   Remesher(const Remesher&) = delete;

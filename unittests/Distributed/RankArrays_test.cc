@@ -219,6 +219,29 @@ TEST(RankArrays, CellsStayWhereTheyAreInside) {
   }
 }
 
+/// Where one rank gives everything, as when pieces are fewer than ranks, each gets its share; the bytes stay.
+TEST(RankArrays, UnevenPartsAreCutAnew) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const io::MeshData data = io::disassemble(valid_box(8, 0.2, 1));
+  const RankArrays given = arrays_of(data, comm.rank(), [](std::size_t) { return 0; });
+  const auto n_own = [](mpi::DistributedMesh& mesh) { return mpi::own_arrays(mesh).cells.size(); };
+  mpi::DistributedMesh kept(comm), even(comm), read(comm);
+  mpi::from_arrays(kept, given);
+  EXPECT_EQ(n_own(kept), given.cells.size());
+  mpi::from_arrays(even, given, mpi::Keep::kIfEven);
+  EXPECT_GE(2 * comm.n_ranks() * n_own(even), data.cells.size());
+  mpi::write_pvtu(kept, folder.path() / "one.pvtu");
+  mpi::read_pvtu(read, folder.path() / "one.pvtu");
+  EXPECT_GE(2 * comm.n_ranks() * n_own(read), data.cells.size());
+  EXPECT_TRUE(mpi::check(read).is_good);
+  for (mpi::DistributedMesh* mesh : {&kept, &even, &read}) {
+    mpi::write_vtu(*mesh, folder.path() / (mesh == &kept ? "kept.vtu" : "cut.vtu"));
+    EXPECT_TRUE(mesh == &kept || bytes_of(folder.path() / "kept.vtu") == bytes_of(folder.path() / "cut.vtu"));
+    comm.sum(0);
+  }
+}
+
 TEST(RankArrays, WhatDoesNotFitIsRefusedInALine) {
   const io::MeshData data = io::disassemble(valid_box(3, 0.2, 1));
   const auto refusal = [&](auto&& spoil) {
