@@ -11,7 +11,7 @@ case ${HFR_WERROR:-0} in 1 | ON | on | true) werror=ON ;; esac
 "$root/scripts/install-deps.sh" --petsc
 cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DHFR_MPI=ON -DHFR_PETSC=ON -DHFR_TESTS=ON \
   -DHFR_WERROR=$werror > /dev/null
-cmake --build "$build" --target hfremesh_petsc test_petsc example_petsc_adapt_label hfremesh_tool hfremesh_mpi_tool \
+cmake --build "$build" --target hfremesh_petsc test_petsc example_petsc_adapt_label example_petsc_adapt_metric hfremesh_tool hfremesh_mpi_tool \
   hfremesh_petsc_tool hfremesh_c hfremesh_manual --parallel "$("$root/scripts/jobs.sh")"
 ctest --test-dir "$build" --output-on-failure -R '^(petsc\.|install\.(prefix|petsc))'
 echo "petsc: the library for -dll_prepend is $build/bindings/petsc/libhfremesh_petsc.so"

@@ -138,7 +138,7 @@ PetscErrorCode read_options(DM dm, ImproveOptions* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode adapt_by(DM dm, DMLabel marks, DM* out) {
+PetscErrorCode adapt_by(DM dm, Vec metric, DMLabel marks, DM* out) {
   MPI_Comm comm = MPI_COMM_NULL;
   LocalPlex mine;
   ImproveOptions options;
@@ -146,7 +146,7 @@ PetscErrorCode adapt_by(DM dm, DMLabel marks, DM* out) {
   PetscFunctionBegin;
   PetscCall(PetscObjectGetComm(reinterpret_cast<PetscObject>(dm), &comm));
   PetscCall(read_options(dm, &options));
-  PetscCall(read_plex(dm, marks, &mine));
+  PetscCall(read_plex(dm, metric, marks, &mine));
   const Outcome outcome = run(comm, std::move(mine), options);
   PetscCheck(outcome.code == 0, comm, static_cast<PetscErrorCode>(outcome.code), "hfremesh: %s",
              outcome.line.c_str());
@@ -161,13 +161,19 @@ PetscErrorCode adapt_by(DM dm, DMLabel marks, DM* out) {
 
 PetscErrorCode adapt(DM dm, Vec metric, DMLabel marks, DMLabel, DM* out) {
   PetscFunctionBegin;
-  PetscCheck(
-      !metric, PetscObjectComm(reinterpret_cast<PetscObject>(dm)), PETSC_ERR_SUP,
-      "hfremesh has no adaptation to a metric yet: DMAdaptLabel() refines cells and improves the mesh");
+  if (metric) {
+    PetscBool is_uniform = PETSC_FALSE, is_isotropic = PETSC_FALSE;
+    PetscCall(DMPlexMetricIsUniform(dm, &is_uniform));
+    PetscCall(DMPlexMetricIsIsotropic(dm, &is_isotropic));
+    PetscCheck(
+        is_uniform || is_isotropic, PetscObjectComm(reinterpret_cast<PetscObject>(dm)), PETSC_ERR_SUP,
+        "hfremesh adapts to sizes that are alike in all directions, and this metric may be another one: "
+        "DMPlexMetricCreateUniform() and DMPlexMetricCreateIsotropic() make such");
+  }
   std::string wrong;
   PetscErrorCode code = PETSC_SUCCESS;
   try {  // callers are written in C
-    code = adapt_by(dm, marks, out);
+    code = adapt_by(dm, metric, metric ? nullptr : marks, out);
   } catch (const std::exception& error) {
     wrong = error.what();
   }

@@ -172,6 +172,7 @@ Simplices simplices_of(Comm& comm, LocalPlex& mine, const std::vector<Place>& pl
   for (Place place : places) out.ids.push_back({0, place});
   out.points = std::move(mine.points);
   out.is_shared = std::move(mine.is_shared);
+  out.sizes = std::move(mine.sizes);
   out.cells.reserve(mine.cells.size());
   for (std::size_t c = 0; c < mine.cells.size(); ++c) {
     Simplices::Cell& cell = out.cells.emplace_back();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <span>
 #include <tuple>
@@ -80,10 +81,13 @@ class Bisection {
   std::pair<Index, bool> halve(Edge e) {
     const auto [at, is_new] = middle_.emplace(key(e), static_cast<Index>(mine_.points.size()));
     if (!is_new) return {at->second, false};
+    if (mine_.points.size() >= std::numeric_limits<Index>::max())
+      throw ResourceLimit("halving makes more vertices than an index can count on one rank");
     const IdPair id = ids(e);
     const VertexId middle = {mix64(id[0].a ^ mix64(id[1].a)), mix64(~id[0].b ^ mix64(~id[1].b))};
     mine_.points.push_back((mine_.points[e[0]] + mine_.points[e[1]]) * 0.5);
     mine_.ids.push_back(middle);
+    if (!mine_.sizes.empty()) mine_.sizes.push_back(size_between(e));
     mine_.is_shared.push_back(mine_.is_shared[e[0]] != 0 && mine_.is_shared[e[1]] != 0 ? 1 : 0);
     vertex_of_.emplace(middle, at->second);
     ++clock_;
@@ -93,8 +97,18 @@ class Bisection {
   }
 
   bool is_too_large(const Simplices::Cell& c) const {
-    return c.largest > 0 && volume_of(mine_, c) > kRounding * c.largest;
+    if (c.largest > 0 && volume_of(mine_, c) > kRounding * c.largest) return true;
+    for (std::size_t i = 0; i < 4 && !mine_.sizes.empty(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (is_too_long({c.v[i], c.v[j]})) return true;
+    return false;
   }
+  bool is_too_long(Edge e) const {
+    const Vec3 d = mine_.points[e[1]] - mine_.points[e[0]];
+    const double size = size_between(e);
+    return dot(d, d) > 2 * size * size;
+  }
+  double size_between(Edge e) const { return 0.5 * (mine_.sizes[e[0]] + mine_.sizes[e[1]]); }
   bool has_to_be_halved(std::size_t c) {
     if (is_too_large(mine_.cells[c])) return true;
     // Without an edge that was halved since it was looked at: those make both of its ends newer.

@@ -32,6 +32,7 @@ struct Simplices {
   std::vector<Vec3> points;
   std::vector<VertexId> ids;            ///< by vertex
   std::vector<std::uint8_t> is_shared;  ///< by vertex: other ranks may have it
+  std::vector<double> sizes;            ///< by vertex, or none: how long edges are to be
   std::vector<Cell> cells;              ///< each on one rank
   std::vector<Labelled<3>> faces;
   std::vector<Labelled<2>> edges;
@@ -39,8 +40,9 @@ struct Simplices {
 
 double volume_of(const Simplices& mine, const Simplices::Cell& c);
 
-/// Halves cells by their longest edge until none is larger than it may be, and whatever else has an edge that
-/// is halved, with it (M.-C. Rivara, Mesh refinement processes based on the generalized bisection of
+/// Halves cells by their longest edge until none is larger than it may be, nor has an edge longer than √2
+/// times the mean of the sizes at its ends, which is that of its middle, too; and whatever else has an edge
+/// that is halved, with it (M.-C. Rivara, Mesh refinement processes based on the generalized bisection of
 /// simplices, SIAM J. Numer. Anal. 21, 1984). Of edges of one length the one with the larger ids is the
 /// longer one. What comes of it does not depend on which rank has which cell. Edges that are halved between
 /// ranks go to all. All take part.

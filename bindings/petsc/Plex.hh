@@ -39,13 +39,16 @@ struct LocalPlex {
   std::vector<std::array<Index, 4>> cells;
   /// By cell: the largest volume that it may have; kKeep for any, kRefine for an eighth of what it has.
   std::vector<double> largest;
+  /// By vertex, or none: how long edges are to be there; those longer than √2 times that are halved.
+  std::vector<double> sizes;
   std::vector<std::string> names;  ///< of the labels
   std::vector<Mark> marks;
 };
 inline constexpr double kKeep = 0, kRefine = -1;
 
-/// `marks`: DM_ADAPT_REFINE and so on, not carried over; nullptr where the limits of the DM count.
-PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out);
+/// `metric`: of vertices, or nullptr; then `marks` count, DM_ADAPT_REFINE and so on, which are not carried
+/// over, or where these are nullptr, too, the limits of the DM.
+PetscErrorCode read_plex(DM dm, Vec metric, DMLabel marks, LocalPlex* out);
 
 /// Labels of a DMPlex as one number a point: what a mesh keeps. A number stands for a set of labels with
 /// values.
@@ -92,8 +95,8 @@ NewPlex new_plex(mpi::DistributedMesh& mesh);  ///< the cells of each rank; all 
 /// gives, maybe nothing; `labelling`: what its values stand for, the same on all ranks.
 PetscErrorCode write_plex(DM old, const NewPlex& mine, const Labelling& labelling, DM* out);
 
-/// The adaptor: DMGenerateRegister() takes it. `metric`: nullptr, or it is refused; with one the labels would
-/// be those that DMAdaptMetric() names.
+/// The adaptor: DMGenerateRegister() takes it. `metric`: of DMAdaptMetric(), with the labels that it names,
+/// which are carried over like all others; nullptr, then `marks` is the label of DMAdaptLabel().
 PetscErrorCode adapt(DM dm, Vec metric, DMLabel marks, DMLabel, DM* out);
 
 }  // namespace hfr::petsc

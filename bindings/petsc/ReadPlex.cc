@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <climits>
+#include <cmath>
 #include <cstring>
 #include <new>
 
@@ -157,8 +158,43 @@ PetscErrorCode refinement_limit(const Points& points, PetscInt c, double* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/// Of a metric that is alike in all directions, which is 1 / size² at each vertex, or at all. `wrong`: one is
+/// no positive number.
+PetscErrorCode read_sizes(const Points& points, Vec metric, LocalPlex* out, int* wrong) {
+  DM dm = nullptr;
+  PetscSection section = nullptr;
+  PetscBool is_uniform = PETSC_FALSE;
+  const PetscScalar* m = nullptr;
+  PetscInt n = 0;
+  double uniform = 0;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexMetricIsUniform(points.dm, &is_uniform));
+  if (!is_uniform) {
+    PetscCall(VecGetDM(metric, &dm));
+    PetscCheck(dm, PetscObjectComm(reinterpret_cast<PetscObject>(points.dm)), PETSC_ERR_ARG_WRONG,
+               "hfremesh: the metric is of no DM");
+    PetscCall(DMGetLocalSection(dm, &section));
+  }
+  PetscCall(VecGetLocalSize(metric, &n));
+  PetscCall(VecGetArrayRead(metric, &m));
+  if (n > 0) uniform = PetscRealPart(m[0]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &uniform, 1, MPI_DOUBLE, MPI_MAX,
+                             PetscObjectComm(reinterpret_cast<PetscObject>(points.dm))));
+  for (PetscInt v = points.begin[0]; v < points.end[0]; ++v) {
+    PetscInt at = 0;
+    if (!is_uniform) PetscCall(PetscSectionGetOffset(section, v, &at));
+    const double value = is_uniform ? uniform : at < n ? static_cast<double>(PetscRealPart(m[at])) : 0.0;
+    if (!(value > 0 && std::isfinite(value))) *wrong = 1;
+    out->sizes.push_back(1 / std::sqrt(value));
+  }
+  PetscCall(VecRestoreArrayRead(metric, &m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /// `unknown`: a flag of some point that is none of PETSc's.
-PetscErrorCode read_cells(const Points& points, DMLabel marks, LocalPlex* out, int* unknown) {
+PetscErrorCode read_cells(const Points& points, DMLabel marks, bool has_limits, LocalPlex* out,
+                          int* unknown) {
   PetscFunctionBegin;
   for (PetscInt c = points.begin[3]; c < points.end[3]; ++c) {
     Closure closure;
@@ -166,7 +202,7 @@ PetscErrorCode read_cells(const Points& points, DMLabel marks, LocalPlex* out, i
     if (!points.is_mine(c)) continue;
     PetscCall(look_at(points, c, marks, &closure));
     if (closure.unknown != DM_ADAPT_KEEP) *unknown = closure.unknown;
-    if (!marks) PetscCall(refinement_limit(points, c, &largest));
+    if (has_limits) PetscCall(refinement_limit(points, c, &largest));
     out->cells.push_back(closure.v);
     out->largest.push_back(closure.is_to_refine ? kRefine : largest);
   }
@@ -232,12 +268,12 @@ PetscErrorCode read_labels(const Points& points, DMLabel marks, LocalPlex* out) 
 
 }  // namespace
 
-PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out) {
+PetscErrorCode read_plex(DM dm, Vec metric, DMLabel marks, LocalPlex* out) {
   MPI_Comm comm = MPI_COMM_NULL;
   Points points;
   // What goes wrong on one rank ends all of them: a flag that is none, and no memory.
   struct {
-    int unknown = INT_MIN, no_memory = 0;
+    int unknown = INT_MIN, no_memory = 0, size = 0;
   } wrong;
 
   PetscFunctionBegin;
@@ -247,13 +283,16 @@ PetscErrorCode read_plex(DM dm, DMLabel marks, LocalPlex* out) {
   PetscCall(find_points(dm, &points));
   try {
     PetscCall(read_vertices(points, out));
-    PetscCall(read_cells(points, marks, out, &wrong.unknown));
+    if (metric) PetscCall(read_sizes(points, metric, out, &wrong.size));
+    PetscCall(read_cells(points, marks, !metric && !marks, out, &wrong.unknown));
     PetscCall(read_labels(points, marks, out));
   } catch (const std::bad_alloc&) {
     wrong.no_memory = 1;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 2, MPI_INT, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 3, MPI_INT, MPI_MAX, comm));
   PetscCheck(!wrong.no_memory, comm, PETSC_ERR_MEM, "hfremesh: not enough memory for the mesh");
+  PetscCheck(!wrong.size, comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "hfremesh: the metric has a value that is not above 0, or none at a vertex");
   PetscCheck(wrong.unknown == INT_MIN, comm, PETSC_ERR_SUP,
              "hfremesh knows DM_ADAPT_DETERMINE, KEEP, REFINE and COARSEN; a point has flag %d",
              wrong.unknown);

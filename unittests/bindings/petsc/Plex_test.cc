@@ -449,14 +449,90 @@ TEST(PetscAdaptor, WhatItDoesNotAdaptIsRefusedInALine) {
   EXPECT_THAT(refusal.line, HasSubstr("hfremesh adapts tetrahedra; there are cells of type hexahedron"));
 }
 
-TEST(PetscAdaptor, MetricsAndGenerationAreRefused) {
+double longest_edge(DM dm) {
+  double longest = 0;
+  for_own(dm, 1, [&](PetscInt e) { longest = std::max(longest, size_of(dm, e)); });
+  MPI_Allreduce(MPI_IN_PLACE, &longest, 1, MPI_DOUBLE, MPI_MAX, comm_of(dm));
+  return longest;
+}
+
+/// Edges become no longer than the metric asks for, about; sides keep their labels, and ranks do not matter.
+TEST(PetscAdaptor, UniformMetricsMakeEdgesShortEnough) {
+  constexpr double kSize = 0.15;
+  std::vector<std::uint64_t> fingerprints;
+  for (MPI_Comm comm : {PETSC_COMM_SELF, PETSC_COMM_WORLD}) {
+    const Plex before = cube(comm, regular());
+    Plex after;
+    Vec metric = nullptr;
+    ok(DMPlexMetricCreateUniform(before.get(), 0, 1 / (kSize * kSize), &metric));
+    ASSERT_EQ(DMAdaptMetric(before.get(), metric, label_of(before.get(), "sides"),
+                            label_of(before.get(), "halves"), after.out()),
+              0);
+    ok(VecDestroy(&metric));
+    ok(DMGetCoordinatesLocalSetUp(after.get()));
+    EXPECT_GT(longest_edge(before.get()), 0.4);
+    EXPECT_LT(longest_edge(after.get()), 1.3 * 1.4142 * kSize);
+    EXPECT_GT(n_cells(after.get()), 2000);
+    EXPECT_EQ(n_inverted(after.get()), 0);
+    for (const auto& [side, area] : sizes(after.get(), 2, "sides", 6)) EXPECT_NEAR(area, 1, 1e-12) << side;
+    for (const auto& [half, part] : sizes(after.get(), 3, "halves", 2)) EXPECT_NEAR(part, 0.5, 1e-12) << half;
+    fingerprints.push_back(fingerprint(after.get(), 3, "halves"));
+  }
+  EXPECT_EQ(fingerprints[0], fingerprints[1]);
+}
+
+/// As an indicator of an error asks for it: small cells at one corner of the cube.
+TEST(PetscAdaptor, IsotropicMetricsRefineWhereTheyAskForIt) {
+  const Plex before = cube(PETSC_COMM_WORLD, regular());
+  Plex after;
+  Vec indicator = nullptr, metric = nullptr;
+  DM scalar = nullptr;
+  PetscFE fe = nullptr;
+  ok(DMClone(before.get(), &scalar));
+  ok(PetscFECreateLagrange(PETSC_COMM_SELF, 3, 1, PETSC_TRUE, 1, PETSC_DETERMINE, &fe));
+  ok(DMSetField(scalar, 0, nullptr, reinterpret_cast<PetscObject>(fe)));
+  ok(DMCreateDS(scalar));
+  ok(PetscFEDestroy(&fe));
+  ok(DMCreateLocalVector(scalar, &indicator));
+  PetscErrorCode (*const size)(PetscInt, PetscReal, const PetscReal*, PetscInt, PetscScalar*, void*) =
+      [](PetscInt, PetscReal, const PetscReal* x, PetscInt, PetscScalar* u, void*) {
+        const double h = x[0] + x[1] + x[2] < 0.6 ? 0.1 : 1;
+        *u = 1 / (h * h);
+        return PetscErrorCode(0);
+      };
+  auto* function = size;
+  ok(DMProjectFunctionLocal(scalar, 0, &function, nullptr, INSERT_ALL_VALUES, indicator));
+  ok(DMPlexMetricCreateIsotropic(before.get(), 0, indicator, &metric));
+  ASSERT_EQ(DMAdaptMetric(before.get(), metric, nullptr, nullptr, after.out()), 0);
+  ok(DMGetCoordinatesLocalSetUp(after.get()));
+  const Flag far = [](const std::array<double, 3>& x) {
+    return std::max({x[0], x[1], x[2]}) > 0.8 ? PetscInt{DM_ADAPT_REFINE} : PetscInt{DM_ADAPT_KEEP};
+  };
+  const Flag near = [](const std::array<double, 3>& x) {
+    return x[0] + x[1] + x[2] < 0.5 ? PetscInt{DM_ADAPT_REFINE} : PetscInt{DM_ADAPT_KEEP};
+  };
+  EXPECT_GT(count(after.get(), near), 5 * count(before.get(), near));
+  EXPECT_LT(count(after.get(), far), 1.3 * count(before.get(), far));
+  EXPECT_EQ(n_inverted(after.get()), 0);
+  ok(VecSet(metric, -1));
+  Plex none;
+  const Refusal refusal =
+      refusal_of([&] { return DMAdaptMetric(before.get(), metric, nullptr, nullptr, none.out()); });
+  EXPECT_EQ(refusal.code, PETSC_ERR_ARG_OUTOFRANGE);
+  EXPECT_THAT(refusal.line, HasSubstr("the metric has a value that is not above 0"));
+  ok(VecDestroy(&metric));
+  ok(VecDestroy(&indicator));
+  ok(DMDestroy(&scalar));
+}
+
+TEST(PetscAdaptor, MetricsWithDirectionsAndGenerationAreRefused) {
   const Plex box = cube(PETSC_COMM_WORLD, regular());
   Plex out;
   Vec metric = nullptr;
-  ok(DMPlexMetricCreateUniform(box.get(), 0, 4, &metric));
+  ok(DMPlexMetricCreate(box.get(), 0, &metric));
   Refusal refusal = refusal_of([&] { return DMAdaptMetric(box.get(), metric, nullptr, nullptr, out.out()); });
   EXPECT_EQ(refusal.code, PETSC_ERR_SUP);
-  EXPECT_THAT(refusal.line, HasSubstr("hfremesh has no adaptation to a metric"));
+  EXPECT_THAT(refusal.line, HasSubstr("hfremesh adapts to sizes that are alike in all directions"));
   ok(VecDestroy(&metric));
   refusal = refusal_of([&] { return DMPlexGenerate(box.get(), "hfremesh", PETSC_TRUE, out.out()); });
   EXPECT_EQ(refusal.code, PETSC_ERR_SUP);
