@@ -74,6 +74,7 @@ std::string work_in_parts(MPI_Comm on, const mpi::RankArrays& mine, const Improv
     if (failed.code() != PETSC_ERR_ARG_WRONG) throw;
     return failed.what();
   }
+  mine = {};
   with_all(comm, [&] {
     const mpi::PartsResult result = mpi::improve(mesh, options);
     outcome.in_parts = true;

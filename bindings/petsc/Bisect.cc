@@ -185,6 +185,10 @@ double volume_of(const Simplices& mine, const Simplices::Cell& c) {
   return std::abs(dot(cross(p(1) - p(0), p(2) - p(0)), p(3) - p(0))) / 6;
 }
 
-void bisect(mpi::Comm& comm, Simplices& mine) { Bisection(comm, mine).run(); }
+void bisect(mpi::Comm& comm, Simplices& mine) {
+  const bool asks = !mine.sizes.empty() ||
+                    std::ranges::any_of(mine.cells, [](const Simplices::Cell& c) { return c.largest > 0; });
+  if (comm.sum(asks ? 1 : 0) > 0) Bisection(comm, mine).run();
+}
 
 }  // namespace hfr::petsc
