@@ -62,9 +62,9 @@ void with_all(mpi::Comm& comm, Act&& act) {
   }
 }
 
-/// Each rank on what it has. Where the mesh has what meshes in parts cannot have, nothing is done, and what
-/// is returned says so, on all ranks.
-std::string work_in_parts(MPI_Comm on, const mpi::RankArrays& mine, const ImproveOptions& options,
+/// Each rank on what it has, which is given up. Where the mesh has what meshes in parts cannot have, nothing
+/// is done, and what is returned says so, on all ranks.
+std::string work_in_parts(MPI_Comm on, mpi::RankArrays& mine, const ImproveOptions& options,
                           Outcome& outcome) {
   mpi::Comm comm(on);
   mpi::DistributedMesh mesh(comm);
