@@ -219,6 +219,22 @@ TEST(RankArrays, CellsStayWhereTheyAreInside) {
   }
 }
 
+TEST(RankArrays, APointBelongsToTheRankThatGivesMostOfItsCells) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const io::MeshData data = io::disassemble(valid_box(5, 0.2, 1));
+  const auto rank_of = [&](std::size_t c) { return scattered(c / 7, comm.size()); };
+  std::vector<std::vector<int>> n_cells(data.points.size(), std::vector<int>(comm.n_ranks(), 0));
+  for (std::size_t c = 0; c < data.cells.size(); ++c)
+    for (Index v : data.cells[c]) ++n_cells[v][static_cast<std::size_t>(rank_of(c))];
+  mpi::DistributedMesh parts(comm);
+  mpi::from_arrays(parts, arrays_of(data, comm.rank(), rank_of));
+  const RankArrays mine = mpi::own_arrays(parts);
+  for (std::size_t i = 0; i < mine.points.size(); ++i) {
+    const std::vector<int>& of = n_cells[mine.vertex_number[i]];
+    EXPECT_EQ(mine.owner[i], std::ranges::max_element(of) - of.begin()) << "vertex " << mine.vertex_number[i];
+  }
+}
+
 /// Where one rank gives everything, as when pieces are fewer than ranks, each gets its share; the bytes stay.
 TEST(RankArrays, UnevenPartsAreCutAnew) {
   mpi::Comm comm(MPI_COMM_WORLD);
