@@ -326,10 +326,7 @@ void Incoming::even_out() {
   for (const PointRecord& p : points_) n_own += p.owner == comm_.rank() ? 1 : 0;
   const double most = -comm_.min(-static_cast<double>(n_own));
   if (most * static_cast<double>(comm_.n_ranks()) <= kUneven * static_cast<double>(n_points_)) return;
-  std::vector<Index> own;  // each point once in the sample
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (points_[i].owner == comm_.rank()) own.push_back(static_cast<Index>(i));
-  const CurveOwners owner(comm_, own.size(), [&](std::size_t i) { return points_[own[i]].point; });
+  const CurveOwners owner(comm_, points_.size(), [&](std::size_t i) { return points_[i].point; });
   for (PointRecord& p : points_) p.owner = owner(p.point);
 }
 

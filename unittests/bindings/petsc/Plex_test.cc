@@ -319,6 +319,12 @@ TEST(PetscAdaptor, InvertedCellsAreMendedAndLabelsKept) {
   ASSERT_EQ(adapt(before.get(), nothing, after), 0);
   EXPECT_EQ(n_inverted(after.get()), 0);
   for (const auto& [side, area] : sizes(after.get(), 2, "sides", 6)) EXPECT_NEAR(area, 1, 1e-12) << side;
+  for (PetscInt depth : {0, 1})  // a label that was not complete is no more so now
+    for_own(after.get(), depth, [&](PetscInt p) {
+      PetscInt value = 0;
+      ok(DMLabelGetValue(label_of(after.get(), "sides"), p, &value));
+      EXPECT_EQ(value, -1);
+    });
   double volume = 0;
   for (const auto& [half, part] : sizes(after.get(), 3, "halves", 2)) {
     EXPECT_GT(part, 0.3) << half;
