@@ -182,7 +182,11 @@ int main(int argc, char** argv) {
 
   PetscFunctionBeginUser;
   PetscCall(PetscInitialize(&argc, &argv, nullptr, kUsage));
-  if (parse(argc, argv, files)) {
+  if (argc == 2 && std::strcmp(argv[1], "--help") == 0) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s", kUsage));
+  } else if (argc == 2 && std::strcmp(argv[1], "--version") == 0) {
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "hfremesh-petsc %s\n", HFR_VERSION));
+  } else if (parse(argc, argv, files)) {
     PetscCall(run(files, &code));
   } else {
     PetscCall(PetscFPrintf(PETSC_COMM_WORLD, PETSC_STDERR, "%s", kUsage));

@@ -158,33 +158,43 @@ PetscErrorCode refinement_limit(const Points& points, PetscInt c, double* out) {
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/// Of a metric that is alike in all directions, which is 1 / size² at each vertex, or at all. `wrong`: one is
-/// no positive number.
-PetscErrorCode read_sizes(const Points& points, Vec metric, LocalPlex* out, int* wrong) {
-  DM dm = nullptr;
-  PetscSection section = nullptr;
+/// The one value of a metric that is the same everywhere, from whichever rank has it; 0 where it is not.
+PetscErrorCode uniform_value(DM dm, Vec metric, double* out) {
   PetscBool is_uniform = PETSC_FALSE;
   const PetscScalar* m = nullptr;
   PetscInt n = 0;
-  double uniform = 0;
 
   PetscFunctionBegin;
-  PetscCall(DMPlexMetricIsUniform(points.dm, &is_uniform));
-  if (!is_uniform) {
+  PetscCall(DMPlexMetricIsUniform(dm, &is_uniform));
+  if (!is_uniform) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetLocalSize(metric, &n));
+  PetscCall(VecGetArrayRead(metric, &m));
+  if (n > 0) *out = PetscRealPart(m[0]);
+  PetscCall(VecRestoreArrayRead(metric, &m));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, out, 1, MPI_DOUBLE, MPI_MAX,
+                             PetscObjectComm(reinterpret_cast<PetscObject>(dm))));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/// Of a metric that is alike in all directions, which is 1 / size² at each vertex; `uniform`: everywhere,
+/// unless it is 0. `wrong`: one is no positive number.
+PetscErrorCode read_sizes(const Points& points, Vec metric, double uniform, LocalPlex* out, int* wrong) {
+  DM dm = nullptr;
+  PetscSection section = nullptr;
+  const PetscScalar* m = nullptr;
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  if (uniform == 0) {
     PetscCall(VecGetDM(metric, &dm));
-    PetscCheck(dm, PetscObjectComm(reinterpret_cast<PetscObject>(points.dm)), PETSC_ERR_ARG_WRONG,
-               "hfremesh: the metric is of no DM");
-    PetscCall(DMGetLocalSection(dm, &section));
+    if (dm) PetscCall(DMGetLocalSection(dm, &section));
   }
   PetscCall(VecGetLocalSize(metric, &n));
   PetscCall(VecGetArrayRead(metric, &m));
-  if (n > 0) uniform = PetscRealPart(m[0]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &uniform, 1, MPI_DOUBLE, MPI_MAX,
-                             PetscObjectComm(reinterpret_cast<PetscObject>(points.dm))));
   for (PetscInt v = points.begin[0]; v < points.end[0]; ++v) {
-    PetscInt at = 0;
-    if (!is_uniform) PetscCall(PetscSectionGetOffset(section, v, &at));
-    const double value = is_uniform ? uniform : at < n ? static_cast<double>(PetscRealPart(m[at])) : 0.0;
+    PetscInt at = n;
+    if (section) PetscCall(PetscSectionGetOffset(section, v, &at));
+    const double value = uniform != 0 ? uniform : at < n ? static_cast<double>(PetscRealPart(m[at])) : 0.0;
     if (!(value > 0 && std::isfinite(value))) *wrong = 1;
     out->sizes.push_back(1 / std::sqrt(value));
   }
@@ -281,9 +291,11 @@ PetscErrorCode read_plex(DM dm, Vec metric, DMLabel marks, LocalPlex* out) {
   PetscCall(require_tetrahedra(dm));
   PetscCall(DMGetCoordinatesLocalSetUp(dm));  // or asking for one point is collective
   PetscCall(find_points(dm, &points));
+  double uniform = 0;
+  if (metric) PetscCall(uniform_value(dm, metric, &uniform));
   try {
     PetscCall(read_vertices(points, out));
-    if (metric) PetscCall(read_sizes(points, metric, out, &wrong.size));
+    if (metric) PetscCall(read_sizes(points, metric, uniform, out, &wrong.size));
     PetscCall(read_cells(points, marks, !metric && !marks, out, &wrong.unknown));
     PetscCall(read_labels(points, marks, out));
   } catch (const std::bad_alloc&) {
