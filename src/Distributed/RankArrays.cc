@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "Distributed/Incoming.hh"
+#include "Distributed/Order.hh"
 #include "Distributed/OwnItems.hh"
 #include "HalfFace/Errors.hh"
 
@@ -85,17 +86,22 @@ void add_cells(Comm& comm, const RankArrays& arrays, Incoming& incoming) {
   }
 }
 
-/// In the order of ranks, each kind by itself.
+/// Each kind by itself: by number, then by rank, then as they stand.
 void add_labels(Comm& comm, const RankArrays& arrays, Incoming& incoming) {
   for (const Kind kind :
        {Kind::kVertex, Kind::kEdge, Kind::kFace, Kind::kFixedVertex, Kind::kFixedEdge, Kind::kFixedFace}) {
-    const auto is_one = [&](const LabelRecord& r) { return r.kind == kind; };
-    std::uint64_t number = n_before(
-        comm, static_cast<std::uint64_t>(std::count_if(arrays.labels.begin(), arrays.labels.end(), is_one)));
-    for (LabelRecord r : arrays.labels) {
-      if (!is_one(r)) continue;
-      r.number = number++;
-      for (std::size_t k = n_vertices(kind); k < r.v.size(); ++k) r.v[k] = kNoNumber;
+    std::vector<LabelRecord> records;
+    std::vector<OrderKey> keys;
+    for (const LabelRecord& r : arrays.labels) {
+      if (r.kind != kind) continue;
+      keys.push_back({r.number, static_cast<std::uint64_t>(comm.rank()), records.size(), 0});
+      records.push_back(r);
+    }
+    const std::vector<std::uint64_t> places = places_in_order(comm, keys);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      LabelRecord& r = records[i];
+      r.number = places[i];
+      std::fill(r.v.begin() + static_cast<std::ptrdiff_t>(n_vertices(kind)), r.v.end(), kNoNumber);
       incoming.add(r);
     }
   }

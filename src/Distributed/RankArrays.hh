@@ -22,7 +22,7 @@ struct RankArrays {
   /// positive, as everywhere in the library.
   std::vector<std::array<std::uint64_t, 4>> cells;
   std::vector<std::int32_t> regions;  ///< by cell, or none where all have 0
-  /// Of vertices, edges and faces. Their own numbers say in which order files have them.
+  /// Of vertices, edges and faces. Those with smaller numbers stand first in files.
   std::vector<LabelRecord> labels;
 };
 
@@ -34,12 +34,11 @@ enum class Keep : std::uint8_t {
 
 /// Makes the parts of what the ranks have. A point may come from several ranks, with the same coordinates: of
 /// those, the one that gives most of its cells owns it. A cell is given by one rank, which gives its points
-/// as well. `owner` and the numbers of labels are not looked at: these have the order of ranks, then that of
-/// `labels`, and a label may come from several. Where no rank gives numbers of cells, they are numbered in
-/// the order of ranks. All take part. Returns notes, the same on all ranks. Throws InvalidInput for arrays of
-/// other lengths, numbers that have gaps or come twice, points that are not finite or differ between ranks,
-/// cells and labels whose points are not given, and for what a mesh in parts cannot have
-/// (docs/distributed.md).
+/// as well. `owner` is not looked at. A label may come from several ranks; those of one number have the order
+/// of ranks, then that of `labels`. Where no rank gives numbers of cells, they are numbered in the order of
+/// ranks. All take part. Returns notes, the same on all ranks. Throws InvalidInput for arrays of other
+/// lengths, numbers that have gaps or come twice, points that are not finite or differ between ranks, cells
+/// and labels whose points are not given, and for what a mesh in parts cannot have (docs/distributed.md).
 std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays,
                                      Keep keep = Keep::kAlways);
 
