@@ -167,7 +167,8 @@ Turned turn_negative_components(DistributedMesh& parts) {
   std::vector<Signs> mine;
   for (const auto& [component, signs] : by_component) mine.push_back(signs);
   const Turns turns = decide_turns(comm, mine);
-  // From own cells to all that hang together with them here, which are all that there are.
+  // From cells of own vertices, of which a rank may have some without a cell of its own, to all that hang
+  // together with them here, which are all that there are.
   std::vector<std::uint8_t> turns_over(part.n_cells(), 0);
   std::vector<CellHandle> found;
   std::uint64_t n_alone = 0;
@@ -176,11 +177,14 @@ Turned turn_negative_components(DistributedMesh& parts) {
   };
   for (std::size_t i = 0; i < part.n_cells(); ++i) {
     const CellHandle c(i);
-    if (!is_own(c)) continue;
+    const auto& v = part.cell(c).v;
+    if (part.is_deleted(c) ||
+        std::none_of(v.begin(), v.end(), [&](VertexHandle u) { return parts.is_own(u); }))
+      continue;
     const bool turned =
         std::binary_search(turns.components.begin(), turns.components.end(), components.of(c));
     if (turned) reach(c);
-    n_alone += turned != turns.whole ? 1 : 0;
+    n_alone += is_own(c) && turned != turns.whole ? 1 : 0;
   }
   for (std::size_t i = 0; i < found.size(); ++i)
     for (HalfFaceHandle m : part.cell(found[i]).mate)

@@ -235,6 +235,25 @@ TEST(RankArrays, APointBelongsToTheRankThatGivesMostOfItsCells) {
   }
 }
 
+/// Six cells, of which a rank may hold some and own none: they are turned all the same.
+TEST(RankArrays, CellsAreTurnedOnRanksThatOwnNone) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const generate::Arrays cube = generate::box({1, 1, 1});
+  io::MeshData data = io::disassemble(build(cube.points, cube.cells));
+  for (auto& cell : data.cells) std::swap(cell[0], cell[1]);
+  const auto from = [&](auto&& rank_of) {
+    mpi::DistributedMesh parts(comm);
+    const RankArrays mine = arrays_of(data, comm.rank(), rank_of);
+    EXPECT_THAT(mpi::from_arrays(parts, mine, mpi::Keep::kIfEven),
+                testing::ElementsAre(testing::HasSubstr("flipped as a whole")));
+    const mpi::PartsCheck checked = mpi::check(parts);
+    EXPECT_TRUE(checked.is_good) << checked.message;
+    EXPECT_EQ(mpi::survey(parts).n_invalid, 0U);
+  };
+  from([](std::size_t) { return 0; });
+  from([&](std::size_t c) { return scattered(c, comm.size()); });
+}
+
 /// Where one rank gives everything, as when pieces are fewer than ranks, each gets its share; the bytes stay.
 TEST(RankArrays, UnevenPartsAreCutAnew) {
   mpi::Comm comm(MPI_COMM_WORLD);

@@ -118,14 +118,31 @@ std::vector<Corners> all_of(const Simplices& all) {
   return corners;
 }
 
+/// The same with vertices in another order.
+void reverse_vertices(Simplices& all) {
+  const auto n = static_cast<Index>(all.points.size());
+  std::ranges::reverse(all.points);
+  std::ranges::reverse(all.ids);
+  std::ranges::reverse(all.is_shared);
+  const auto rename = [n](auto& items) {
+    for (auto& item : items)
+      for (Index& v : item.v) v = n - 1 - v;
+  };
+  rename(all.cells);
+  rename(all.faces);
+  rename(all.edges);
+}
+
 /// With cells all over the ranks, faces and edges on a rank that may have none of their cells.
 TEST(PetscBisect, ItDoesNotMatterWhichRankHasWhichCell) {
   mpi::Comm comm(MPI_COMM_WORLD);
   generate::CavityOptions options;
   options.counts = {5, 5, 5};
   options.jitter = 0.3;
-  for (std::size_t every : {3, 29, 311}) {
-    const generate::Arrays box = generate::cavity(options);
+  // The regular box has edges of one length.
+  const generate::Arrays regular = generate::box({5, 5, 5}), deformed = generate::cavity(options);
+  for (std::size_t every : {3, 29, 311, 4, 30}) {
+    const generate::Arrays& box = every % 2 == 0 ? regular : deformed;
     const auto largest = [&](std::size_t c) { return c % every == 0 ? 1.0 / 750 / 30 : 0.0; };
     const auto add_labels = [&](Simplices& all, bool here) {
       for (std::size_t c = 0; here && c < box.cells.size(); c += 5) {
@@ -142,6 +159,7 @@ TEST(PetscBisect, ItDoesNotMatterWhichRankHasWhichCell) {
     };
     Simplices mine = simplices_of(box, largest, here);
     add_labels(mine, comm.rank() == comm.size() - 1);
+    if (comm.rank() % 2 == 0) reverse_vertices(mine);
     petsc::bisect(comm, mine);
     std::vector<Corners> together = comm.all_gather(std::span<const Corners>(all_of(mine)));
     std::ranges::sort(together);
