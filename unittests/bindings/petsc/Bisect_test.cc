@@ -139,10 +139,13 @@ TEST(PetscBisect, ItDoesNotMatterWhichRankHasWhichCell) {
   generate::CavityOptions options;
   options.counts = {5, 5, 5};
   options.jitter = 0.3;
-  // The regular box has edges of one length.
-  const generate::Arrays regular = generate::box({5, 5, 5}), deformed = generate::cavity(options);
-  for (std::size_t every : {3, 29, 311, 4, 30}) {
-    const generate::Arrays& box = every % 2 == 0 ? regular : deformed;
+  // A cube in five, whose cells have three or six longest edges of one length.
+  generate::Arrays five;
+  for (int i = 0; i < 8; ++i) five.points.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  five.cells = {{0, 3, 5, 6}, {0, 1, 3, 5}, {0, 3, 2, 6}, {0, 4, 5, 6}, {3, 5, 6, 7}};
+  const generate::Arrays deformed = generate::cavity(options);
+  for (std::size_t every : {3, 29, 311, 1}) {
+    const generate::Arrays& box = every == 1 ? five : deformed;
     const auto largest = [&](std::size_t c) { return c % every == 0 ? 1.0 / 750 / 30 : 0.0; };
     const auto add_labels = [&](Simplices& all, bool here) {
       for (std::size_t c = 0; here && c < box.cells.size(); c += 5) {
