@@ -137,16 +137,19 @@ std::vector<Out> compact(Policy policy, std::size_t n, Keep&& keep) {
 /// (minimum, maximum, integer sum), so that the result does not depend on the cut into pieces.
 template <class T, class Value, class Combine>
 T reduce(Policy policy, std::size_t n, T identity, Value&& value, Combine&& combine) {
+  struct Partial {  // so that a bool has a byte of its own: std::vector<bool> packs bits
+    T value;
+  };
   const int n_threads = thread_count(policy, n), n_pieces = detail::pieces_for(n_threads);
-  std::vector<T> partial(static_cast<std::size_t>(n_pieces), identity);
+  std::vector<Partial> partial(static_cast<std::size_t>(n_pieces), Partial{identity});
   detail::pieces(n_threads, n_pieces, [&](int piece) {
     T mine = identity;
     const std::size_t end = part_begin(n, n_pieces, piece + 1);
     for (std::size_t i = part_begin(n, n_pieces, piece); i < end; ++i) mine = combine(mine, value(i));
-    partial[static_cast<std::size_t>(piece)] = mine;
+    partial[static_cast<std::size_t>(piece)].value = mine;
   });
   T all = identity;
-  for (const T& piece : partial) all = combine(all, piece);
+  for (const Partial& piece : partial) all = combine(all, piece.value);
   return all;
 }
 

@@ -58,6 +58,16 @@ TEST_P(Threads, ReduceGivesTheSerialResult) {
   EXPECT_EQ(reduce(policy(), 0, std::size_t{0}, value, std::plus<>{}), 0U);
 }
 
+/// Bools of a std::vector share words: of pieces that end at the same time, one would lose what the other
+/// found, in one of a few hundred reductions.
+TEST_P(Threads, ReducesToABoolThatNoPieceLoses) {
+  constexpr std::size_t kItems = 64;
+  for (std::size_t one = 0; one < 100 * kItems; ++one)
+    ASSERT_TRUE(reduce(
+        policy(), kItems, false, [&](std::size_t i) { return i == one % kItems; }, std::logical_or<>{}))
+        << one;
+}
+
 TEST_P(Threads, ForTargetsCoversThemOnceForAnyNumberOfItems) {
   for (const std::size_t n_targets : {0U, 1U, 5U, 100U})
     for (const std::size_t n_items : {0U, 3U, 1000U}) {
