@@ -60,11 +60,18 @@ class Unpacker {
   }
   template <class T>
   std::vector<T> get_all() {
+    std::vector<T> values;
+    append_to(values);
+    return values;
+  }
+  /// Puts what get_all() returns behind the values.
+  template <class T>
+  void append_to(std::vector<T>& values) {
     const auto n = static_cast<std::size_t>(get<std::uint64_t>());
     if (n > bytes_.size() / sizeof(T)) throw InternalError("a message between ranks is too short");
-    std::vector<T> values(n);
-    take(values.data(), n * sizeof(T));
-    return values;
+    const std::size_t end = values.size();
+    values.resize(end + n);
+    take(values.data() + end, n * sizeof(T));
   }
   bool at_end() const { return bytes_.empty(); }
 

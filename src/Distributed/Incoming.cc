@@ -9,6 +9,7 @@
 
 #include "Distributed/CurveOwners.hh"
 #include "HalfFace/Errors.hh"
+#include "Parallel/Sort.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -43,21 +44,57 @@ struct Incoming::Sets {
   }
 };
 
-/// Points and cells by number, each once.
+/// Points and cells by number, each once, and all cells by places.
 void Incoming::unite() {
-  const auto by_number = [](auto& items) {
-    const auto less = [](const auto& a, const auto& b) { return a.number < b.number; };
-    const auto middle =
-        std::is_sorted_until(items.begin(), items.end(), less);  // what has come stands behind
-    std::sort(middle, items.end(), less);
-    std::inplace_merge(items.begin(), middle, items.end(), less);
-    items.erase(std::unique(items.begin(), items.end(),
-                            [](const auto& a, const auto& b) { return a.number == b.number; }),
-                items.end());
+  unite_points();
+  cells_.reserve(cells_.size() + given_.size());
+  for (const CornerRecord& c : std::exchange(given_, {})) {
+    PlacedCell& cell = cells_.emplace_back(PlacedCell{c.number, {}, c.region});
+    for (std::size_t k = 0; k < 4; ++k) cell.at[k] = static_cast<Index>(place(c.v[k]));
+  }
+  const auto less = [](const PlacedCell& a, const PlacedCell& b) { return a.number < b.number; };
+  const auto middle =
+      std::is_sorted_until(cells_.begin(), cells_.end(), less);  // what has come stands behind
+  std::sort(middle, cells_.end(), less);
+  std::inplace_merge(cells_.begin(), middle, cells_.end(), less);
+  cells_.erase(std::unique(cells_.begin(), cells_.end(),
+                           [](const PlacedCell& a, const PlacedCell& b) { return a.number == b.number; }),
+               cells_.end());
+}
+
+/// Those up to the first that is not behind the one before it are in order, and the rest is merged into them.
+void Incoming::unite_points() {
+  const auto not_behind = [](const PointRecord& a, const PointRecord& b) { return a.number >= b.number; };
+  const auto last = std::adjacent_find(points_.begin(), points_.end(), not_behind);
+  if (last == points_.end()) return;
+  const auto n_in_order = static_cast<std::size_t>(last - points_.begin()) + 1;
+  std::vector<par::KeyIndex> rest, scratch;
+  rest.reserve(points_.size() - n_in_order);
+  for (std::size_t i = n_in_order; i < points_.size(); ++i)
+    rest.push_back({points_[i].number, static_cast<std::uint32_t>(i)});
+  par::stable_sort({}, rest, scratch);
+  std::vector<PointRecord> points;
+  points.reserve(points_.size());
+  std::vector<Index> to(points_.size());
+  const auto put = [&](std::size_t i) {
+    if (points.empty() || points.back().number != points_[i].number) points.push_back(points_[i]);
+    to[i] = static_cast<Index>(points.size() - 1);
   };
-  by_number(points_);
-  by_number(cells_);
-  forget_places();
+  std::size_t i = 0;
+  for (const par::KeyIndex& one : rest) {
+    for (; i < n_in_order && points_[i].number <= one.key; ++i) put(i);
+    put(one.index);
+  }
+  for (; i < n_in_order; ++i) put(i);
+  points_ = std::move(points);
+  move_places(to);
+}
+
+/// After points_ has come to be another one.
+void Incoming::move_places(const std::vector<Index>& to) {
+  for (PlacedCell& c : cells_)
+    for (Index& i : c.at) i = to[i];
+  block_begin_ = {};
 }
 
 /// The points stand in blocks of so many numbers each, of which most have one or two.
@@ -83,17 +120,12 @@ std::size_t Incoming::place(std::uint64_t number) {
   throw InternalError("a point of a cell has not come along");
 }
 
-/// body(cell, places of its corners) for all cells.
-template <class Body>
-void Incoming::for_cells(Body&& body) {
-  if (places_.empty()) {
-    places_.reserve(cells_.size());
-    for (const CornerRecord& c : cells_) {
-      Places& at = places_.emplace_back();
-      for (std::size_t k = 0; k < 4; ++k) at[k] = static_cast<Index>(place(c.v[k]));
-    }
-  }
-  for (std::size_t i = 0; i < cells_.size(); ++i) body(cells_[i], places_[i]);
+/// By place: looked up for each corner of each cell, so close together.
+std::vector<std::int32_t> Incoming::owners() const {
+  std::vector<std::int32_t> owners;
+  owners.reserve(points_.size());
+  for (const PointRecord& p : points_) owners.push_back(p.owner);
+  return owners;
 }
 
 /// One more than the largest number of all.
@@ -134,7 +166,7 @@ void Incoming::find_owners() {
   n_cells_ = end_of(cells_.empty() ? 0 : cells_.back().number + 1);
   HFR_REQUIRE(n_points_ > 0 && n_cells_ > 0, "there are no cells");
   HFR_REQUIRE(n_points_ <= comm_.sum(points_.size()), "numbers of points have gaps");
-  require_each_once(n_cells_, "cells", cells_, [](const CornerRecord&) { return true; });
+  require_each_once(n_cells_, "cells", cells_, [](const PlacedCell&) { return true; });
   for (const auto& [kind, what] :
        {std::pair(LabelRecord::Kind::kFace, "triangles"), std::pair(LabelRecord::Kind::kEdge, "edges")}) {
     const auto counts = [kind = kind](const LabelRecord& r) { return r.kind == kind; };
@@ -149,9 +181,8 @@ void Incoming::find_owners() {
     std::uint64_t number = 0, n_cells = 0, bits = 0;
   };
   std::vector<std::uint64_t> n_cells(points_.size(), 0);
-  for_cells([&](const CornerRecord&, const Places& at) {
-    for (Index i : at) ++n_cells[i];
-  });
+  for (const PlacedCell& c : cells_)
+    for (Index i : c.at) ++n_cells[i];
   std::vector<std::vector<Held>> questions(comm_.n_ranks());
   for (std::size_t i = 0; i < points_.size(); ++i)
     questions[points_[i].number * n_ranks / n_points_].push_back(
@@ -187,56 +218,81 @@ void Incoming::find_owners() {
 /// Each cell to the ranks that `receivers` adds to the list, with its points.
 template <class Receivers>
 void Incoming::send(Receivers&& receivers, Incoming& into) {
-  std::vector<std::vector<CornerRecord>> cells(comm_.n_ranks());
+  std::vector<std::vector<Index>> cells(comm_.n_ranks());
   std::vector<int> list;
-  for_cells([&](const CornerRecord& c, const Places& at) {
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
     list.clear();
-    receivers(c, at, list);
+    receivers(cells_[i].at, list);
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
     for (int r : list)
-      if (r != comm_.rank() || &into != this) cells[static_cast<std::size_t>(r)].push_back(c);
-  });
+      if (r != comm_.rank() || &into != this)
+        cells[static_cast<std::size_t>(r)].push_back(static_cast<Index>(i));
+  }
   std::vector<Packer> to(comm_.n_ranks());
-  for (std::size_t r = 0; r < cells.size(); ++r) {
-    if (cells[r].empty()) continue;
-    std::vector<std::uint64_t> numbers;
-    for (const CornerRecord& c : cells[r]) numbers.insert(numbers.end(), c.v.begin(), c.v.end());
-    std::sort(numbers.begin(), numbers.end());
-    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-    std::vector<PointRecord> points;
-    for (std::uint64_t number : numbers) points.push_back(points_[place(number)]);
-    to[r].put_all(points);
-    to[r].put_all(std::exchange(cells[r], {}));
-  }
-  for (const Comm::Message& message : comm_.exchange(to)) {
-    Unpacker in(message.bytes);
-    const auto points = in.get_all<PointRecord>();
-    into.points_.insert(into.points_.end(), points.begin(), points.end());
-    const auto came = in.get_all<CornerRecord>();
-    into.cells_.insert(into.cells_.end(), came.begin(), came.end());
-  }
+  std::vector<Index> place_in_message(points_.size(), Sets::kNone);
+  for (std::size_t r = 0; r < cells.size(); ++r)
+    if (!cells[r].empty()) pack(std::exchange(cells[r], {}), place_in_message, to[r]);
+  if (&into != this) cells_ = {};
+  for (const Comm::Message& message : comm_.exchange(to)) into.take(message);
   if (&into == this) unite();
+}
+
+/// Points of the cells, ascending, and the cells by places among these. `place_in_message`: by place here, of
+/// which none is known before and after.
+void Incoming::pack(std::span<const Index> cells, std::vector<Index>& place_in_message, Packer& to) const {
+  std::vector<Index> places;
+  for (Index c : cells)
+    for (Index i : cells_[c].at)
+      if (std::exchange(place_in_message[i], 0) == Sets::kNone) places.push_back(i);
+  std::sort(places.begin(), places.end());
+  std::vector<PointRecord> points;
+  points.reserve(places.size());
+  for (Index i : places) {
+    place_in_message[i] = static_cast<Index>(points.size());
+    points.push_back(points_[i]);
+  }
+  std::vector<PlacedCell> packed;
+  packed.reserve(cells.size());
+  for (Index c : cells) {
+    PlacedCell& cell = packed.emplace_back(cells_[c]);
+    for (Index& i : cell.at) i = place_in_message[i];
+  }
+  for (Index i : places) place_in_message[i] = Sets::kNone;
+  to.put_all(points);
+  to.put_all(packed);
+}
+
+/// What pack() has made. Points and cells stand behind what is here, until unite().
+void Incoming::take(const Comm::Message& message) {
+  Unpacker in(message.bytes);
+  const auto first = static_cast<Index>(points_.size());
+  const std::size_t n_cells = cells_.size();
+  in.append_to(points_);
+  in.append_to(cells_);
+  for (std::size_t i = n_cells; i < cells_.size(); ++i)
+    for (Index& at : cells_[i].at) at += first;
 }
 
 /// Of own vertices that have others' within so many edges: the owners of these. One edge less round own
 /// vertices all cells are here.
 Incoming::Sets Incoming::near_own(int edges) {
+  const std::vector<std::int32_t> owner = owners();
   Sets one{std::vector<Index>(points_.size(), Sets::kNone), {}};  // of any vertex: owners of its neighbours
-  for_cells([&](const CornerRecord&, const Places& at) {
-    if (std::all_of(at.begin(), at.end(), [&](Index i) { return owner(i) == owner(at[0]); })) return;
+  for (const auto& [number, at, region] : cells_) {
+    if (std::all_of(at.begin(), at.end(), [&, &at = at](Index i) { return owner[i] == owner[at[0]]; }))
+      continue;
     for (Index v : at)
-      for (Index w : at) one.add(v, owner(w));
-  });
+      for (Index w : at) one.add(v, owner[w]);
+  }
   Sets two = one;
   if (edges == 2)
-    for_cells([&](const CornerRecord&, const Places& at) {
+    for (const auto& [number, at, region] : cells_)
       for (Index w : at)
         for (int r : one[w])
           for (Index v : at) two.add(v, r);
-    });
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (points_[i].owner != comm_.rank()) two.of[i] = Sets::kNone;
+  for (std::size_t i = 0; i < owner.size(); ++i)
+    if (owner[i] != comm_.rank()) two.of[i] = Sets::kNone;
   return two;
 }
 
@@ -245,31 +301,28 @@ void Incoming::keep_near(std::uint8_t most) {
   std::vector<std::uint8_t> edges(points_.size(), far);
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (points_[i].owner == comm_.rank()) edges[i] = 0;
-  const auto nearest = [&](const Places& at) {
-    return std::min(std::min(edges[at[0]], edges[at[1]]), std::min(edges[at[2]], edges[at[3]]));
+  const auto nearest = [&](const PlacedCell& c) {
+    return std::min(std::min(edges[c.at[0]], edges[c.at[1]]), std::min(edges[c.at[2]], edges[c.at[3]]));
   };
   for (std::uint8_t step = 1; step < far; ++step)
-    for_cells([&](const CornerRecord&, const Places& at) {
-      if (nearest(at) != step - 1) return;
-      for (Index i : at) edges[i] = std::min(edges[i], step);
-    });
+    for (const PlacedCell& c : cells_) {
+      if (nearest(c) != step - 1) continue;
+      for (Index i : c.at) edges[i] = std::min(edges[i], step);
+    }
+  std::erase_if(cells_, [&](const PlacedCell& c) { return nearest(c) == far; });
   std::vector<std::uint8_t> stays(points_.size(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) stays[i] = edges[i] == 0 ? 1 : 0;
-  std::size_t n_cells = 0;
-  std::vector<std::uint8_t> is_near(cells_.size(), 0);
-  for_cells([&](const CornerRecord& c, const Places& at) {
-    if (nearest(at) == far) return;
-    for (Index i : at) stays[i] = 1;
-    is_near[static_cast<std::size_t>(&c - cells_.data())] = 1;
-  });
-  for (std::size_t c = 0; c < cells_.size(); ++c)
-    if (is_near[c]) cells_[n_cells++] = cells_[c];
-  cells_.resize(n_cells);
+  for (const PlacedCell& c : cells_)
+    for (Index i : c.at) stays[i] = 1;
+  std::vector<Index> to(points_.size());
   std::size_t n = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (stays[i]) points_[n++] = points_[i];
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!stays[i]) continue;
+    to[i] = static_cast<Index>(n);
+    points_[n++] = points_[i];
+  }
   points_.resize(n);
-  forget_places();
+  move_places(to);
 }
 
 DistributedMesh::Piece Incoming::piece() {
@@ -277,23 +330,25 @@ DistributedMesh::Piece Incoming::piece() {
   std::vector<Vec3> points;
   std::vector<std::array<Index, 4>> cells;
   keep_near(2);
-  for (const PointRecord& p : points_) {
+  points.reserve(points_.size());
+  piece.vertex_number.reserve(points_.size());
+  piece.owner.reserve(points_.size());
+  for (const PointRecord& p : std::exchange(points_, {})) {
     piece.vertex_number.push_back(p.number);
     piece.owner.push_back(p.owner);
     points.push_back(p.point);
   }
+  const bool has_regions =
+      std::any_of(cells_.begin(), cells_.end(), [](const PlacedCell& c) { return c.region != 0; });
+  std::vector<std::int32_t> regions;
   cells.reserve(cells_.size());
   piece.cell_number.reserve(cells_.size());
-  for_cells([&](const CornerRecord& c, const Places& at) {
+  for (const PlacedCell& c : std::exchange(cells_, {})) {
     piece.cell_number.push_back(c.number);
-    cells.push_back(at);
-  });
-  std::vector<std::int32_t> regions;
-  if (std::any_of(cells_.begin(), cells_.end(), [](const CornerRecord& c) { return c.region != 0; }))
-    for (const CornerRecord& c : cells_) regions.push_back(c.region);
-  points_ = {};
-  cells_ = {};
-  forget_places();
+    cells.push_back(c.at);
+    if (has_regions) regions.push_back(c.region);
+  }
+  block_begin_ = {};
   piece.mesh = build(std::move(points), cells, {}, nullptr, NonManifold::kKeep, Turning::kConflicts);
   const auto was_turned = [&](CellHandle c) { return piece.mesh.cell(c).v[2].idx() != cells[c.idx()][2]; };
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -334,8 +389,8 @@ void Incoming::hand_to_owners(Incoming& to) {
   unite();
   send_labels(to);
   send(
-      [&](const CornerRecord&, const Places& at, std::vector<int>& receivers) {
-        for (Index i : at) receivers.push_back(owner(i));
+      [owner = owners()](const std::array<Index, 4>& at, std::vector<int>& receivers) {
+        for (Index i : at) receivers.push_back(owner[i]);
       },
       to);
   if (&to == this) keep_near(0);
@@ -346,7 +401,7 @@ std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::
   for (int edges = 1; edges <= 2; ++edges) {
     const Sets near = near_own(edges);
     send(
-        [&](const CornerRecord&, const Places& at, std::vector<int>& to) {
+        [&](const std::array<Index, 4>& at, std::vector<int>& to) {
           for (Index v : at) to.insert(to.end(), near[v].begin(), near[v].end());
         },
         *this);

@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Distributed/Comm.hh"
@@ -36,10 +38,17 @@ class Incoming {
 
   /// Any order; the same thing may come twice. The points of a cell have to be there on its rank.
   void add(const PointRecord& point) { points_.push_back(point); }
-  void add(const CornerRecord& cell) { cells_.push_back(cell); }
+  void add(const CornerRecord& cell) { given_.push_back(cell); }
+  void add(std::vector<CornerRecord> cells) {
+    if (given_.empty())
+      given_ = std::move(cells);
+    else
+      given_.insert(given_.end(), cells.begin(), cells.end());
+  }
   /// On the rank that owns its smallest vertex, or on one that has this point when hand_to_owners() is
   /// called.
   void add(const LabelRecord& label) { labels_.push_back(label); }
+  /// Of those that other ranks will hand over.
   void reserve_cells(std::size_t n) { cells_.reserve(n); }
 
   /// The rank that has most cells of a point owns it, the first of several. Each rank answers for a range of
@@ -62,25 +71,28 @@ class Incoming {
   std::vector<std::string> make_parts(DistributedMesh& mesh, const std::filesystem::path& file);
 
  private:
-  using Places = std::array<Index, 4>;
+  /// A cell by the places of its corners in points_, or in those of a message.
+  struct PlacedCell {
+    std::uint64_t number = 0;
+    std::array<Index, 4> at{};
+    std::int32_t region = 0;
+  };
   struct Sets;
 
   void unite();
+  void unite_points();
+  void move_places(const std::vector<Index>& to);
   void make_index();
   std::size_t place(std::uint64_t number);
-  void forget_places() {
-    places_ = {};
-    block_begin_ = {};
-  }
-  template <class Body>
-  void for_cells(Body&& body);
-  int owner(Index at) const { return points_[at].owner; }
+  std::vector<std::int32_t> owners() const;
   std::uint64_t end_of(std::uint64_t mine) const;
   template <class Item, class Counts>
   void require_each_once(std::uint64_t n, const char* what, const std::vector<Item>& items,
                          Counts&& counts) const;
   template <class Receivers>
   void send(Receivers&& receivers, Incoming& into);
+  void pack(std::span<const Index> cells, std::vector<Index>& place_in_message, Packer& to) const;
+  void take(const Comm::Message& message);
   Sets near_own(int edges);
   /// Leaves cells with a vertex within so many edges of own ones, and the points of these and own ones.
   void keep_near(std::uint8_t most);
@@ -89,8 +101,8 @@ class Incoming {
 
   Comm& comm_;
   std::vector<PointRecord> points_;
-  std::vector<CornerRecord> cells_;
-  std::vector<Places> places_;      // of the corners of cells_, or none yet
+  std::vector<CornerRecord> given_;  // cells whose corners have no places yet
+  std::vector<PlacedCell> cells_;
   std::vector<Index> block_begin_;  // of the index of points_, or none yet; in points_
   int block_bits_ = 0;
   std::vector<LabelRecord> labels_;

@@ -3,6 +3,7 @@
 // points are shared out along a curve that fills their box, cells to the owners of their vertices.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <memory>
 #include <span>
@@ -18,8 +19,6 @@
 
 namespace hfr::mpi {
 namespace {
-
-constexpr std::size_t kLatest = 16'384;  // numbers of points that were asked for last
 
 /// Ranges of the numbers of points, one a rank.
 class Slices {
@@ -63,12 +62,13 @@ class Passage {
     exchange_labels(on, [&](const LabelRecord& r) { incoming.add(r); });
   }
 
-  void send_cells(const std::vector<CornerRecord>& cells, Incoming& incoming) {
+  void send_cells(std::vector<CornerRecord> cells, Incoming& incoming) {
     std::vector<std::vector<std::uint64_t>> wanted(comm_.n_ranks());
-    std::vector<std::uint64_t> latest(kLatest, kNoNumber);  // most corners are those of a cell just before
+    // Numbers asked for last: most corners are among those of other cells.
+    std::vector<std::uint64_t> latest(std::bit_ceil(cells.size() / 2 + 1), kNoNumber);
     for (const CornerRecord& c : cells)
       for (std::uint64_t number : c.v)
-        if (std::exchange(latest[number % kLatest], number) != number)
+        if (std::exchange(latest[number & (latest.size() - 1)], number) != number)
           wanted[slices_.rank_of(number)].push_back(number);
     std::vector<Packer> questions(comm_.n_ranks());
     for (std::size_t r = 0; r < wanted.size(); ++r) {
@@ -84,8 +84,7 @@ class Passage {
         answers[static_cast<std::size_t>(message.from)].push_back(points_[number - first]);
     Incoming some(comm_);
     exchange_points(answers, some);
-    some.reserve_cells(cells.size());
-    for (const CornerRecord& c : cells) some.add(c);
+    some.add(std::move(cells));
     some.hand_to_owners(incoming);
   }
 
