@@ -142,7 +142,7 @@ TEST(Checkpoint, CancelAtAnyQuestionLeavesNoWorseMesh) {
   for (const auto& [name, make] : meshes()) {
     const Standing before = standing(make());
     int n_questions = 0;
-    const auto improved = [&](int last) {
+    const auto improved = [&, &name = name, &make = make](int last) {
       TetMesh mesh = make();
       ImproveOptions options = serial();
       n_questions = 0;
