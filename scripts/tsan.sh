@@ -21,8 +21,8 @@ export OMP_TOOL_LIBRARIES=$archer
 build=$root/build/tsan
 cmake -S "$root" -B "$build" -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=RelWithDebInfo \
   -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -g1" -DHFR_SANITIZE=thread -DHFR_TOOL=OFF -DHFR_TESTS=ON
-cmake --build "$build" --parallel "$jobs" --target test_Parallel test_Scheduler test_Remesh
-for run in "Parallel *" "Scheduler *" "Remesh ImproveThreads.*"; do
+cmake --build "$build" --parallel "$jobs" --target test_Parallel test_Scheduler test_Remesh test_Paranoid
+for run in "Parallel *" "Scheduler *" "Remesh ImproveThreads.*" "Paranoid *"; do
   read -r layer filter <<< "$run"
   echo "tsan: $layer"
   "$build/unittests/$layer/test_$layer" --gtest_brief=1 --gtest_filter="$filter"

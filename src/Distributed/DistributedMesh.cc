@@ -113,6 +113,7 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
   work_.star_size = star_sizes(mesh_);
   work_.changed.assign(mesh_.n_vertices(), work_.clock);
   work_.frozen = constrained_vertices(mesh_, {});
+  work_.forget_qualities();
   work_.quality.assign(mesh_.n_cells(), 0.0);
   work_.pending.assign(mesh_.n_cells(), 0xff);
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);
@@ -147,6 +148,7 @@ std::vector<std::uint64_t> DistributedMesh::renumber(std::span<const std::uint64
   cell_number_ = std::move(now);
   n_sorted_ = cell_number_.size();
   later_.clear();
+  work_.forget_qualities();
   work_.quality.assign(mesh_.n_cells(), 0.0);
   work_.pending.assign(mesh_.n_cells(), 0xff);
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);
@@ -167,6 +169,7 @@ void DistributedMesh::put_back(const DistributedMesh& copy) {
   static_cast<State&>(*this) = copy;
   work_.star_size = copy.work_.star_size;
   work_.frozen = copy.work_.frozen;
+  work_.forget_qualities();
   work_.quality.assign(mesh_.n_cells(), 0.0);
   work_.changed.assign(mesh_.n_vertices(), work_.clock);
   work_.pending.assign(mesh_.n_cells(), 0xff);

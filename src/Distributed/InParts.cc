@@ -56,8 +56,10 @@ class Residents : public Ranks, public MeshInParts {
   void bring_back(TetMesh&, Workspace&) override {}
 
   Survey survey() override {
-    const InParts found = mpi::survey(mesh_, 0, policy_);
-    return {found.worst, static_cast<std::size_t>(found.n_invalid)};
+    const Survey mine = hfr::survey(mesh_.part(), policy_, known_values(mesh_.work()), is_mine());
+    std::array<std::uint64_t, 1> n_invalid = {mine.n_invalid};
+    const double worst = mesh_.comm().sum_and_min(n_invalid, mine.worst);
+    return {worst, static_cast<std::size_t>(n_invalid[0])};
   }
   AngleTally tally_below(std::span<const double> degrees) override;
   VertexTally vertices() override;
@@ -89,6 +91,10 @@ class Residents : public Ranks, public MeshInParts {
   }
 
  private:
+  std::function<bool(CellHandle)> is_mine() const {
+    return [this](CellHandle c) { return mesh_.is_own(c); };
+  }
+
   DistributedMesh& mesh_;
   par::Policy policy_;
   std::uint64_t n_rounds_ = 0;
@@ -115,8 +121,7 @@ Box Residents::box() {
 }
 
 AngleTally Residents::tally_below(std::span<const double> degrees) {
-  AngleTally all =
-      hfr::tally_below(mesh_.part(), degrees, policy_, [&](CellHandle c) { return mesh_.is_own(c); });
+  AngleTally all = hfr::tally_below(mesh_.part(), degrees, policy_, known_values(mesh_.work()), is_mine());
   all.n_cells = n_cells();
   for (std::size_t& n : all.n_below) n = sum(n);
   all.worst = min(all.worst);
@@ -141,7 +146,7 @@ std::vector<std::uint64_t> Residents::worst_cells_below(double degrees, std::siz
     std::ranges::sort(worst, {}, order);
     worst.resize(std::min(n, worst.size()));
   };
-  for (CellHandle c : cells_below(part, degrees, policy_)) {
+  for (CellHandle c : cells_below(part, degrees, policy_, known_values(mesh_.work()))) {
     if (!mesh_.is_own(c) || std::binary_search(but.begin(), but.end(), c)) continue;
     const auto& v = part.cell(c).v;
     worst.push_back({mesh_.number(c),

@@ -40,8 +40,11 @@ PartSmoothing::PartSmoothing(DistributedMesh& mesh, std::span<const VertexHandle
     const auto link = stars.link(i);
     if (link.empty()) colour_[own_[i].idx()] = kNone;
     links_.insert(links_.end(), link.begin(), link.end());
-    std::sort(links_.begin() + static_cast<std::ptrdiff_t>(begin_.back()), links_.end(),
-              [&](HalfFaceHandle a, HalfFaceHandle b) { return mesh_.is_before(cell_of(a), cell_of(b)); });
+    const auto first = links_.begin() + static_cast<std::ptrdiff_t>(begin_.back());
+    const auto order = [&](HalfFaceHandle a, HalfFaceHandle b) {
+      return mesh_.is_before(cell_of(a), cell_of(b));
+    };
+    if (!std::is_sorted(first, links_.end(), order)) std::sort(first, links_.end(), order);
     begin_.push_back(links_.size());
   }
 }
@@ -73,24 +76,29 @@ std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
 }
 
 /// Own vertices that wait for some of other ranks, or for such that do: each can be coloured once all its
-/// smaller neighbours are. A neighbour counts as often as there are cells that both have.
+/// smaller neighbours are.
 class PartSmoothing::Ready {
  public:
-  Ready(const PartSmoothing& pass) : pass_(pass), waits_(pass.colour_.size()) {
+  Ready(const PartSmoothing& pass) : pass_(pass), waits_(pass.colour_.size()), seen_(pass.colour_.size(), 0) {
+    begin_.reserve(pass_.own_.size() + 1);
     for (VertexHandle v : pass_.own_) {
+      begin_.push_back(larger_.size());
       if (pass_.colour_[v.idx()] != kWaiting) continue;
       ++n_left_;
       Wait& wait = waits_[v.idx()];
+      see(v);
       for (HalfFaceHandle h : pass_.link(v))
         for (VertexHandle u : pass_.mesh_.part().cell(cell_of(h)).v) {
-          if (!(u < v)) continue;
-          const std::uint8_t colour = pass_.colour_[u.idx()];
-          if (colour == kWaiting)
+          if (!is_first_look(u)) continue;
+          if (v < u)
+            larger_.push_back(u);
+          else if (pass_.colour_[u.idx()] == kWaiting)
             ++wait.n;
           else
-            wait.used |= std::uint64_t{1} << colour;
+            wait.used |= std::uint64_t{1} << pass_.colour_[u.idx()];
         }
     }
+    begin_.push_back(larger_.size());
   }
 
   std::size_t n_left() const { return n_left_; }
@@ -109,22 +117,19 @@ class PartSmoothing::Ready {
     --n_left_;
     return {v, first_without(waits_[v.idx()].used)};
   }
-  /// A vertex within one edge of own ones has its colour. All its cells are here.
+  /// A vertex within one edge of own ones has its colour: one of this object, or of another rank. All its
+  /// cells are here.
   void note_coloured(VertexHandle v) {
     const std::uint64_t bit = std::uint64_t{1} << pass_.colour_[v.idx()];
-    const auto tell = [&](CellHandle c) {
-      for (VertexHandle w : pass_.mesh_.part().cell(c).v) {
-        if (!(v < w)) continue;
-        Wait& wait = waits_[w.idx()];
-        if (wait.n == 0) continue;
-        wait.used |= bit;
-        if (--wait.n == 0) (pass_.mesh_.is_among_own(w) ? inner_ : near_).push_back(w);
-      }
-    };
-    if (pass_.mesh_.is_own(v))
-      for (HalfFaceHandle h : pass_.link(v)) tell(cell_of(h));
-    else
-      for (CellHandle c : pass_.mesh_.part().vertex_cells(v)) tell(c);
+    if (pass_.mesh_.is_own(v)) {
+      const std::size_t i = pass_.place_[v.idx()];
+      for (std::size_t k = begin_[i]; k < begin_[i + 1]; ++k) tell(larger_[k], bit);
+      return;
+    }
+    see(v);
+    for (CellHandle c : pass_.mesh_.part().vertex_cells(v))
+      for (VertexHandle w : pass_.mesh_.part().cell(c).v)
+        if (v < w && is_first_look(w)) tell(w, bit);
   }
 
  private:
@@ -133,8 +138,22 @@ class PartSmoothing::Ready {
     std::uint32_t n = 0;     // smaller neighbours without; 0 for what does not wait
   };
 
+  void tell(VertexHandle w, std::uint64_t bit) {
+    Wait& wait = waits_[w.idx()];
+    if (wait.n == 0) return;
+    wait.used |= bit;
+    if (--wait.n == 0) (pass_.mesh_.is_among_own(w) ? inner_ : near_).push_back(w);
+  }
+  /// The neighbours of this vertex are looked at from now on.
+  void see(VertexHandle v) { seen_[v.idx()] = ++n_seen_; }
+  bool is_first_look(VertexHandle u) { return std::exchange(seen_[u.idx()], n_seen_) != n_seen_; }
+
   const PartSmoothing& pass_;
-  std::vector<Wait> waits_;                 // by vertex
+  std::vector<Wait> waits_;          // by vertex
+  std::vector<std::uint32_t> seen_;  // by vertex: of whose neighbours it was the last time
+  std::uint32_t n_seen_ = 0;
+  std::vector<std::size_t> begin_;          // in larger_, by own_
+  std::vector<VertexHandle> larger_;        // neighbours of those that wait
   std::vector<VertexHandle> near_, inner_;  // that are ready
   std::size_t n_taken_ = 0;                 // of the inner ones
   std::size_t n_left_ = 0;

@@ -14,7 +14,7 @@ namespace {
 
 /// Cells below `degrees` with the proofs of what holds them; of a mesh in parts those of this one.
 std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
-  std::vector<CellHandle> cells = cells_below(run.mesh, degrees, run.policy());
+  std::vector<CellHandle> cells = cells_below(run.mesh, degrees, run.policy(), run.known());
   if (run.is_part()) std::erase_if(cells, [&](CellHandle c) { return !run.parts()->is_own(c); });
   std::vector<StuckCell> low = kept_from_rising(run.mesh, cells, kLeastRise, run.policy());
   // What a feature holds, the faces at it hold as well while they stay, which is quicker to see.

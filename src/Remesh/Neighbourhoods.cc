@@ -17,7 +17,7 @@ void improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
   const double decision = dihedral_decision(degrees);
   for (const NeighbourhoodEffort::Try& attempt : effort->tries) {
     std::vector<CellHandle> left;
-    if (!run.is_part()) left = cells_below(run.mesh, degrees, run.policy());
+    if (!run.is_part()) left = cells_below(run.mesh, degrees, run.policy(), run.known());
     const std::size_t n_left = run.is_part() ? run.n_below(degrees) : left.size();
     if (n_left == 0 || n_left > effort->few || run.control.stopped()) return;
     std::vector<std::uint8_t> around;

@@ -56,7 +56,12 @@ auto PassRunner<Metric>::row(PassKind kind) -> const Row& {
 
 template <class Metric>
 Run PassRunner<Metric>::with_qualities(const Run& run, const Metric& metric) {
-  run.work.set_qualities(run.mesh, metric, run.policy());
+  Workspace& work = run.work;
+#ifdef HFR_PARANOID
+  if (work.template has_qualities_of<Metric>() && !run.is_part())
+    detail::Paranoid(run.mesh, work, "stage", typeid(Metric), metric);
+#endif
+  if (!work.template has_qualities_of<Metric>()) work.set_qualities(run.mesh, metric, run.policy());
   return run;
 }
 

@@ -381,7 +381,7 @@ std::optional<PatchesDone> take_turn(const Run& run, double degrees, const Patch
     return run.parts()->search_patches(
         worst, effort.layers, [&](PatchPlace& place) { return search_at(run, place, degrees, effort); });
   }
-  std::vector<CellHandle> worst = worst_cells_below(run.mesh, degrees, n, run.policy(), held);
+  std::vector<CellHandle> worst = worst_cells_below(run.mesh, degrees, n, run.policy(), held, run.known());
   if (worst.size() > effort.few) return std::nullopt;
   worst.resize(std::min(n_centres, worst.size()));
   WholeMesh place(run.mesh, worst);
@@ -407,6 +407,7 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     if (done->met_bound) run.findings.note_cell_bound(run.bounds);
     run.findings.is_folded = run.findings.is_folded || done->is_folded;
     if (done->n_changed > 0) {
+      run.work.forget_qualities();
       if (!run.is_part()) run.work.attach(run.mesh, run.policy());
       if (run.strategy.patch.has_surface) rebuild(run.surface, run.mesh, run.policy());
     }

@@ -60,15 +60,17 @@ struct Run {
   bool is_part() const { return ranks && ranks->keep_mesh(); }
   /// Where it is; null elsewhere.
   MeshInParts* parts() const { return is_part() ? ranks->parts() : nullptr; }
+  /// What the workspace has of the cells of this mesh.
+  KnownValues known() const { return known_values(work); }
   /// Of the whole, as what follows.
-  Survey survey() const { return is_part() ? parts()->survey() : hfr::survey(mesh, policy()); }
+  Survey survey() const { return is_part() ? parts()->survey() : hfr::survey(mesh, policy(), known()); }
   Standing standing() const {
     return is_part() ? parts()->standing() : standing_of(mesh, survey(), policy());
   }
   std::size_t n_below(double degrees) const { return tally_below(std::span(&degrees, 1)).n_below[0]; }
   double share_below(double degrees) const { return tally_below(std::span(&degrees, 1)).share(0); }
   AngleTally tally_below(std::span<const double> degrees) const {
-    return is_part() ? parts()->tally_below(degrees) : hfr::tally_below(mesh, degrees, policy());
+    return is_part() ? parts()->tally_below(degrees) : hfr::tally_below(mesh, degrees, policy(), known());
   }
   /// See smallest_dihedral().
   double smallest_dihedral() const {

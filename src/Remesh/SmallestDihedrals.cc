@@ -14,11 +14,16 @@ namespace hfr {
 SmallestDihedrals::SmallestDihedrals(const Run& run)
     : run_(run), n_cells_(run.n_cells()), values_(run.mesh.n_cells()) {
   const MeshInParts* parts = run.parts();
+  const std::span<const double> known = run.known().dihedrals;
+  const auto put = [&](std::size_t i, double value) {
+    const bool counts = !parts || run.mesh.is_deleted(CellHandle(i)) || parts->is_own(CellHandle(i));
+    values_[i] = counts ? value : std::numeric_limits<double>::infinity();
+  };
   par::for_ranges(run.policy(), values_.size(), [&](std::size_t begin, std::size_t end) {
-    for_decisions(run.mesh, MinDihedral{}, begin, end, [&](std::size_t i, double value) {
-      const bool counts = !parts || run.mesh.is_deleted(CellHandle(i)) || parts->is_own(CellHandle(i));
-      values_[i] = counts ? value : std::numeric_limits<double>::infinity();
-    });
+    if (known.empty())
+      for_decisions(run.mesh, MinDihedral{}, begin, end, put);
+    else
+      for (std::size_t i = begin; i < end; ++i) put(i, known[i]);
   });
 }
 

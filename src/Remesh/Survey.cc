@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 
@@ -21,19 +22,39 @@ double min_dihedral_of(const TetMesh& mesh, CellHandle c) {
   return MinDihedral{}(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
 }
 
-/// Cells with keep(cell, decision value), ascending.
-template <class Metric, class Keep>
-std::vector<CellHandle> cells_where(const TetMesh& mesh, const Metric& metric, par::Policy policy,
-                                    Keep&& keep) {
+/// body(i, decision value of MinDihedral) for the cell slots of [begin, end) that count and of which it is
+/// below limit(), or not positive; for others as they come.
+template <class Limit, class Body>
+void for_low_dihedrals(const TetMesh& mesh, const KnownValues& known, std::size_t begin, std::size_t end,
+                       const std::function<bool(CellHandle)>& counts, Limit&& limit, Body&& body) {
+  const auto may_be_low = [&](double value) { return value < limit() || !(value > 0); };
+  const auto does_count = [&](std::size_t i) { return !counts || counts(CellHandle(i)); };
+  HFR_ASSERT(known.dihedrals.empty() || known.dihedrals.size() == mesh.n_cells());
+  HFR_ASSERT(known.sines.empty() || known.sines.size() == mesh.n_cells());
+  if (!known.dihedrals.empty()) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (may_be_low(known.dihedrals[i]) && does_count(i)) body(i, known.dihedrals[i]);
+  } else if (!known.sines.empty()) {
+    // The smallest sine is, of positive cells, never above the smallest dihedral's. Of an inverted cell both
+    // are negative, and the smallest sine, which may be an obtuse angle's, is the nearer one to 0.
+    for (std::size_t i = begin; i < end; ++i)
+      if (may_be_low(known.sines[i]) && does_count(i)) body(i, min_dihedral_of(mesh, CellHandle(i)));
+  } else {
+    for_decisions(mesh, MinDihedral{}, begin, end, [&](std::size_t i, double value) {
+      if (may_be_low(value) && does_count(i)) body(i, value);
+    });
+  }
+}
+
+/// Cells that for_cells(begin, end, found) finds in pieces of the mesh, ascending.
+template <class ForCells>
+std::vector<CellHandle> cells_that(const TetMesh& mesh, par::Policy policy, ForCells&& for_cells) {
   const std::size_t n = mesh.n_cells();
   const int n_parts = par::thread_count(policy, n);
   std::vector<std::vector<CellHandle>> found(static_cast<std::size_t>(n_parts));
   par::parts(n_parts, [&](int part) {
-    auto& mine = found[static_cast<std::size_t>(part)];
-    for_decisions(mesh, metric, par::part_begin(n, n_parts, part), par::part_begin(n, n_parts, part + 1),
-                  [&](std::size_t i, double value) {
-                    if (keep(CellHandle(i), value)) mine.push_back(CellHandle(i));
-                  });
+    for_cells(par::part_begin(n, n_parts, part), par::part_begin(n, n_parts, part + 1),
+              found[static_cast<std::size_t>(part)]);
   });
   std::vector<CellHandle> cells = std::move(found[0]);
   for (std::size_t part = 1; part < found.size(); ++part)
@@ -43,21 +64,35 @@ std::vector<CellHandle> cells_where(const TetMesh& mesh, const Metric& metric, p
 
 }  // namespace
 
-Survey survey(const TetMesh& mesh, par::Policy policy) {
+KnownValues known_values(const Workspace& work) {
+  KnownValues known;
+  if (work.has_qualities_of<MinSine2>()) known.sines = work.quality;
+  if (work.has_qualities_of<MinDihedral>()) known.dihedrals = work.quality;
+  return known;
+}
+
+Survey survey(const TetMesh& mesh, par::Policy policy, const KnownValues& known,
+              const std::function<bool(CellHandle)>& counts) {
   const std::size_t n = mesh.n_cells();
   const int n_parts = par::thread_count(policy, n);
+  const bool is_known = !known.sines.empty() || !known.dihedrals.empty();
   std::vector<Survey> found(static_cast<std::size_t>(n_parts));
   par::parts(n_parts, [&](int part) {
+    const std::size_t begin = par::part_begin(n, n_parts, part), end = par::part_begin(n, n_parts, part + 1);
     Survey mine{std::numeric_limits<double>::infinity(), 0};
-    // The smallest sine is the cheaper form and, of positive cells, never above the smallest dihedral's,
-    // which therefore only cells that may set a new record are asked for. Of an inverted cell both are
-    // negative, and the smallest sine, which may be an obtuse angle's, is the nearer one to 0.
-    for_decisions(mesh, MinSine2{}, par::part_begin(n, n_parts, part), par::part_begin(n, n_parts, part + 1),
-                  [&](std::size_t i, double value) {
-                    if (value < mine.worst || !(value > 0))
-                      mine.worst = std::min(mine.worst, min_dihedral_of(mesh, CellHandle(i)));
-                    if (!(value > 0) && is_invalid(mesh, CellHandle(i))) ++mine.n_invalid;
-                  });
+    const auto see = [&](std::size_t i, double dihedral) {
+      mine.worst = std::min(mine.worst, dihedral);
+      if (!(dihedral > 0) && is_invalid(mesh, CellHandle(i))) ++mine.n_invalid;
+    };
+    if (is_known) {
+      for_low_dihedrals(
+          mesh, known, begin, end, counts, [&] { return mine.worst; }, see);
+    } else {  // the smallest sine is the cheaper form
+      for_decisions(mesh, MinSine2{}, begin, end, [&](std::size_t i, double sine) {
+        if ((sine < mine.worst || !(sine > 0)) && (!counts || counts(CellHandle(i))))
+          see(i, min_dihedral_of(mesh, CellHandle(i)));
+      });
+    }
     found[static_cast<std::size_t>(part)] = mine;
   });
   Survey all{std::numeric_limits<double>::infinity(), 0};
@@ -73,7 +108,7 @@ double smallest_dihedral(const TetMesh& mesh, par::Policy policy) {
 }
 
 AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par::Policy policy,
-                       const std::function<bool(CellHandle)>& counts) {
+                       const KnownValues& known, const std::function<bool(CellHandle)>& counts) {
   std::vector<double> decisions;
   for (double angle : degrees) decisions.push_back(dihedral_decision(angle));
   const double largest = decisions.empty() ? 0.0 : *std::max_element(decisions.begin(), decisions.end());
@@ -87,14 +122,13 @@ AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par
   par::parts(n_parts, [&](int part) {
     Found mine;
     mine.n_below.assign(decisions.size(), 0);
-    for_decisions(mesh, MinDihedral{}, par::part_begin(n, n_parts, part),
-                  par::part_begin(n, n_parts, part + 1), [&](std::size_t i, double value) {
-                    if (!(value < largest) && !(value < mine.worst)) return;
-                    if (counts && !counts(CellHandle(i))) return;
-                    mine.worst = std::min(mine.worst, value);
-                    for (std::size_t k = 0; k < decisions.size(); ++k)
-                      mine.n_below[k] += value < decisions[k] ? 1 : 0;
-                  });
+    for_low_dihedrals(
+        mesh, known, par::part_begin(n, n_parts, part), par::part_begin(n, n_parts, part + 1), counts,
+        [&] { return std::max(largest, mine.worst); },
+        [&](std::size_t, double value) {
+          mine.worst = std::min(mine.worst, value);
+          for (std::size_t k = 0; k < decisions.size(); ++k) mine.n_below[k] += value < decisions[k] ? 1 : 0;
+        });
     found[static_cast<std::size_t>(part)] = std::move(mine);
   });
   AngleTally all;
@@ -118,19 +152,30 @@ double share_below(const TetMesh& mesh, double degrees, par::Policy policy) {
 }
 
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
-  return cells_where(mesh, MinSine2{}, policy,
-                     [&](CellHandle c, double value) { return !(value > 0) && is_invalid(mesh, c); });
+  return cells_that(mesh, policy, [&](std::size_t begin, std::size_t end, std::vector<CellHandle>& found) {
+    for_decisions(mesh, MinSine2{}, begin, end, [&](std::size_t i, double value) {
+      if (!(value > 0) && is_invalid(mesh, CellHandle(i))) found.push_back(CellHandle(i));
+    });
+  });
 }
 
-std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy) {
+std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy,
+                                    const KnownValues& known) {
   const double goal = dihedral_decision(degrees);
-  return cells_where(mesh, MinDihedral{}, policy, [&](CellHandle, double value) { return value < goal; });
+  return cells_that(mesh, policy, [&](std::size_t begin, std::size_t end, std::vector<CellHandle>& found) {
+    for_low_dihedrals(
+        mesh, known, begin, end, {}, [&] { return goal; },
+        [&](std::size_t i, double value) {
+          if (value < goal) found.push_back(CellHandle(i));
+        });
+  });
 }
 
 std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, std::size_t n,
-                                          par::Policy policy, std::span<const CellHandle> but) {
+                                          par::Policy policy, std::span<const CellHandle> but,
+                                          const KnownValues& known) {
   std::vector<std::pair<double, CellHandle>> ranked;
-  for (CellHandle c : cells_below(mesh, degrees, policy))
+  for (CellHandle c : cells_below(mesh, degrees, policy, known))
     if (!std::binary_search(but.begin(), but.end(), c)) ranked.emplace_back(min_dihedral_of(mesh, c), c);
   const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(std::min(n, ranked.size()));
   std::partial_sort(ranked.begin(), end, ranked.end());

@@ -235,6 +235,7 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
       run.is_part() ? run.parts()->unfolding(effort) : std::make_unique<MeshUnfolding>(run, effort);
   std::size_t n_invalid = unfolding->look();
   run.keep(n_invalid == 0);
+  run.work.forget_qualities();
   Tangle least;
   bool again = false;
   int idle = 0;

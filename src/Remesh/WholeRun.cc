@@ -21,6 +21,7 @@ bool settle(const Run& run, bool known_to_meet) {
     polish_to(mending, run.strategy.mending(), checkpoint.input().worst);
   };
   if (!checkpoint.settle(run.mesh, known_to_meet, mend)) return true;
+  run.work.forget_qualities();
   const Survey found = run.survey();
   run.control.add_undo(checkpoint.kept_revision(), found.n_invalid, found.worst);
   return false;

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Operators/Operator.hh"
 #include "hfremesh/Parallel/Parallel.hh"
 #include "hfremesh/Quality/Decisions.hh"
+#include "hfremesh/Quality/Metrics.hh"
 
 namespace hfr {
 
@@ -34,6 +36,10 @@ struct Workspace {
   /// Whether each cluster is held to what hfr_damage_may_become() allows, and not only to no more cells that
   /// the metric calls invalid: then whoever runs the rounds looks at the mesh as a whole in the end.
   bool holds_damage = true;
+  /// The metric whose decision values `quality` has, of every live cell as it is. Rounds and smoothing passes
+  /// keep them right; whoever changes the mesh by other means calls forget_qualities().
+  enum class QualitiesOf : std::uint8_t { kAnother, kMinSine2, kMinDihedral };
+  QualitiesOf qualities_of = QualitiesOf::kAnother;
   std::uint32_t clock = 1;     ///< counts rounds
   std::vector<Index> touched;  ///< cell slots written since clear_touched(), some more than once
   bool all_touched = true;     ///< more than are worth a list
@@ -42,6 +48,7 @@ struct Workspace {
   void begin() {
     floor = kNoFloor;
     holds_damage = true;
+    forget_qualities();
     clock = 1;
     clear_touched();
     all_touched = true;
@@ -56,6 +63,7 @@ struct Workspace {
 
   /// The same where star_size and pinched are those of the mesh already.
   void attach_again(const TetMesh& mesh, par::Policy policy) {
+    forget_qualities();
     const std::size_t room = mesh.n_cells() + mesh.n_cells() / 16;  // as the mesh has
     quality.reserve(room);
     claim.reserve(room);
@@ -127,7 +135,20 @@ struct Workspace {
     par::for_ranges(policy, mesh.n_cells(), [&](std::size_t begin, std::size_t end) {
       for_decisions(mesh, metric, begin, end, [&](std::size_t i, double value) { quality[i] = value; });
     });
+    qualities_of = kQualitiesOf<Metric>;
   }
+  /// Whether set_qualities() would change nothing. False for metrics that are not told apart.
+  template <class Metric>
+  bool has_qualities_of() const {
+    return qualities_of != QualitiesOf::kAnother && qualities_of == kQualitiesOf<Metric>;
+  }
+  void forget_qualities() { qualities_of = QualitiesOf::kAnother; }
+
+  template <class Metric>
+  static constexpr QualitiesOf kQualitiesOf =
+      std::is_same_v<Metric, MinSine2>      ? QualitiesOf::kMinSine2
+      : std::is_same_v<Metric, MinDihedral> ? QualitiesOf::kMinDihedral
+                                            : QualitiesOf::kAnother;
 };
 
 /// What a round or a pass did.

@@ -6,6 +6,7 @@
 #include "CountingNew.hh"
 #include "Meshes.hh"
 
+#if HFR_COUNTS_ALLOCATIONS
 namespace hfr {
 namespace {
 
@@ -90,3 +91,4 @@ TEST(MemoryBytes, CountsWhatWasReserved) {
 
 }  // namespace
 }  // namespace hfr
+#endif

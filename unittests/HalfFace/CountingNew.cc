@@ -12,6 +12,7 @@ std::atomic<std::size_t> n_calls{0};
 
 std::size_t hfr::test::n_allocations() { return n_calls.load(); }
 
+#if HFR_COUNTS_ALLOCATIONS
 // Both forms, since AddressSanitizer has its own of what is not replaced, and its memory must not meet our
 // delete.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
@@ -24,3 +25,4 @@ void* operator new(std::size_t size) {
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#endif

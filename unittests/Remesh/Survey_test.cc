@@ -41,6 +41,54 @@ TEST(Survey, WorstOfInvertedCellsDoesNotDependOnThreadsOrOrder) {
   EXPECT_GT(n_sines_above, 20U) << "the generator no longer makes cells whose smallest sine tells nothing";
 }
 
+/// All that a look at a mesh finds, of the cells that count.
+std::vector<double> findings(const TetMesh& mesh, int threads, const KnownValues& known,
+                             const std::function<bool(CellHandle)>& counts) {
+  const par::Policy policy{threads, 0};
+  const std::array<double, 4> degrees = {40, 0.001, 15, 5};
+  const Survey found = survey(mesh, policy, known, counts);
+  const AngleTally tally = tally_below(mesh, degrees, policy, known, counts);
+  std::vector<double> all = {found.worst, static_cast<double>(found.n_invalid), tally.worst};
+  for (const std::size_t n : tally.n_below) all.push_back(static_cast<double>(n));
+  for (const double angle : degrees) {
+    for (CellHandle c : cells_below(mesh, angle, policy, known)) all.push_back(c.idx());
+    for (CellHandle c : worst_cells_below(mesh, angle, 7, policy, {}, known)) all.push_back(c.idx());
+  }
+  return all;
+}
+
+TEST(Survey, ValuesThatAreKnownChangeNothing) {
+  std::vector<TetMesh> meshes = {jittered(5, 0.2, 1),    jittered(5, 0.6, 1),
+                                 parts_at_vertices(),    inverted_and_flat(),
+                                 flat_and_overlapping(), built(generate::box({3, 3, 3}))};
+  Engine engine(1);
+  for (int i = 0; i < 30; ++i) {
+    meshes.push_back(built(generate::box({3, 3, 3})));
+    for (VertexHandle v : meshes.back().vertices()) meshes.back().set_point(v, random_point(engine, -1, 1));
+  }
+  for (TetMesh& mesh : meshes) {
+    for (std::size_t c = 3; c < mesh.n_cells(); c += 7) mesh.delete_cell(CellHandle(c));
+    Workspace work;
+    work.attach(mesh, {});
+    EXPECT_TRUE(known_values(work).sines.empty() && known_values(work).dihedrals.empty());
+    for (const auto& counts :
+         {std::function<bool(CellHandle)>(),
+          std::function<bool(CellHandle)>([](CellHandle c) { return c.idx() % 3 != 0; })}) {
+      const std::vector<double> expected = findings(mesh, 1, {}, counts);
+      work.set_qualities(mesh, MinSine2{}, {});
+      ASSERT_EQ(known_values(work).sines.size(), mesh.n_cells());
+      for (const int threads : {1, 3})
+        EXPECT_EQ(findings(mesh, threads, known_values(work), counts), expected);
+      work.set_qualities(mesh, MinDihedral{}, {});
+      ASSERT_EQ(known_values(work).dihedrals.size(), mesh.n_cells());
+      for (const int threads : {1, 3})
+        EXPECT_EQ(findings(mesh, threads, known_values(work), counts), expected);
+      work.set_qualities(mesh, VolumeLength{}, {});
+      EXPECT_TRUE(known_values(work).sines.empty() && known_values(work).dihedrals.empty());
+    }
+  }
+}
+
 TEST(Survey, InvalidCellsAreTheInvertedAndTheFlatOnes) {
   TetMesh mesh = built(generate::box({3, 3, 3}));
   EXPECT_TRUE(invalid_cells(mesh, {}).empty());
