@@ -284,6 +284,18 @@ TEST(MinCells, CellsStayCloseToTheInputUnlessTheLargestAngleIsAskedFor) {
   EXPECT_GT(fewer_at_any_cost, 0U) << "nothing was held back";
 }
 
+/// Moving leaves the qualities of the workspace behind, whatever was known before.
+TEST(Untangle, ForgetsWhatWasKnownOfCellsThatItMoves) {
+  TetMesh mesh = jittered(5, 0.44, 1);
+  StageBench bench(mesh, serial());
+  Workspace& work = bench.run.work;
+  work.set_qualities(mesh, MinSine2{}, {});
+  ASSERT_TRUE(work.has_qualities_of<MinSine2>());
+  ASSERT_LT(bench.run.survey().worst, 0);
+  ASSERT_TRUE(untangle(bench.run, UntangleEffort{}));
+  EXPECT_FALSE(work.has_qualities_of<MinSine2>());
+}
+
 TEST(Untangle, StopsWhenNothingIsInvertedAndTouchesNothingElse) {
   TetMesh mesh = jittered(5, 0.1, 1);
   const TetMesh before = mesh;
