@@ -20,19 +20,20 @@ class Numbering {
  public:
   explicit Numbering(DistributedMesh& mesh);
 
-  std::uint64_t n_vertices() const { return mesh_.n_vertices() - vertices_.size(); }
+  std::uint64_t n_vertices() const { return n_vertices_; }
   std::uint64_t n_cells() const { return mesh_.n_cells(); }
-  std::uint64_t operator()(VertexHandle v) const { return without(vertices_, mesh_.number(v)); }
-  std::uint64_t operator()(CellHandle c) const { return without(slots_, mesh_.number(c)); }
-
- private:
-  static std::uint64_t without(const std::vector<std::uint64_t>& gone, std::uint64_t number) {
-    return number -
-           static_cast<std::uint64_t>(std::lower_bound(gone.begin(), gone.end(), number) - gone.begin());
+  std::uint64_t operator()(VertexHandle v) const { return vertex_[v.idx()]; }
+  std::uint64_t operator()(CellHandle c) const {
+    const std::uint64_t number = mesh_.number(c);
+    return number - static_cast<std::uint64_t>(std::lower_bound(slots_.begin(), slots_.end(), number) -
+                                               slots_.begin());
   }
 
+ private:
   const DistributedMesh& mesh_;
-  std::vector<std::uint64_t> vertices_, slots_;  // that are gone, ascending
+  std::uint64_t n_vertices_ = 0;
+  std::vector<std::uint64_t> vertex_;  // by vertex of the part: each is asked for by all its cells
+  std::vector<std::uint64_t> slots_;   // that are gone, ascending
 };
 
 std::vector<VertexHandle> own_vertices(const DistributedMesh& mesh);
