@@ -39,12 +39,8 @@ class Incoming {
   /// Any order; the same thing may come twice. The points of a cell have to be there on its rank.
   void add(const PointRecord& point) { points_.push_back(point); }
   void add(const CornerRecord& cell) { given_.push_back(cell); }
-  void add(std::vector<CornerRecord> cells) {
-    if (given_.empty())
-      given_ = std::move(cells);
-    else
-      given_.insert(given_.end(), cells.begin(), cells.end());
-  }
+  /// The same for all at once.
+  void set_cells(std::vector<CornerRecord> cells) { given_ = std::move(cells); }
   /// On the rank that owns its smallest vertex, or on one that has this point when hand_to_owners() is
   /// called.
   void add(const LabelRecord& label) { labels_.push_back(label); }

@@ -84,7 +84,7 @@ class Passage {
         answers[static_cast<std::size_t>(message.from)].push_back(points_[number - first]);
     Incoming some(comm_);
     exchange_points(answers, some);
-    some.add(std::move(cells));
+    some.set_cells(std::move(cells));
     some.hand_to_owners(incoming);
   }
 

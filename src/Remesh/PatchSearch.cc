@@ -407,8 +407,10 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     if (done->met_bound) run.findings.note_cell_bound(run.bounds);
     run.findings.is_folded = run.findings.is_folded || done->is_folded;
     if (done->n_changed > 0) {
-      run.work.forget_qualities();
-      if (!run.is_part()) run.work.attach(run.mesh, run.policy());
+      if (run.is_part())
+        run.work.forget_qualities();
+      else
+        run.work.attach(run.mesh, run.policy());
       if (run.strategy.patch.has_surface) rebuild(run.surface, run.mesh, run.policy());
     }
     if (!done->worst_rose) break;
