@@ -243,7 +243,7 @@ class PartsRun {
     report_["after"] = json_of(found);
     if (!line_.input.empty()) {
       if (!mpi::check(mesh_).is_good) {
-        pinched_ = mpi::pinched_edges(mesh_);
+        pinched_ = mpi::pinches(mesh_);
         require_good(ExitCode::kCannotRead, line_.input + ": meshes in parts cannot have");
       }
       note_seconds("check");
@@ -457,7 +457,7 @@ class PartsRun {
   mpi::Comm& comm_;
   Json& report_;
   mpi::DistributedMesh mesh_;
-  mpi::PinchedEdges pinched_;  // of the input
+  mpi::Pinches pinched_;  // of the input
   Clock::time_point since_ = Clock::now();
 };
 

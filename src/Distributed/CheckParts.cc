@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "Distributed/InParts.hh"
+#include "Parallel/DisjointSets.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -46,7 +47,7 @@ class Stars {
 /// Looks at one rank's part.
 class PartCheck {
  public:
-  PartCheck(const DistributedMesh& mesh, const PinchedEdges& known)
+  PartCheck(const DistributedMesh& mesh, const Pinches& known)
       : mesh_(mesh), part_(mesh.part()), known_(known) {}
 
   Fault run() const {
@@ -60,17 +61,19 @@ class PartCheck {
       if (Fault fault = look_at(v, stars[v])) return fault;
     return {};
   }
-  PinchedEdges pinched_edges() const {
-    PinchedEdges all;
+  Pinches pinches() const {
+    Pinches all;
     const std::vector<VertexHandle> suspects = suspect_vertices();
     if (suspects.empty()) return all;
     const Stars stars(mesh_);
-    for (VertexHandle v : suspects)
-      if (!part_.is_deleted(v))
-        for_edges(v, stars[v], [&](VertexHandle u, std::size_t n_fans) {
-          if (n_fans > 1) all[{mesh_.number(v), mesh_.number(u)}] = n_fans;
-          return true;
-        });
+    for (VertexHandle v : suspects) {
+      if (part_.is_deleted(v)) continue;
+      if (const std::size_t n = n_groups(stars[v]); n > 1) all.vertices[mesh_.number(v)] = n;
+      for_edges(v, stars[v], [&](VertexHandle u, std::size_t n_fans) {
+        if (n_fans > 1) all.edges[{mesh_.number(v), mesh_.number(u)}] = n_fans;
+        return true;
+      });
+    }
     return all;
   }
 
@@ -200,20 +203,25 @@ class PartCheck {
     return {};
   }
 
-  /// The cells of v connect through faces, and so do those of each edge of it that is not known.
-  Fault look_at_links(VertexHandle v, std::span<const CellHandle> star) const {
-    std::vector<std::uint8_t> seen(star.size(), 0);
-    std::vector<std::size_t> found = {0};
-    seen[0] = 1;
-    for (std::size_t i = 0; i < found.size(); ++i)
-      for (HalfFaceHandle m : part_.cell(star[found[i]]).mate) {
+  /// Groups of the cells of a vertex that connect through faces, all of which have the vertex.
+  std::size_t n_groups(std::span<const CellHandle> star) const {
+    par::DisjointSets<std::uint32_t> groups(star.size());
+    std::size_t n = star.size();
+    for (std::size_t i = 0; i < star.size(); ++i)
+      for (HalfFaceHandle m : part_.cell(star[i]).mate) {
         if (!m.is_valid()) continue;
         const auto at = std::lower_bound(star.begin(), star.end(), cell_of(m));
         if (at == star.end() || *at != cell_of(m)) continue;
-        if (!std::exchange(seen[static_cast<std::size_t>(at - star.begin())], std::uint8_t{1}))
-          found.push_back(static_cast<std::size_t>(at - star.begin()));
+        if (groups.join(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(at - star.begin()))) --n;
       }
-    if (found.size() != star.size()) return name(v) + ": its cells do not connect through faces";
+    return n;
+  }
+
+  /// The cells of v connect through faces, and so do those of each edge of it, but for what is known.
+  Fault look_at_links(VertexHandle v, std::span<const CellHandle> star) const {
+    const auto known_groups = known_.vertices.find(mesh_.number(v));
+    if (n_groups(star) > (known_groups == known_.vertices.end() ? 1 : known_groups->second))
+      return name(v) + ": its cells do not connect through faces";
     Fault fault;
     for_edges(v, star, [&](VertexHandle u, std::size_t n_fans) {
       if (n_fans == 1 || n_fans <= n_known(v, u)) return true;
@@ -223,8 +231,8 @@ class PartCheck {
     return fault;
   }
   std::size_t n_known(VertexHandle v, VertexHandle u) const {
-    const auto at = known_.find({mesh_.number(v), mesh_.number(u)});
-    return at == known_.end() ? 1 : at->second;
+    const auto at = known_.edges.find({mesh_.number(v), mesh_.number(u)});
+    return at == known_.edges.end() ? 1 : at->second;
   }
 
   /// body(other end, fans of cells round it) for the edges of v, while it returns true.
@@ -279,7 +287,7 @@ class PartCheck {
 
   const DistributedMesh& mesh_;
   const TetMesh& part_;
-  const PinchedEdges& known_;
+  const Pinches& known_;
 };
 
 /// What is held of a cell or vertex of another rank.
@@ -293,6 +301,10 @@ struct HeldCell {
 struct HeldVertex {
   std::uint64_t number = 0;
   Vec3 point;
+  /// Where it is near enough that this rank holds all its cells.
+  bool is_near = false, is_pinched = false;
+  std::uint32_t star_size = 0;
+  std::uint64_t incident = kNoNumber;
 };
 
 std::uint64_t hash_of_labels(const DistributedMesh& mesh, CellHandle c) {
@@ -309,6 +321,16 @@ HeldCell held(const DistributedMesh& mesh, CellHandle c) {
   HeldCell one{
       mesh.number(c), {}, mesh.work().quality[c.idx()], mesh.part().region(c), hash_of_labels(mesh, c)};
   for (std::size_t k = 0; k < 4; ++k) one.v[k] = mesh.number(mesh.part().cell(c).v[k]);
+  return one;
+}
+
+HeldVertex held(const DistributedMesh& mesh, VertexHandle v, bool is_near) {
+  HeldVertex one{mesh.number(v), mesh.part().point(v), is_near, false, 0, kNoNumber};
+  if (!is_near) return one;
+  const Workspace& work = mesh.work();
+  one.is_pinched = !work.pinched.empty() && work.pinched[v.idx()] != 0;
+  one.star_size = work.star_size[v.idx()];
+  one.incident = mesh.number(mesh.part().incident_cell(v));
   return one;
 }
 
@@ -332,7 +354,8 @@ Fault compare_with_owners(DistributedMesh& mesh) {
   }
   for (std::size_t i = 0; i < part.n_vertices(); ++i)
     if (const VertexHandle v(i); has_cell[i] && !mesh.is_own(v))
-      vertices[static_cast<std::size_t>(mesh.owner(v))].push_back({mesh.number(v), part.point(v)});
+      vertices[static_cast<std::size_t>(mesh.owner(v))].push_back(
+          held(mesh, v, mesh.within_two().has(i, mesh.comm().rank())));
   std::vector<Packer> to(n_ranks);
   for (std::size_t r = 0; r < n_ranks; ++r) {
     if (cells[r].empty() && vertices[r].empty()) continue;
@@ -358,8 +381,12 @@ Fault compare_with_owners(DistributedMesh& mesh) {
     }
     for (const HeldVertex& theirs : in.get_all<HeldVertex>()) {
       const VertexHandle v = mesh.vertex_at(theirs.number);
-      if (!v.is_valid() || !mesh.is_own(v) || part.is_deleted(v) || part.point(v) != theirs.point)
-        say("vertex " + std::to_string(theirs.number));
+      const bool is_same = v.is_valid() && mesh.is_own(v) && !part.is_deleted(v) && [&] {
+        const HeldVertex mine = held(mesh, v, theirs.is_near);
+        return mine.point == theirs.point && mine.is_pinched == theirs.is_pinched &&
+               mine.star_size == theirs.star_size && mine.incident == theirs.incident;
+      }();
+      if (!is_same) say("vertex " + std::to_string(theirs.number));
     }
   }
   return fault;
@@ -395,9 +422,9 @@ Fault compare_boundaries(DistributedMesh& mesh) {
 
 }  // namespace
 
-PinchedEdges pinched_edges(const DistributedMesh& mesh) { return PartCheck(mesh, {}).pinched_edges(); }
+Pinches pinches(const DistributedMesh& mesh) { return PartCheck(mesh, {}).pinches(); }
 
-PartsCheck check(DistributedMesh& mesh, const PinchedEdges& known) {
+PartsCheck check(DistributedMesh& mesh, const Pinches& known) {
   Comm& comm = mesh.comm();
   const Comm::InPhase phase(comm, Phase::kTally);
   Fault fault = PartCheck(mesh, known).run();

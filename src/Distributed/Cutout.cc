@@ -52,9 +52,10 @@ void pack_round(const DistributedMesh& parts, std::span<const VertexHandle> vert
   const TetMesh& part = parts.part();
   std::vector<std::uint64_t> taken;
   std::vector<CellHandle> cells;
+  WholeStars stars(part, parts.work());
   for (VertexHandle v : vertices) {
     taken.push_back(parts.number(v));
-    for (CellHandle c : part.vertex_cells(v)) cells.push_back(c);
+    stars.for_cells(v, [&](CellHandle c) { cells.push_back(c); });
   }
   sort_and_unite(cells, part.n_cells());
   std::vector<CellRecord> cell_records;
@@ -78,7 +79,7 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
                std::span<const std::uint8_t> depth, Where where) {
   const TetMesh& part = parts.part();
   Comm& comm = parts.comm();
-  Spread spread(parts);
+  Spread spread(parts, Spread::Stars::kWhole);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellHandle c = parts.cell_at(cells[i]);
     if (!c.is_valid() || part.is_deleted(c) || !parts.is_own(c)) continue;
@@ -124,12 +125,13 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   work_.clock = parts.work().clock;
   work_.floor = parts.work().floor;
   work_.holds_damage = parts.work().holds_damage;
-  build(cell_records, taken);
+  build(cell_records, taken, !parts.work().pinched.empty());
   labels_.add(mesh_, labels, [this](std::uint64_t n) { return vertex_at(n); });
 }
 
 /// `taken`: numbers of vertices, ascending.
-void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::uint64_t>& taken) {
+void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::uint64_t>& taken,
+                   bool has_pinched) {
   TetMesh::Writer writer(mesh_);
   mesh_.reserve_vertices(vertices_.size());
   vertex_index_ = NumberIndex(vertices_.size());
@@ -139,6 +141,7 @@ void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::
     work_.star_size.push_back(r.star_size);
     work_.changed.push_back(r.changed);
     work_.frozen.push_back(r.frozen);
+    if (has_pinched) work_.pinched.push_back(r.pinched);
     is_taken.push_back(std::binary_search(taken.begin(), taken.end(), r.number) ? 1 : 0);
   }
   const std::size_t n = cells.size();
@@ -199,6 +202,7 @@ VertexRecord Cutout::record(VertexHandle v) const {
   r.changed = work_.changed[v.idx()];
   r.frozen = work_.frozen[v.idx()];
   r.of_owner = 1;
+  r.pinched = work_.pinched.empty() ? std::uint8_t{0} : work_.pinched[v.idx()];
   return r;
 }
 

@@ -54,7 +54,8 @@ class Cutout {
   }
 
  private:
-  void build(const std::vector<DistributedMesh::CellRecord>& cells, const std::vector<std::uint64_t>& taken);
+  void build(const std::vector<DistributedMesh::CellRecord>& cells, const std::vector<std::uint64_t>& taken,
+             bool has_pinched);
   VertexHandle vertex_at(std::uint64_t number) const;
 
   TetMesh mesh_;

@@ -82,7 +82,7 @@ void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t>
 /// In rank order, a candidate wins when no cell of its scope is taken, it makes nothing twice, and the bounds
 /// have room for it; slots as PartRound has them.
 void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std::size_t may_gain,
-                         bool check_links, std::vector<std::vector<Prize>>& prizes) {
+                         bool forbids_twice, std::vector<std::vector<Prize>>& prizes) {
   // Two seeds may have one name where both find the same: then the first in the order of numbers comes first,
   // as it does where all cells are in one mesh.
   std::sort(all.begin(), all.end(), [](const Contender& a, const Contender& b) {
@@ -97,7 +97,7 @@ void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std:
   for (const Contender& one : all) {
     if (std::any_of(one.cells.begin(), one.cells.end(), [&](std::uint64_t c) { return taken.contains(c); }))
       continue;
-    if (check_links && !add_unless_there(one.made, made)) continue;
+    if (forbids_twice && !add_unless_there(one.made, made)) continue;
     taken.insert(one.cells.begin(), one.cells.end());
     const std::size_t n_removed = one.told.n_removed, n_created = one.told.n_created;
     const std::size_t n_same = std::min(n_removed, n_created);
@@ -122,7 +122,7 @@ void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std:
 }
 
 auto CutoutRound::select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
-                         bool check_links) -> Selected {
+                         bool forbids_twice) -> Selected {
   Comm& comm = parts_.comm();
   const Comm::InPhase phase(comm, Phase::kSelect);
   const auto& has_met = cutout_.rim().has_met;
@@ -161,7 +161,7 @@ auto CutoutRound::select(const Candidates& candidates, std::size_t may_lose, std
   Packer common;
   if (comm.rank() == 0) {
     std::vector<std::vector<Prize>> prizes(comm.n_ranks());
-    decide(all, may_lose, may_gain, check_links, prizes);
+    decide(all, may_lose, may_gain, forbids_twice, prizes);
     for (std::size_t r = 0; r < prizes.size(); ++r)
       for (const Prize& prize : prizes[r]) {
         to[r].put(prize.award);

@@ -54,7 +54,7 @@ class CutoutRound : public RoundPlace {
   CellHandle slot(std::uint64_t number) override { return cutout_.add_slot(number); }
   /// None where an evaluation has come to the rim of a cutout: then the round is void.
   Selected select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
-                  bool check_links) override;
+                  bool forbids_twice) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;
 
@@ -87,7 +87,7 @@ class CutoutRound : public RoundPlace {
   struct Contender;
   struct Prize;
 
-  void decide(std::vector<Contender>& all, std::size_t may_lose, std::size_t may_gain, bool check_links,
+  void decide(std::vector<Contender>& all, std::size_t may_lose, std::size_t may_gain, bool forbids_twice,
               std::vector<std::vector<Prize>>& prizes);
   static std::vector<VertexRecord> merged(std::vector<Heard> all);
 

@@ -8,7 +8,7 @@
 
 #include "Distributed/Cut.hh"
 #include "Distributed/PartMessage.hh"
-#include "Distributed/PartPatches.hh"
+#include "Distributed/PartTurns.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/Writer.hh"
 #include "Parallel/Sort.hh"
@@ -118,13 +118,23 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
   work_.pending.assign(mesh_.n_cells(), 0xff);
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);
   start_zone();
-  const std::vector<std::uint8_t> pinched = pinched_vertices(mesh_, work_.star_size, {});
-  for (std::size_t v = 0; v < pinched.size(); ++v)
-    HFR_REQUIRE(!pinched[v] || !is_own(VertexHandle(v)),
-                "vertex " + std::to_string(vertex_number_[v]) +
-                    ": its cells do not connect through faces, or are more than " +
-                    std::to_string(Star::kCapacity) + "; a mesh in parts cannot have that yet");
+  find_pinched();
   return turn_negative_components(*this);
+}
+
+/// Of vertices further away a part does not hold all cells. Where any rank has a pinched one, all keep bytes.
+void DistributedMesh::find_pinched() {
+  std::vector<std::uint8_t>& pinched = work_.pinched;
+  pinched = pinched_vertices(mesh_, work_.star_size, {});
+  std::uint64_t n_own = 0;
+  for (std::size_t v = 0; v < pinched.size(); ++v) {
+    if (!near2_.has(v, comm_.rank())) pinched[v] = 0;
+    n_own += pinched[v] != 0 && is_own(VertexHandle(v)) ? 1 : 0;
+  }
+  if (comm_.sum(n_own) == 0)
+    pinched.clear();
+  else
+    pinched.resize(mesh_.n_vertices(), 0);
 }
 
 std::vector<std::uint64_t> DistributedMesh::renumber(std::span<const std::uint64_t> to) {
@@ -176,6 +186,7 @@ void DistributedMesh::put_back(const DistributedMesh& copy) {
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);
   work_.all_touched = true;
   start_zone();
+  find_pinched();
 }
 
 VertexHandle DistributedMesh::vertex_at(std::uint64_t number) const {
@@ -228,6 +239,7 @@ auto DistributedMesh::record(VertexHandle v) const -> VertexRecord {
   r.frozen = work_.frozen[v.idx()];
   r.of_owner = is_own(v) ? 1 : 0;
   r.deleted = mesh_.is_deleted(v) ? 1 : 0;
+  r.pinched = work_.pinched.empty() ? std::uint8_t{0} : work_.pinched[v.idx()];
   return r;
 }
 
@@ -264,6 +276,7 @@ void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<co
     work_.star_size[v.idx()] = r.star_size;
     work_.changed[v.idx()] = r.changed;
     work_.frozen[v.idx()] = r.frozen;
+    if (!work_.pinched.empty()) work_.pinched[v.idx()] = r.pinched;
     const CellHandle c = r.incident == kNoNumber ? CellHandle() : cell_at(r.incident);
     if (c.is_valid() && !mesh_.is_deleted(c)) writer.set_incident_cell(v, c);
   }
@@ -361,6 +374,7 @@ void DistributedMesh::add_vertices(std::vector<VertexRecord> fresh) {
     work_.star_size.push_back(r.star_size);
     work_.changed.push_back(r.changed);
     work_.frozen.push_back(r.frozen);
+    if (!work_.pinched.empty()) work_.pinched.push_back(r.pinched);
     for (RankSets* sets : {&near1_, &near2_, &told_}) sets->append_only(r.owner);
     marks_.push_back(0);
   }
@@ -381,6 +395,7 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> fresh) {
   open_gaps(to, n, std::uint32_t{0}, work_.star_size);
   open_gaps(to, n, std::uint32_t{0}, work_.changed);
   open_gaps(to, n, std::uint8_t{0}, work_.frozen);
+  if (!work_.pinched.empty()) open_gaps(to, n, std::uint8_t{0}, work_.pinched);
   for (RankSets* sets : {&near1_, &near2_, &told_}) open_gaps(to, n, RankSets::kEmpty, sets->ids());
   for (auto* list : {&dirty_, &renewed_})
     for (VertexHandle& v : *list) v = to[v.idx()];
@@ -394,6 +409,7 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> fresh) {
     work_.star_size[v.idx()] = r.star_size;
     work_.changed[v.idx()] = r.changed;
     work_.frozen[v.idx()] = r.frozen;
+    if (!work_.pinched.empty()) work_.pinched[v.idx()] = r.pinched;
     for (RankSets* sets : {&near1_, &near2_, &told_}) sets->set_only(v.idx(), r.owner);
   }
 }

@@ -53,7 +53,7 @@ struct Turned {
 ///
 /// What has to be equal on all parts that hold it is: cells, their qualities and pending bits, points, what
 /// hangs on the vertices, edges and faces of cells (labels, and what is fixed), and within two edges of own
-/// vertices change stamps, star sizes and incident cells.
+/// vertices change stamps, star sizes, incident cells, and whether a vertex is pinched.
 class DistributedMesh : private detail::PartState {
  public:
   explicit DistributedMesh(Comm& comm) : comm_(comm) {}
@@ -77,8 +77,7 @@ class DistributedMesh : private detail::PartState {
     std::vector<int> owner;  ///< of each vertex
   };
   /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
-  /// qualities yet. Cells are turned as build() does. Throws InvalidInput where cells of a vertex do not
-  /// connect through faces.
+  /// qualities yet. Cells are turned as build() does.
   Turned assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
   /// After assemble(), for what a file says of vertices, edges and faces: each on the rank that owns its
   /// smallest vertex, with its place in the file as its number, maybe several times. Of several labels of a
@@ -99,6 +98,9 @@ class DistributedMesh : private detail::PartState {
   /// Gives cells other numbers, to[slot] for each slot, and the slots the order of these; see is_dense().
   /// What the workspace has of vertices stays. Returns the old numbers, by new slot.
   std::vector<std::uint64_t> renumber(std::span<const std::uint64_t> to);
+
+  /// Which vertices are pinched now, as Workspace::attach() looks for them. All take part.
+  void find_pinched();
 
   /// What gather() brings.
   enum class Gather : std::uint8_t {
@@ -184,7 +186,7 @@ class DistributedMesh : private detail::PartState {
     Vec3 point;
     std::int32_t owner = 0;
     std::uint32_t star_size = 0, changed = 0;
-    std::uint8_t frozen = 0, of_owner = 0, deleted = 0;
+    std::uint8_t frozen = 0, of_owner = 0, deleted = 0, pinched = 0;
   };
   struct CellRecord {
     std::uint64_t number = 0;

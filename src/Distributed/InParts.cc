@@ -86,7 +86,7 @@ class Residents : public Ranks, public MeshInParts {
   std::string fault(const std::shared_ptr<const void>& copy) override {
     PartsCheck checked = check(mesh_);
     if (!checked.is_good)
-      checked = check(mesh_, pinched_edges(*std::static_pointer_cast<const DistributedMesh>(copy)));
+      checked = check(mesh_, pinches(*std::static_pointer_cast<const DistributedMesh>(copy)));
     return checked.is_good ? std::string() : checked.message;
   }
 
@@ -305,7 +305,7 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   Residents residents(mesh, policy);
   Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
           nullptr,     nullptr,     strategy.bounds, false,   &residents};
-  if (options.polish_only && found.n_invalid == 0 && !findings.is_folded) {
+  if (options.polish_only && found.n_invalid == 0 && !findings.is_folded && mesh.work().pinched.empty()) {
     result.has_fallen = polish_valid(run, goal, result.before.worst);
   } else {
     Checkpoint checkpoint(residents, policy);

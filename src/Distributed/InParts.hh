@@ -79,16 +79,20 @@ struct PartsCheck {
   int rank = 0;         ///< the first that found something
   std::string message;  ///< one line; empty where nothing is wrong; that of that rank, on all
 };
-/// Edges of this rank's vertices with more than one fan of cells, by the numbers of such a vertex and of the
-/// other end: how many fans.
-using PinchedEdges = std::map<std::array<std::uint64_t, 2>, std::size_t>;
-PinchedEdges pinched_edges(const DistributedMesh& mesh);
+/// Where the mesh touches itself, as far as this rank's own vertices go.
+struct Pinches {
+  /// By number: into how many groups the cells of a vertex fall that connect through faces of it.
+  std::map<std::uint64_t, std::size_t> vertices;
+  /// By the numbers of an own vertex and of the other end: how many fans of cells an edge has.
+  std::map<std::array<std::uint64_t, 2>, std::size_t> edges;
+};
+Pinches pinches(const DistributedMesh& mesh);
 
 /// Each rank looks at its own cells and vertices by the rules of hfr::check(), orientation and manifold edges
-/// and vertices included; then cells that are held for others are compared with their owners', to the last
-/// bit, and faces of the boundary with those of all ranks, since none may be another's mate.
-/// `known`: what was there before, which counts as a fault where there are more fans now.
-PartsCheck check(DistributedMesh& mesh, const PinchedEdges& known = {});
+/// and vertices included; then cells and vertices that are held for others are compared with their owners',
+/// to the last bit, and faces of the boundary with those of all ranks, since none may be another's mate.
+/// `known`: what was there before, which counts as a fault where there are more groups or fans now.
+PartsCheck check(DistributedMesh& mesh, const Pinches& known = {});
 
 /// `path`, an index of pieces (.pvtu), and beside it, in a folder of its name, one piece (.vtu, raw appended)
 /// for each rank: its own cells and all their points, each with its "number" in the whole. Numbers have no

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "Distributed/DistributedMesh.hh"
+#include "Distributed/WholeStars.hh"
 #include "HalfFace/Errors.hh"
 
 namespace hfr::mpi {
@@ -96,6 +97,7 @@ std::vector<std::uint8_t> DistributedMesh::has_cell(std::span<const LabelRecord>
 void DistributedMesh::hand_out_labels(std::span<const LabelRecord> records) {
   std::vector<std::vector<LabelRecord>> to(comm_.n_ranks());
   RankSet holders(near2_.words());
+  WholeStars stars(mesh_, work_);
   for (const LabelRecord& r : records) {
     holders.clear();
     const VertexHandle v = vertex_at(r.smallest_vertex());
@@ -104,9 +106,10 @@ void DistributedMesh::hand_out_labels(std::span<const LabelRecord> records) {
                          [&](std::uint64_t n) { return n == kNoNumber || cell.has(vertex_at(n)); });
     };
     if (mesh_.incident_cell(v).is_valid())
-      for (CellHandle c : mesh_.vertex_cells(v))
+      stars.for_cells(v, [&](CellHandle c) {
         if (in_zone_[c.idx()] != 0 && has_all(mesh_.cell(c)))
           for (VertexHandle u : mesh_.cell(c).v) holders.add(near2_[u.idx()]);
+      });
     holders.remove(comm_.rank());
     for_ranks(holders.bits(), [&](int rank) { to[static_cast<std::size_t>(rank)].push_back(r); });
   }

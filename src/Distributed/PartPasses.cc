@@ -95,7 +95,7 @@ bool PartPasses::is_marked(VertexHandle v) const {
 }
 
 void PartPasses::mark_round(double degrees, int layers) {
-  Spread spread(parts_);
+  Spread spread(parts_, Spread::Stars::kWalked);  // as vertices_within()
   for (CellHandle c : cells_below(parts_.part(), degrees, {}, known_values(parts_.work())))
     if (parts_.is_own(c)) spread.begin(c, static_cast<std::uint32_t>(layers));
   spread.run();

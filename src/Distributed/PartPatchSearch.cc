@@ -28,6 +28,7 @@ class CutoutPatches : public PatchPlace {
 
   TetMesh& mesh() override { return cutout_.mesh(); }
   std::span<const CellHandle> worst() const override { return worst_; }
+  std::span<const std::uint8_t> pinched() const override { return cutout_.work().pinched; }
   std::size_t n_cells() const override { return n_cells_; }
   bool tries_on(std::size_t patch) const override {
     return patch % parts_.comm().n_ranks() == static_cast<std::size_t>(parts_.comm().rank());
@@ -214,6 +215,7 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
   std::fill(work.pending.begin(), work.pending.end(), 0xff);
   std::fill(work.claim.begin(), work.claim.end(), kUnclaimed);
   work.all_touched = true;
+  parts.find_pinched();
   return done;
 }
 

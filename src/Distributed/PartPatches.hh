@@ -37,10 +37,6 @@ struct PatchChange {
 /// joined in the order of its cells, since damage has sums. All take part.
 std::vector<PatchChange> joined_on_first(Comm& comm, std::span<const PatchChange> mine);
 
-/// Turns cells of a mesh whose vertices all connect through faces as build() does: all of them where most are
-/// negative, then each connected part that has more negative cells than positive ones. All take part.
-Turned turn_negative_components(DistributedMesh& parts);
-
 }  // namespace hfr::mpi
 
 #endif

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "Distributed/WholeStars.hh"
 #include "HalfFace/Writer.hh"
 #include "Scheduler/Select.hh"
 
@@ -67,14 +68,16 @@ bool PartRound::is_before(const Entry& a, const Entry& b) const {
 }
 
 auto PartRound::select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
-                       bool check_links) -> Selected {
+                       bool forbids_twice) -> Selected {
   const Comm::InPhase phase(comm_, Phase::kSelect);
   candidates_ = &candidates;
-  const bool is_anyone_told = announce();
-  if (check_links)
+  if (forbids_twice)
+    for (std::size_t i = 0; i < candidates.size(); ++i) made_.push_back(candidates.made(i));
+  const Heard heard = announce();
+  if (heard.makes_any)
     decide_on_first();
   else
-    decide(is_anyone_told);
+    decide(heard.is_anyone_told);
   Selected selected;
   for (const Entry& entry : entries_)
     if (entry.state == State::kWon)
@@ -87,14 +90,14 @@ auto PartRound::select(const Candidates& candidates, std::size_t may_lose, std::
   entries_ = {};
   told_ = {};
   others_ = {};
+  made_ = {};
   candidates_ = nullptr;
   return selected;
 }
 
 /// Tells each rank of the candidates that have a vertex within one edge of its own ones: those are all that
-/// share a cell with a candidate of that rank, and all that it has to commit. Returns whether any rank has
-/// told another of one.
-bool PartRound::announce() {
+/// share a cell with a candidate of that rank, and all that it has to commit.
+auto PartRound::announce() -> Heard {
   const TetMesh& part = mesh_.part();
   std::vector<Packer> to(comm_.n_ranks());
   entries_.resize(candidates_->size());
@@ -122,7 +125,8 @@ bool PartRound::announce() {
     entry.other = static_cast<std::uint32_t>(told_.size());
     told_.push_back(told);
   }
-  const Comm::Exchanged came = comm_.exchange(to, 0);
+  const bool makes_some = std::any_of(made_.begin(), made_.end(), [](const auto& m) { return !m.empty(); });
+  const Comm::Exchanged came = comm_.exchange(to, makes_some ? 1 : 0);
   for (const Comm::Message& message : came.messages) hear(message);
   const auto before = [&](const Entry& a, const Entry& b) { return is_before(a, b); };
   const auto middle = entries_.begin() + static_cast<std::ptrdiff_t>(candidates_->size());
@@ -131,7 +135,7 @@ bool PartRound::announce() {
     std::sort(middle, entries_.end(), before);
     std::inplace_merge(entries_.begin(), middle, entries_.end(), before);
   }
-  return came.n_messages > 0;
+  return {came.n_messages > 0, came.sum > 0};
 }
 
 void PartRound::hear(const Comm::Message& message) {
@@ -195,28 +199,28 @@ void PartRound::decide_on_first() {
     std::vector<std::uint64_t> cells;
     for (CellHandle c : scope(entry)) cells.push_back(mesh_.number(c));
     to[0].put_all(cells);
-    to[0].put_all(candidates_->made(entry.own));
+    to[0].put_all(made_[entry.own]);
   }
-  struct Heard {
+  struct Met {
     Contender contender;
     int home = 0;
     std::vector<std::uint64_t> cells, made;
   };
-  std::vector<Heard> all;
+  std::vector<Met> all;
   for (const Comm::Message& message : comm_.exchange(to))
     for (Unpacker in(message.bytes); !in.at_end();) {
-      Heard& one = all.emplace_back();
+      Met& one = all.emplace_back();
       one.contender = in.get<Contender>();
       one.home = message.from;
       one.cells = in.get_all<std::uint64_t>();
       one.made = in.get_all<std::uint64_t>();
     }
-  std::sort(all.begin(), all.end(), [](const Heard& a, const Heard& b) {
+  std::sort(all.begin(), all.end(), [](const Met& a, const Met& b) {
     return by_rank_order(a.contender) < by_rank_order(b.contender);
   });
   std::vector<std::uint64_t> won;
   std::unordered_set<std::uint64_t> taken, made;
-  for (const Heard& one : all) {
+  for (const Met& one : all) {
     const bool is_free =
         std::none_of(one.cells.begin(), one.cells.end(), [&](std::uint64_t c) { return taken.contains(c); });
     if (!is_free || !add_unless_there(one.made, made)) continue;
@@ -471,14 +475,16 @@ auto PartRound::changed_cells(std::span<const Commit> commits) const -> std::vec
 auto PartRound::new_cells() const -> std::vector<Push> {
   std::vector<Push> pushes(comm_.n_ranks());
   RankSet now(mesh_.within_two().words());
+  WholeStars stars(mesh_.part(), mesh_.work());
   for (VertexHandle v : mesh_.renewed()) {
     if (mesh_.part().is_deleted(v)) continue;
     now.clear();
     now.add(mesh_.within_two(v));
     now.remove(mesh_.told(v));
     if (now.empty()) continue;
-    for (CellHandle c : mesh_.part().vertex_cells(v))
+    stars.for_cells(v, [&](CellHandle c) {
       for_others(now.bits(), pushes, [&](Push& push) { push.cells.push_back(c); });
+    });
   }
   return pushes;
 }

@@ -35,7 +35,7 @@ class PartRound : public RoundPlace {
   std::uint64_t number(CellHandle c) const override { return mesh_.number(c); }
   CellHandle slot(std::uint64_t number) override { return mesh_.slot_of(number); }
   Selected select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
-                  bool check_links) override;
+                  bool forbids_twice) override;
   void finish(std::span<const Commit> commits) override;
   RoundCounts total(RoundCounts mine) override;
   /// After cells have come and gone here by DistributedMesh::apply(): brings what is near to others' vertices
@@ -76,7 +76,11 @@ class PartRound : public RoundPlace {
     RankSet receivers{0};                // ranks that hold cells of it, as far as this rank answers for it
   };
 
-  bool announce();
+  struct Heard {
+    bool is_anyone_told = false;  ///< any rank has told another of a candidate
+    bool makes_any = false;       ///< something that may be made once, a candidate of any rank
+  };
+  Heard announce();
   void hear(const Comm::Message& message);
   void decide(bool is_anyone_told);
   void decide_on_first();
@@ -133,6 +137,7 @@ class PartRound : public RoundPlace {
   std::vector<Entry> entries_;              // in the order of is_before()
   std::vector<RankSet> told_;               // of own candidates: ranks that know of it
   std::vector<OfOther> others_;
+  std::vector<std::vector<std::uint64_t>> made_;  // by own candidates, where nothing may be made twice
   std::vector<std::uint32_t> undecided_;
   std::vector<Pending> pending_;
   std::vector<std::uint64_t> dropped_;  // entries given up for the number of cells

@@ -4,6 +4,8 @@
 #include <bit>
 #include <utility>
 
+#include "Distributed/WholeStars.hh"
+
 namespace hfr::mpi {
 namespace {
 
@@ -79,7 +81,11 @@ std::span<const HalfFaceHandle> PartSmoothing::link(VertexHandle own) const {
 /// smaller neighbours are.
 class PartSmoothing::Ready {
  public:
-  Ready(const PartSmoothing& pass) : pass_(pass), waits_(pass.colour_.size()), seen_(pass.colour_.size(), 0) {
+  Ready(const PartSmoothing& pass)
+      : pass_(pass),
+        stars_(pass.mesh_.part(), pass.mesh_.work()),
+        waits_(pass.colour_.size()),
+        seen_(pass.colour_.size(), 0) {
     begin_.reserve(pass_.own_.size() + 1);
     for (VertexHandle v : pass_.own_) {
       begin_.push_back(larger_.size());
@@ -127,9 +133,10 @@ class PartSmoothing::Ready {
       return;
     }
     see(v);
-    for (CellHandle c : pass_.mesh_.part().vertex_cells(v))
+    stars_.for_cells(v, [&](CellHandle c) {
       for (VertexHandle w : pass_.mesh_.part().cell(c).v)
         if (v < w && is_first_look(w)) tell(w, bit);
+    });
   }
 
  private:
@@ -149,6 +156,7 @@ class PartSmoothing::Ready {
   bool is_first_look(VertexHandle u) { return std::exchange(seen_[u.idx()], n_seen_) != n_seen_; }
 
   const PartSmoothing& pass_;
+  WholeStars stars_;
   std::vector<Wait> waits_;          // by vertex
   std::vector<std::uint32_t> seen_;  // by vertex: of whose neighbours it was the last time
   std::uint32_t n_seen_ = 0;

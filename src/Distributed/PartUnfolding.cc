@@ -8,7 +8,6 @@
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/PartPatches.hh"
-#include "Distributed/Spread.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
 
@@ -44,15 +43,15 @@ std::size_t PartUnfolding::look() {
   return static_cast<std::size_t>(parts_.comm().sum(invalid_.size()));
 }
 
-std::vector<VertexHandle> PartUnfolding::own_within(int layers) const {
-  Spread spread(parts_);
+std::vector<VertexHandle> PartUnfolding::own_within(int layers, Spread::Stars kind) const {
+  Spread spread(parts_, kind);
   for (CellHandle c : invalid_) spread.begin(c, static_cast<std::uint32_t>(layers));
   spread.run();
   return std::move(spread.own().front());
 }
 
 std::size_t PartUnfolding::n_within(int layers) {
-  return static_cast<std::size_t>(parts_.comm().sum(own_within(layers).size()));
+  return static_cast<std::size_t>(parts_.comm().sum(own_within(layers, Spread::Stars::kWalked).size()));
 }
 
 /// These and those that other ranks have within one edge of own ones, ascending.
@@ -72,7 +71,7 @@ std::vector<VertexHandle> PartUnfolding::with_others_near(std::span<const Vertex
 
 std::size_t PartUnfolding::take(int layers) {
   const TetMesh& part = parts_.part();
-  std::vector<VertexHandle> own = own_within(layers);
+  std::vector<VertexHandle> own = own_within(layers, Spread::Stars::kWhole);
   std::erase_if(own, [&](VertexHandle v) { return parts_.work().frozen[v.idx()] != 0; });
   const std::uint64_t n = parts_.comm().sum(own.size());
   if (n == 0) return 0;

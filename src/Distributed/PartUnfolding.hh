@@ -9,6 +9,7 @@
 
 #include "Distributed/DistributedMesh.hh"
 #include "Distributed/PartSmoothing.hh"
+#include "Distributed/Spread.hh"
 #include "Remesh/Unfolding.hh"
 
 namespace hfr::mpi {
@@ -41,7 +42,7 @@ class PartUnfolding : public Unfolding {
   std::size_t keep_what_helps() override;
 
  private:
-  std::vector<VertexHandle> own_within(int layers) const;
+  std::vector<VertexHandle> own_within(int layers, Spread::Stars kind) const;
   std::vector<VertexHandle> with_others_near(std::span<const VertexHandle> own) const;
   void tell(std::span<const VertexHandle> moved);
   std::vector<std::uint64_t> patches_that_gain(std::span<const std::uint64_t> patch_of_cell);

@@ -10,6 +10,7 @@
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/DistributedMesh.hh"
+#include "Distributed/WholeStars.hh"
 
 namespace hfr::mpi {
 
@@ -17,7 +18,12 @@ namespace hfr::mpi {
 /// asks. Each step goes one edge further; what it comes to of other ranks is told to them.
 class Spread {
  public:
-  explicit Spread(const DistributedMesh& parts) : parts_(parts), to_(parts.comm().n_ranks()) {}
+  /// What a step goes along: the cells that a walk round a vertex sees, which for a pinched one depends on
+  /// its incident cell, or all of them.
+  enum class Stars : std::uint8_t { kWalked, kWhole };
+
+  Spread(const DistributedMesh& parts, Stars kind)
+      : parts_(parts), kind_(kind), stars_(parts.part(), parts.work()), to_(parts.comm().n_ranks()) {}
 
   void begin(CellHandle c, std::uint32_t depth, int for_whom = 0) {
     for (VertexHandle v : parts_.part().cell(c).v) reach({v, for_whom}, depth);
@@ -77,11 +83,18 @@ class Spread {
   void go_on_from(const Mark& mark) {
     const std::uint32_t left = left_.at(key_of(mark));
     if (left == 0) return;
-    for (CellHandle c : parts_.part().vertex_cells(mark.v))
+    const auto go_through = [&](CellHandle c) {
       for (VertexHandle u : parts_.part().cell(c).v) reach({u, mark.for_whom}, left - 1);
+    };
+    if (kind_ == Stars::kWhole)
+      stars_.for_cells(mark.v, go_through);
+    else
+      for (CellHandle c : parts_.part().vertex_cells(mark.v)) go_through(c);
   }
 
   const DistributedMesh& parts_;
+  Stars kind_;
+  WholeStars stars_;
   std::unordered_map<std::uint64_t, std::uint32_t> left_;  // edges to go, by vertex and rank
   std::vector<Mark> next_;                                 // own ones to go on from
   std::vector<Packer> to_;

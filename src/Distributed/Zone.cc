@@ -5,6 +5,7 @@
 
 #include "Distributed/DistributedMesh.hh"
 #include "Distributed/Near.hh"
+#include "Distributed/WholeStars.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -113,9 +114,9 @@ void DistributedMesh::update_zone() {
   dirty_.clear();
   if (vertices.empty()) return;
   n_changed_in_zone_ += vertices.size();
+  WholeStars stars(mesh_, work_);
   const auto put_star = [&](VertexHandle v) {
-    if (!mesh_.is_deleted(v))
-      for (CellHandle c : mesh_.vertex_cells(v)) put_into_zone(c);
+    if (!mesh_.is_deleted(v)) stars.for_cells(v, [&](CellHandle c) { put_into_zone(c); });
   };
   std::vector<Index> cells = zone_round(vertices);
   const auto nearer =

@@ -27,6 +27,8 @@ class PatchPlace {
   virtual TetMesh& mesh() = 0;
   /// Those that the search is for, the worst first.
   virtual std::span<const CellHandle> worst() const = 0;
+  /// As Workspace has it.
+  virtual std::span<const std::uint8_t> pinched() const = 0;
   /// Cells of the whole.
   virtual std::size_t n_cells() const = 0;
   /// Whether it is this process that tries on patch i.

@@ -310,14 +310,14 @@ std::vector<Outcome> search(const Run& run, PatchPlace& place, std::span<const P
 }
 
 /// Patches round the worst of the cells that share none.
-std::vector<Patch> disjoint_patches(const Run& run, const TetMesh& mesh, std::span<const CellHandle> worst,
-                                    const PatchEffort& effort) {
+std::vector<Patch> disjoint_patches(PatchPlace& place, const PatchEffort& effort) {
+  const TetMesh& mesh = place.mesh();
   std::vector<Patch> patches;
   std::vector<std::uint8_t> taken(mesh.n_cells(), 0);
-  for (CellHandle c : worst) {
+  for (CellHandle c : place.worst()) {
     if (patches.size() == effort.patches) break;
     if (taken[c.idx()]) continue;
-    Patch patch(mesh, c, effort.layers, run.work.pinched);
+    Patch patch(mesh, c, effort.layers, place.pinched());
     const auto& cells = patch.cells();
     if (std::any_of(cells.begin(), cells.end(), [&](CellHandle d) { return taken[d.idx()] != 0; })) continue;
     for (CellHandle d : cells) taken[d.idx()] = 1;
@@ -348,7 +348,7 @@ void put_back(const Run& run, PatchPlace& place, std::span<const Patch> patches,
 }
 
 PatchesDone search_at(const Run& run, PatchPlace& place, double goal, const PatchEffort& effort) {
-  const std::vector<Patch> patches = disjoint_patches(run, place.mesh(), place.worst(), effort);
+  const std::vector<Patch> patches = disjoint_patches(place, effort);
   PatchesDone done;
   done.n_patches = patches.size();
   if (!patches.empty()) put_back(run, place, patches, search(run, place, patches, goal, effort), done);
@@ -358,14 +358,17 @@ PatchesDone search_at(const Run& run, PatchPlace& place, double goal, const Patc
 /// The mesh itself.
 class WholeMesh : public PatchPlace {
  public:
-  WholeMesh(TetMesh& mesh, std::span<const CellHandle> worst) : mesh_(mesh), worst_(worst) {}
+  WholeMesh(const Run& run, std::span<const CellHandle> worst)
+      : mesh_(run.mesh), work_(run.work), worst_(worst) {}
   TetMesh& mesh() override { return mesh_; }
   std::span<const CellHandle> worst() const override { return worst_; }
+  std::span<const std::uint8_t> pinched() const override { return work_.pinched; }
   std::size_t n_cells() const override { return mesh_.n_logical_cells(); }
   void put_back(const Patch& patch, const TetMesh& changed) override { patch.put_back(mesh_, changed); }
 
  private:
   TetMesh& mesh_;
+  const Workspace& work_;
   std::span<const CellHandle> worst_;
 };
 
@@ -384,7 +387,7 @@ std::optional<PatchesDone> take_turn(const Run& run, double degrees, const Patch
   std::vector<CellHandle> worst = worst_cells_below(run.mesh, degrees, n, run.policy(), held, run.known());
   if (worst.size() > effort.few) return std::nullopt;
   worst.resize(std::min(n_centres, worst.size()));
-  WholeMesh place(run.mesh, worst);
+  WholeMesh place(run, worst);
   return search_at(run, place, degrees, effort);
 }
 

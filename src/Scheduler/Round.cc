@@ -123,6 +123,9 @@ class RoundCore::State {
   }
 
  private:
+  /// Whether two winners might make the same edge or face.
+  bool forbids_twice() const { return options_.check_links || !work_.pinched.empty(); }
+
   bool holds_links(const Cavity& cavity) const {
     return options_.check_links || work_.has_two_pinched(mesh_, cavity.removed);
   }
@@ -190,7 +193,7 @@ class RoundCore::State {
     });
     std::size_t sub_rounds = 1;
     std::vector<std::uint32_t> ranks;
-    if (options_.check_links || !work_.pinched.empty()) {
+    if (forbids_twice()) {
       Cavity cavity;
       std::unordered_set<std::uint64_t> created;
       ranks = select_by_marking(scopes_, work_.claim, [&](std::size_t i) {
@@ -207,16 +210,14 @@ class RoundCore::State {
   /// The same where the mesh is a part of one, bounds on cells included: winners are those that are committed
   /// here, among them candidates of other parts.
   void select_among_parts(RoundCounts& counts) {
-    HFR_REQUIRE(
-        work_.pinched.empty() && !options_.worst_first,
-        "a round over parts of a mesh has no pinched vertices and does not rank by the exact worst cell");
+    HFR_REQUIRE(!options_.worst_first, "a round over parts of a mesh does not rank by the exact worst cell");
     scopes_ = ScopeList(options_.policy, keys_.size(), [&](std::size_t i, Scope& out) {
       const PlanBase& plan = round_.candidate(keys_[i].index);
       round_.scope(plan, out);
       require_sizes(plan, out.size());
     });
     RoundPlace::Selected selected =
-        options_.place->select(Offered(*this), options_.may_lose, options_.may_gain, options_.check_links);
+        options_.place->select(Offered(*this), options_.may_lose, options_.may_gain, forbids_twice());
     counts.held_back = selected.held_back;
     winners_.clear();
     for (RoundPlace::Winner& one : selected.winners) {
@@ -253,9 +254,10 @@ class RoundCore::State {
     }
     std::span<const CellHandle> scope(std::size_t i) const override { return state_.scopes_[i]; }
     std::vector<std::uint64_t> made(std::size_t i) const override {
-      if (!state_.options_.check_links) return {};
+      if (!state_.forbids_twice()) return {};
       Cavity cavity;
       state_.round_.cavity(plan(i), cavity);
+      if (!state_.holds_links(cavity)) return {};
       return state_.hashes_of_created(cavity);
     }
 

@@ -31,7 +31,7 @@ class RoundPlace {
     virtual SeedAddress seed(std::size_t i) const = 0;
     virtual const PlanBase& plan(std::size_t i) const = 0;
     virtual std::span<const CellHandle> scope(std::size_t i) const = 0;
-    /// Where links are checked: hashes of the edges and faces that it would make, which may be made once.
+    /// Hashes of the edges and faces that it would make, where nothing may be made twice.
     virtual std::vector<std::uint64_t> made(std::size_t i) const = 0;
   };
   /// What has to be committed here: all winners, of any part, that lie near a vertex of this one.
@@ -57,10 +57,10 @@ class RoundPlace {
   virtual std::uint64_t number(CellHandle c) const = 0;
   /// The slot of that number; adds it to the mesh where this part has none.
   virtual CellHandle slot(std::uint64_t number) = 0;
-  /// The first independent set over all parts, within the bounds on cells of the whole. `check_links`: no two
-  /// winners make the same edge or face; a candidate that would is refused when its turn comes.
+  /// The first independent set over all parts, within the bounds on cells of the whole. `forbids_twice`: no
+  /// two winners make the same edge or face; a candidate that would is refused when its turn comes.
   virtual Selected select(const Candidates& candidates, std::size_t may_lose, std::size_t may_gain,
-                          bool check_links) = 0;
+                          bool forbids_twice) = 0;
   /// After the winners were committed, in their order: brings what this part holds of others up to date.
   virtual void finish(std::span<const Commit> commits) = 0;
   /// Of the counts of all parts the sum.

@@ -130,7 +130,7 @@ inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const
                               const ImproveOptions& options) {
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, in, 300);
-  const mpi::PinchedEdges pinched = mpi::pinched_edges(parts);
+  const mpi::Pinches pinched = mpi::pinches(parts);
   const mpi::PartsResult result = mpi::improve(parts, options);
   const mpi::PartsCheck checked = mpi::check(parts, pinched);
   EXPECT_TRUE(checked.is_good) << checked.message;

@@ -227,11 +227,11 @@ TEST(UntangledParts, PinchedEdgesThatWereThereAreNoFault) {
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, path, 300);
   EXPECT_THAT(mpi::check(parts).message, testing::HasSubstr("has more than one fan of cells"));
-  mpi::PinchedEdges known = mpi::pinched_edges(parts);
+  mpi::Pinches known = mpi::pinches(parts);
   // Of an octahedron to the next one, seen from both ends.
-  EXPECT_EQ(comm.sum(known.size()), 10U);
+  EXPECT_EQ(comm.sum(known.edges.size()), 10U);
   EXPECT_TRUE(mpi::check(parts, known).is_good);
-  if (!known.empty()) known.begin()->second = 1;
+  if (!known.edges.empty()) known.edges.begin()->second = 1;
   EXPECT_FALSE(mpi::check(parts, known).is_good);
 }
 
