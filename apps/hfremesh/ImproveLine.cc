@@ -127,13 +127,7 @@ void add_surface_options(Command command, ImproveLine& line) {
                "Write sharp edges and corners of the surface as labels");
   command.flag("--ignore-labels", line.ignore_labels,
                "Leave out labels of triangles, edges and vertices that would keep something as it is");
-  command
-      .option("--fix", line.fix,
-              "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "
-              "separate by commas")
-      .type_name("WHAT")
-      .delimiter(',')
-      .one_a_use();
+  add_fix_option(command, line.fix);
   command
       .option("--periodic", line.periodic,
               "Patches A:B that match each other by a translation: their vertices move together")
@@ -169,6 +163,16 @@ void set_min_dihedral(const std::string& degrees, ImproveOptions& options) {
     options.raise_min_dihedral = true;
   else if (!degrees.empty())
     options.min_dihedral = real_of(degrees);
+}
+
+void add_fix_option(Command command, std::vector<std::string>& fix) {
+  command
+      .option("--fix", fix,
+              "Keep as it is: patch:N, vertex:N, edge:N-N or face:N-N-N, counted from 0; repeat, or "
+              "separate by commas")
+      .type_name("WHAT")
+      .delimiter(',')
+      .one_a_use();
 }
 
 void add_ops_option(Command command, std::string& ops) {

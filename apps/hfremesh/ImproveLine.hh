@@ -48,6 +48,7 @@ void set_min_dihedral(const std::string& degrees, ImproveOptions& options);
 /// The operators of a run and how they take turns; `ops` and `rounds` must outlive the parser's run.
 void add_ops_option(Command command, std::string& ops);
 void add_rounds_option(Command command, std::string& rounds);
+void add_fix_option(Command command, std::vector<std::string>& fix);
 /// `line` and `common` must outlive the parser's run.
 void add_improve_options(Command command, ImproveLine& line, CommonOptions& common);
 /// What the library is asked for. Throws for a name that there is not.

@@ -151,10 +151,16 @@ void require_fixed(const SurfaceOptions& options, const TetMesh& mesh) {
   std::set<int> labels;
   if (!options.fixed_patches.empty())
     for (const auto& entry : mesh.labels().faces.entries()) labels.insert(entry.value);
+  // The quick look misses what a walk round a pinched vertex does not see.
+  const auto has_cell = [&](const auto& vertices) {
+    return std::ranges::any_of(mesh.cells(), [&](CellHandle c) {
+      return std::ranges::all_of(vertices, [&](VertexHandle v) { return mesh.cell(c).has(v); });
+    });
+  };
   require_fixed(
       options, mesh.n_vertices(), labels,
-      [&](const auto& edge) { return mesh.find_edge(edge[0], edge[1]).is_valid(); },
-      [&](const auto& face) { return mesh.find_halfface(face).is_valid(); });
+      [&](const auto& edge) { return mesh.find_edge(edge[0], edge[1]).is_valid() || has_cell(edge); },
+      [&](const auto& face) { return mesh.find_halfface(face).is_valid() || has_cell(face); });
 }
 
 void require_fixed(const SurfaceOptions& options, const io::MeshData& surface) {

@@ -22,6 +22,7 @@
 #include "Files.hh"
 #include "ImproveLine.hh"
 #include "Json.hh"
+#include "Locks.hh"
 #include "Numbers.hh"
 #include "Options.hh"
 #include "Parser.hh"
@@ -47,6 +48,8 @@ struct PartsLine {
   bool all_stages = false, passes_only = false, coarsen = false, bulk_nodes = false;
   int iterations = 0;
   std::size_t min_cells = 0, max_cells = 0;
+  double time_limit = 0;  ///< seconds; 0 = none
+  std::vector<std::string> fix;
   std::uint64_t seed = 2013;
   int threads_each = 1;
   std::string partition = "coordinates";
@@ -61,7 +64,7 @@ struct PartsLine {
   /// Options of a run, where there is none.
   bool has_idle_options() const {
     return !improves() && (!ops.empty() || !rounds.empty() || no_insert || bulk_nodes || iterations > 0 ||
-                           min_cells > 0 || max_cells > 0);
+                           min_cells > 0 || max_cells > 0 || time_limit > 0 || !fix.empty());
   }
 };
 
@@ -114,6 +117,11 @@ void add_options(Command command, PartsLine& line) {
   command.option("--max-cells", line.max_cells, "No new vertices beyond N cells; 0: 119 % of the input's")
       .type_name("N")
       .check(whole_number());
+  command.option("--time-limit", line.time_limit, "Stop improving after S seconds; exit code 5 then")
+      .type_name("S")
+      .check(positive_number())
+      .shows_default("none");
+  add_fix_option(command, line.fix);
   command.option("--threads-each", line.threads_each, "Threads of each rank")
       .type_name("N")
       .shows_default()
@@ -165,6 +173,8 @@ ImproveOptions improve_options(const PartsLine& line) {
   if (line.no_insert) options.ops = without(options.ops, Ops::kInsert);
   options.min_cells = line.min_cells;
   options.max_cells = line.max_cells;
+  if (line.time_limit > 0) options.time_limit = line.time_limit;
+  add_locks(options.surface, line.fix, {});
   options.policy = par::Policy{line.threads_each};
   return options;
 }
@@ -248,7 +258,7 @@ class PartsRun {
       }
       note_seconds("check");
     }
-    bool goal_reached = true;
+    bool goal_reached = true, is_out_of_time = false;
     mpi::RankFigures figures;
     if (line_.has_idle_options()) {
       constexpr const char* kIdle =
@@ -261,6 +271,7 @@ class PartsRun {
       found = result.after;
       figures = result.mine;
       goal_reached = result.goal_reached;
+      is_out_of_time = result.stop == Stop::kTimeLimit;
     }
     check();
     if (!line_.output.empty()) write();
@@ -268,6 +279,10 @@ class PartsRun {
     if (line_.shows_traffic) {
       const std::vector<mpi::RankFigures> of_ranks = mpi::gather_figures(comm_, figures);
       if (comm_.rank() == 0) print_figures(of_ranks);
+    }
+    if (is_out_of_time && !goal_reached) {
+      complain("the time limit was met; the mesh is the best so far");
+      return ExitCode::kLimit;
     }
     if (found.n_invalid > 0) {
       complain("{} cells are inverted or flat", grouped(found.n_invalid));
@@ -332,6 +347,7 @@ class PartsRun {
                           {"coarsen", options.coarsen},
                           {"bulk_nodes", options.bulk_nodes},
                           {"iterations", options.iterations},
+                          {"time_limit", line_.time_limit > 0 ? Json(line_.time_limit) : Json()},
                           {"rounds", line_.rounds.empty() ? Json() : Json(line_.rounds)},
                           {"min_cells", line_.min_cells > 0 ? Json(line_.min_cells) : Json()},
                           {"max_cells", line_.max_cells > 0 ? Json(line_.max_cells) : Json()}};
@@ -393,11 +409,13 @@ class PartsRun {
   }
 
   mpi::PartsResult improve() {
-    const mpi::PartsResult result = mpi::improve(mesh_, improve_options(line_));
+    mpi::PartsResult result;
+    reporting(ExitCode::kUsage, [&] { result = mpi::improve(mesh_, improve_options(line_)); });
     say_found("improved", result.after, note_seconds("improve"));
     report_["after"] = json_of(result.after);
     report_["result"] = {{"changed", result.changed},
                          {"goal_reached", result.goal_reached},
+                         {"stop", stop_name(result.stop)},
                          {"n_below_goal", result.after.n_below_goal},
                          {"has_fallen", result.has_fallen}};
     Json& passes = report_["passes"] = Json::array();

@@ -203,6 +203,8 @@ class DistributedMesh : private detail::PartState {
     return labels_.of(mesh_, cells, vertices, [this](VertexHandle v) { return number(v); });
   }
   const PartLabels& label_numbers() const { return labels_; }
+  /// Of each edge and face, whose vertices are all here: whether a cell of this part has it.
+  std::vector<std::uint8_t> has_cell(std::span<const LabelRecord> records) const;
   /// Writes what came. Records of owners count where there are several of a vertex; of a cell all are equal,
   /// but for mates, which a rank may have as they were before. So what they do not tell is found by vertices:
   /// faces of the cells that are written, and those that detach() has opened since the last call. `labels`:
@@ -219,7 +221,6 @@ class DistributedMesh : private detail::PartState {
     labels_.add(mesh_, records, [this](std::uint64_t n) { return vertex_at(n); });
   }
   void refuse_loose(std::span<const LabelRecord> records) const;
-  std::vector<std::uint8_t> has_cell(std::span<const LabelRecord> records) const;
   void write_cells(std::span<const CellRecord> cells);
   void link(std::span<const CellRecord> cells);
   void match_open_faces();

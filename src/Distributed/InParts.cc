@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "Distributed/CommonBox.hh"
 #include "Distributed/Order.hh"
 #include "Distributed/OwnItems.hh"
+#include "Distributed/PartFixes.hh"
 #include "Distributed/PartPasses.hh"
 #include "Distributed/PartPatchSearch.hh"
 #include "Distributed/PartUnfolding.hh"
@@ -200,6 +202,23 @@ bool polish_valid(const Run& run, double degrees, double worst_before) {
   return has_fallen();
 }
 
+/// A clock and callbacks of which any rank may have its own.
+RunControl control_of(Comm& comm, const ImproveOptions& options) {
+  const bool may_stop = options.cancel || options.time_limit < std::numeric_limits<double>::infinity();
+  std::array<std::uint64_t, 2> n = {may_stop ? 1U : 0U, options.progress ? 1U : 0U};
+  comm.sum(n);
+  std::function<void(const Progress&)> progress = options.progress;
+  if (n[1] > 0 && !progress) progress = [](const Progress&) {};  // what is told all have to find out together
+  RunControl control(options.time_limit, options.cancel, std::move(progress));
+  if (n[0] == 0) return control;
+  control.agree_by([&comm](std::optional<Stop> mine) -> std::optional<Stop> {
+    constexpr double kNone = std::numeric_limits<double>::infinity();
+    const double first = comm.min(mine ? static_cast<double>(*mine) : kNone);
+    return first < kNone ? std::optional(static_cast<Stop>(first)) : std::nullopt;
+  });
+  return control;
+}
+
 /// As before the first run.
 void begin(DistributedMesh& mesh) {
   Workspace& work = mesh.work();
@@ -214,14 +233,9 @@ std::string reason_against(const ImproveOptions& options) {
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;
   if (surface.mode != SurfaceMode::kFrozen) return "surfaces that may change";
-  if (!surface.fixed_patches.empty() || !surface.fixed_vertices.empty() || !surface.fixed_edges.empty() ||
-      !surface.fixed_faces.empty())
-    return "fixed patches, faces, edges and vertices";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
-  if (options.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
-  if (options.progress || options.cancel) return "callbacks";
   if (options.maps) return "maps";
   return {};
 }
@@ -285,10 +299,12 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   HFR_REQUIRE(reason.empty(), "meshes in parts do not have " + reason + " yet");
   const par::Policy policy = options.policy;
   const double goal = options.min_dihedral.value_or(0);
+  const PartFixes fixes(mesh, options.surface);
   PartsResult result;
   result.before = result.after = survey(mesh, goal, policy);
   if (options.min_dihedral && result.before.n_below_goal == 0 && result.before.n_invalid == 0) {
     result.goal_reached = true;
+    result.stop = Stop::kGoal;
     return result;
   }
   // As in shared memory: where the run goes over everything.
@@ -298,7 +314,7 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   begin(mesh);
   const Survey found{result.before.worst, static_cast<std::size_t>(result.before.n_invalid)};
   const Strategy strategy = resolve(options, found, static_cast<std::size_t>(result.before.n_cells));
-  RunControl control;
+  RunControl control = control_of(mesh.comm(), options);
   Findings findings;
   findings.is_folded = is_folded(mesh, policy);
   DeviceSession device;
@@ -316,6 +332,7 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   if (order && !result.changed) mesh.renumber(*order);
   result.after = survey(mesh, goal, policy);
   result.goal_reached = result.after.n_below_goal == 0 && result.after.n_invalid == 0;
+  result.stop = control.reason_to_end(options, result.goal_reached);
   result.passes = std::move(control.passes());
   result.seconds = control.seconds();
   result.mine.n_rounds = residents.n_rounds();

@@ -52,6 +52,7 @@ struct PartsResult {
   InParts before, after;
   bool changed = false;
   bool goal_reached = false;
+  Stop stop = Stop::kNoProgress;  ///< why the run has ended
   /// With polish_only: the input had positive cells, and the smallest angle is below its smallest one, for
   /// which hfr::improve() would have put the input back. Seen only where an obtuse angle was the worst.
   bool has_fallen = false;
@@ -69,8 +70,11 @@ std::string reason_against(const ImproveOptions& options);
 /// cells alone (options.polish_only), each rank keeps copies of its part to go back to; where the mesh has
 /// invalid cells, or a boundary that lies on itself, rank 0 selects the winners of all rounds. Throws
 /// InvalidInput for what reason_against() names: another metric than volume-length for all cells,
-/// a surface that may change, fixed things, published pipelines, devices, time limits, callbacks, maps, other
-/// smoothers.
+/// a surface that may change, published pipelines, devices, maps, other smoothers; and where the mesh lacks
+/// what options.surface names as fixed, by the numbers of the whole.
+///
+/// Ranks may have other time limits and callbacks: all stop where one of them is to, and hear of the same
+/// progress. A limit costs a reduction for each round.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

@@ -75,7 +75,6 @@ void DistributedMesh::refuse_loose(std::span<const LabelRecord> records) const {
                   " edges are of no tetrahedron; meshes in parts cannot have these yet");
 }
 
-/// Of each: whether a cell of this part has all its vertices.
 std::vector<std::uint8_t> DistributedMesh::has_cell(std::span<const LabelRecord> records) const {
   TupleMap<2, std::size_t> edges;
   TupleMap<3, std::size_t> faces;

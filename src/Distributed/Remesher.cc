@@ -121,6 +121,9 @@ std::string reason_against(const RemesherOptions& options) {
   if (options.motion != Motion::kGiven) return "vertices that follow others";
   if (!options.fields.empty()) return "fields";
   if (options.ids) return "ids that never change";
+  const SurfaceOptions& surface = options.improve.surface;
+  if (!surface.fixed_vertices.empty() || !surface.fixed_edges.empty() || !surface.fixed_faces.empty())
+    return "fixed vertices, edges and faces, whose numbers would change with each repair";
   return reason_against(options.improve);
 }
 

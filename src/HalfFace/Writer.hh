@@ -55,6 +55,8 @@ class TetMesh::Writer {
   void open_gaps(std::span<const VertexHandle> to, std::size_t n);
   /// Deleted cells that wait for reuse, in the order in which they are to be taken (from the back).
   std::vector<CellHandle>& free_cells() { return mesh_.free_cells_; }
+  /// Also of edges and faces that no cell has, as in a part of a mesh.
+  Locks& locks() { return mesh_.locks_; }
 
  private:
   void outdate_hand_index() {  // operators write from several threads at once

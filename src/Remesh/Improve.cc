@@ -85,12 +85,6 @@ GarbageMap tidy(TetMesh& mesh, const ImproveOptions& options, bool changed, cons
   return map;
 }
 
-Stop reason_to_stop(const RunControl& control, const ImproveOptions& options, bool goal_reached) {
-  if (control.reason()) return *control.reason();
-  if (goal_reached && options.min_dihedral) return Stop::kGoal;
-  return options.iterations > 0 ? Stop::kIterations : Stop::kNoProgress;
-}
-
 /// Fills in what is said of a mesh that is not known to meet the goal.
 void look_for_faults(const TetMesh& mesh, const Survey& found, par::Policy policy, Result& result) {
   if (found.n_invalid == 0) return;
@@ -156,7 +150,7 @@ Result improve_dense(TetMesh& mesh, const ImproveOptions& options, RunMemory& me
     look_for_faults(mesh, found, options.policy, result);
   }
   result.goal_reached = known_to_meet || meets_goal(found);
-  result.stop = reason_to_stop(control, options, result.goal_reached);
+  result.stop = control.reason_to_end(options, result.goal_reached);
   result.seconds = control.seconds();
   if (options.statistics) add_statistics(mesh, options, strategy, findings, result);
   return result;

@@ -121,7 +121,7 @@ void PassState::report(const char* op, const Turn& turn, const RoundCounts& coun
   pass.on_device = on_device;
   run_.control.add(std::move(pass));
   run_.control.tell(stage_, turn.iteration, n_invalid_, [&] {
-    return on_device ? device_->smallest_dihedral() : smallest_dihedral(run_.mesh, run_.policy());
+    return on_device ? device_->smallest_dihedral() : run_.smallest_dihedral();
   });
 }
 

@@ -36,10 +36,18 @@ class RunControl {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   double seconds_left() const { return time_limit_ - seconds(); }
 
+  /// Where several processes run at the same time and ask the same questions: agree(reason of this one) is
+  /// the reason of all of them to stop, if any has one.
+  void agree_by(std::function<std::optional<Stop>(std::optional<Stop>)> agree) { agree_ = std::move(agree); }
+
   /// True once the time is up or the caller has cancelled; the first reason stays.
   bool stopped() {
-    if (!reason_ && cancel_ && cancel_()) reason_ = Stop::kCancelled;
-    if (!reason_ && seconds() > time_limit_) reason_ = Stop::kTimeLimit;
+    if (reason_) return true;
+    if (cancel_ && cancel_())
+      reason_ = Stop::kCancelled;
+    else if (seconds() > time_limit_)
+      reason_ = Stop::kTimeLimit;
+    if (agree_) reason_ = agree_(reason_);
     return reason_.has_value();
   }
   /// Ends the run unless it has been ended before.
@@ -47,6 +55,12 @@ class RunControl {
     if (!reason_) reason_ = reason;
   }
   std::optional<Stop> reason() const { return reason_; }
+  /// Of a run that is over, whether or not it was stopped.
+  Stop reason_to_end(const ImproveOptions& options, bool goal_reached) const {
+    if (reason_) return *reason_;
+    if (goal_reached && options.min_dihedral) return Stop::kGoal;
+    return options.iterations > 0 ? Stop::kIterations : Stop::kNoProgress;
+  }
 
   void add(PassReport pass) {
     if (pass.winners > 0) revision_ = {revision_.n_changes + pass.winners, ++last_number_};
@@ -82,6 +96,7 @@ class RunControl {
   Clock::time_point start_ = Clock::now();
   double time_limit_;
   std::function<bool()> cancel_;
+  std::function<std::optional<Stop>(std::optional<Stop>)> agree_;
   std::function<void(const Progress&)> progress_;
   std::optional<Stop> reason_;
   double fraction_ = 0;

@@ -263,7 +263,7 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
     pass.worst = run.survey().worst;
     pass.seconds = pass.seconds_evaluate = control.seconds() - start;
     control.add(std::move(pass));
-    control.tell("untangle", iteration, n_invalid, [&] { return smallest_dihedral(run.mesh, run.policy()); });
+    control.tell("untangle", iteration, n_invalid, [&] { return run.smallest_dihedral(); });
     const bool has_brought = layers == 1 || again || left.is_less_than(least);
     if (has_brought) least = left;
     idle = has_brought || are_many ? 0 : idle + 1;
