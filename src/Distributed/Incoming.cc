@@ -413,11 +413,11 @@ std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::
     if (turned.n_alone > 0)
       notes.push_back(std::to_string(turned.n_alone) +
                       " cells were written the other way round than the rest, and are as it now");
+    const std::vector<std::string> others = mesh.attach_labels(std::exchange(labels_, {}));
+    notes.insert(notes.end(), others.begin(), others.end());
   } catch (const InvalidInput& error) {
     throw InvalidInput(file.string() + ": " + error.what());
   }
-  const std::vector<std::string> others = mesh.attach_labels(std::exchange(labels_, {}));
-  notes.insert(notes.end(), others.begin(), others.end());
   return notes;
 }
 

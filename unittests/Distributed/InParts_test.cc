@@ -137,7 +137,7 @@ TEST(InParts, WhatIsNotThereIsNamed) {
               HasSubstr("another metric than volume-length"));
   EXPECT_THAT(refusal([](auto& o) { o.surface.mode = SurfaceMode::kFlat; }),
               HasSubstr("surfaces that may change"));
-  EXPECT_THAT(refusal([](auto& o) { o.time_limit = 1; }), HasSubstr("time limits"));
+  EXPECT_THAT(refusal([](auto& o) { o.maps = true; }), HasSubstr("maps"));
 }
 
 /// Of a part in which something is spoilt on one rank, all ranks learn.
@@ -186,6 +186,23 @@ TEST(InParts, ACheckFindsWhatOneRankHasWrong) {
                 for (std::size_t v = 0; v < parts.part().n_vertices(); ++v)
                   if (!parts.is_own(V(v)) && parts.part().incident_cell(V(v)).is_valid()) {
                     parts.part().set_point(V(v), {-1, -1, -1});
+                    return;
+                  }
+              }),
+              HasSubstr("as rank " + std::to_string(bad) + " holds it"));
+  const auto near_of_others = [&](const mpi::DistributedMesh& parts) {
+    for (std::size_t v = 0;; ++v)
+      if (!parts.is_own(V(v)) && parts.within_two().has(v, bad)) return V(v);
+  };
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                parts.work().star_size[near_of_others(parts).idx()] += 1;
+              }),
+              HasSubstr("as rank " + std::to_string(bad) + " holds it"));
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                const VertexHandle v = near_of_others(parts);
+                for (CellHandle c : parts.part().vertex_cells(v))
+                  if (c != parts.part().incident_cell(v)) {
+                    TetMesh::Writer(parts.part()).set_incident_cell(v, c);
                     return;
                   }
               }),

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes that touch themselves in vertices, and vertices of more cells than a Star holds, in parts and in
+// shared memory.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "Distributed/Labelled.hh"
+#include "Distributed/WholeStars.hh"
+#include "Operators/LimitMeshes.hh"
+
+namespace hfr::test {
+namespace {
+
+ImproveOptions all_stages() {
+  ImproveOptions options;
+  options.policy = {};
+  return options;
+}
+
+/// n boxes in a row, each of which has one vertex in common with the next.
+generate::Arrays chain(Index n, Index cubes, double jitter) {
+  generate::Arrays all;
+  for (Index i = 0; i < n; ++i) {
+    const double low = i;
+    const generate::Arrays box = generate::jittered_box({cubes, cubes, cubes}, jitter, 5 + i, {low, low, low},
+                                                        {low + 1, low + 1, low + 1});
+    const auto first =
+        static_cast<Index>(i == 0 ? 0 : all.points.size() - 1);  // of the box before the last one
+    for (auto cell : box.cells) {
+      for (Index& v : cell) v += first;
+      all.cells.push_back(cell);
+    }
+    all.points.insert(all.points.end(), box.points.begin() + (i == 0 ? 0 : 1), box.points.end());
+  }
+  return all;
+}
+
+/// A jittered box without some of its cells.
+TetMesh torn(Index n, double jitter, double keep, std::uint64_t seed) {
+  const generate::Arrays box = generate::jittered_box({n, n, n}, jitter, seed);
+  std::vector<Corners> kept;
+  for (std::size_t i = 0; i < box.cells.size(); ++i)
+    if (generate::random_unit(seed, i) < keep) kept.push_back(box.cells[i]);
+  return build(box.points, kept);
+}
+
+class PinchedParts : public testing::Test {
+ protected:
+  /// Returns the stages, on rank 0.
+  std::set<std::string> run(const TetMesh& mesh, const ImproveOptions& options) {
+    if (comm.rank() == 0) io::write(path, mesh);
+    comm.sum(0);
+    const Result shared = expect_same_run(comm, folder, path, options);
+    std::set<std::string> stages;
+    for (const PassReport& pass : shared.passes)
+      if (pass.winners > 0) stages.insert(pass.stage);
+    return stages;
+  }
+
+  mpi::Comm comm{MPI_COMM_WORLD};
+  SharedFolder folder{comm};
+  std::filesystem::path path = folder.path() / "in.vtu";
+};
+
+TEST_F(PinchedParts, BoxesThatTouchInVerticesHaveTheBytesOfSharedMemory) {
+  const auto stages = run(build(chain(4, 4, 0.3).points, chain(4, 4, 0.3).cells), all_stages());
+  if (comm.rank() == 0) {
+    EXPECT_THAT(stages, testing::IsSupersetOf({"bulk", "polish"}));
+  }
+}
+
+/// With inverted cells, so that links are checked, too.
+TEST_F(PinchedParts, TornBoxesHaveTheBytesOfSharedMemory) {
+  for (const double keep : {0.95, 0.6})
+    for (const double jitter : {0.3, 0.45}) {
+      SCOPED_TRACE(keep);
+      SCOPED_TRACE(jitter);
+      run(torn(5, jitter, keep, 3), all_stages());
+      run(torn(5, jitter, keep, 4), polish_towards(20));
+    }
+}
+
+TEST_F(PinchedParts, OtherOperatorsHaveTheBytesOfSharedMemory) {
+  for (const Rounds rounds : {Rounds::kAuto, Rounds::kMixed}) {
+    ImproveOptions options = rounds == Rounds::kAuto ? polish_towards(28) : all_stages();
+    options.ops = Ops::kDefault | Ops::kCluster;
+    options.rounds = rounds;
+    const auto stages = run(torn(6, 0.3, 0.9, 9), options);
+    if (comm.rank() == 0) {
+      EXPECT_THAT(stages, testing::Contains("polish"));
+    }
+  }
+}
+
+TEST_F(PinchedParts, LargeStarsHaveTheBytesOfSharedMemory) {
+  const generate::Arrays wheel = hub(140);  // vertices of 280 and 420 cells
+  TetMesh mesh = build(wheel.points, wheel.cells);
+  for (Index v = 4; v < 144; ++v) {
+    const Vec3 p = mesh.point(V(v));
+    mesh.set_point(V(v), p + Vec3{0, 0, 0.02 * (generate::random_unit(1, v) - 0.5)});
+  }
+  run(mesh, all_stages());
+  const generate::Arrays everyone = neighbourly(20);
+  run(build(everyone.points, everyone.cells), all_stages());
+}
+
+/// What hangs together goes through faces: a box that was written the other way round is turned, although it
+/// shares a vertex with one that was not.
+TEST_F(PinchedParts, ABoxThatWasTurnedOverIsTurnedBackByItself) {
+  const generate::Arrays boxes = pinched(4, 0.2, 3);
+  const TetMesh mesh = build(boxes.points, boxes.cells);
+  io::MeshData data = io::disassemble(mesh);
+  const std::size_t half = data.cells.size() / 2;
+  for (std::size_t c = half; c < data.cells.size(); ++c) std::swap(data.cells[c][0], data.cells[c][1]);
+  if (comm.rank() == 0) io::write_mesh(path, data);
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  EXPECT_THAT(mpi::read_ranges(parts, path, 300), testing::Contains(testing::HasSubstr("were written the other way round")));
+  expect_same_run(comm, folder, path, all_stages());
+}
+
+/// Each rank that holds all cells of a vertex knows whether it is pinched, before and after a run.
+TEST_F(PinchedParts, WhoHoldsAllCellsKnows) {
+  if (comm.rank() == 0) io::write(path, torn(6, 0.3, 0.9, 9));
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, path, 300);
+  const auto expect_known = [&] {
+    const TetMesh& part = parts.part();
+    const std::vector<std::uint32_t> size = star_sizes(part);
+    std::size_t n_pinched = 0;
+    Star star;
+    for (std::size_t i = 0; i < part.n_vertices(); ++i) {
+      if (!parts.within_two().has(i, comm.rank()) || size[i] == 0) continue;
+      const bool is = is_pinched(part, V(i), size[i], star);
+      EXPECT_TRUE(!is || parts.work().pinched[i] != 0) << "vertex " << parts.number(V(i));
+      n_pinched += is && parts.is_own(V(i)) ? 1 : 0;
+      std::size_t n_seen = 0;
+      mpi::WholeStars(part, parts.work()).for_cells(V(i), [&](CellHandle c) {
+        EXPECT_TRUE(part.cell(c).has(V(i)));
+        ++n_seen;
+      });
+      EXPECT_EQ(n_seen, size[i]);
+    }
+    return comm.sum(n_pinched);
+  };
+  const std::uint64_t n_before = expect_known();
+  EXPECT_GT(n_before, 20U);
+  mpi::improve(parts, all_stages());
+  EXPECT_LE(expect_known(), n_before);
+}
+
+TEST_F(PinchedParts, MorePinchesThanThereWereAreAFault) {
+  if (comm.rank() == 0) io::write(path, build(chain(3, 3, 0.1).points, chain(3, 3, 0.1).cells));
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, path, 300);
+  EXPECT_THAT(mpi::check(parts).message, testing::HasSubstr("do not connect through faces"));
+  mpi::Pinches known = mpi::pinches(parts);
+  EXPECT_EQ(comm.sum(known.vertices.size()), 2U);
+  EXPECT_EQ(comm.sum(known.edges.size()), 0U);
+  EXPECT_TRUE(mpi::check(parts, known).is_good);
+  if (!known.vertices.empty()) known.vertices.begin()->second = 1;
+  EXPECT_FALSE(mpi::check(parts, known).is_good);
+}
+
+}  // namespace
+}  // namespace hfr::test
