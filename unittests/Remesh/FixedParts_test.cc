@@ -117,6 +117,33 @@ TEST(FixedParts, WhatIsInsideStaysInEveryMode) {
   }
 }
 
+// A walk round a pinched vertex does not come to all its edges and faces.
+TEST(FixedParts, WhatNoWalkComesToIsFoundAllTheSame) {
+  const generate::Arrays arrays = generate::box({3, 3, 3});
+  std::vector<std::array<Index, 4>> kept;
+  for (std::size_t i = 0; i < arrays.cells.size(); ++i)
+    if (generate::random_unit(2, i) < 0.2) kept.push_back(arrays.cells[i]);
+  TetMesh mesh = build(arrays.points, kept);
+  ImproveOptions options;
+  for (CellHandle c : mesh.cells()) {
+    const auto& v = mesh.cell(c).v;
+    if (!mesh.find_edge(v[0], v[1]).is_valid()) options.surface.fixed_edges.push_back({v[0], v[1]});
+    if (!mesh.find_face({v[0], v[1], v[2]}).is_valid())
+      options.surface.fixed_faces.push_back({v[2], v[1], v[0]});
+  }
+  ASSERT_FALSE(options.surface.fixed_edges.empty());
+  ASSERT_FALSE(options.surface.fixed_faces.empty());
+  {
+    FixedParts fixed(mesh, options.surface);
+    EXPECT_EQ(mesh.locks().edges.size(), options.surface.fixed_edges.size());
+    EXPECT_EQ(mesh.locks().faces.size(), options.surface.fixed_faces.size());
+    fixed.release(mesh, {});
+    EXPECT_TRUE(mesh.locks().empty());
+  }
+  improve(mesh, options);
+  EXPECT_TRUE(mesh.locks().empty());
+}
+
 // Handles in the options are those of before: a mesh with gaps is closed up first.
 TEST(FixedParts, OfAMeshWithDeletedVerticesTheOnesThatAreNamedStay) {
   TetMesh mesh = shaken_box();
