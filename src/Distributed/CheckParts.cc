@@ -311,7 +311,9 @@ std::uint64_t hash_of_labels(const DistributedMesh& mesh, CellHandle c) {
   std::uint64_t sum = 0;
   for (const LabelRecord& r : mesh.labels_of({&c, 1}, mesh.part().cell(c).v)) {
     std::uint64_t h = mix64(r.number ^ static_cast<std::uint64_t>(r.kind) << 56);
-    for (std::uint64_t v : r.v) h = mix64(h ^ v);
+    // Of what is fixed, the order of vertices says nothing.
+    const bool is_lock = r.kind == LabelRecord::Kind::kFixedEdge || r.kind == LabelRecord::Kind::kFixedFace;
+    for (std::uint64_t v : is_lock ? r.key() : r.v) h = mix64(h ^ v);
     sum += mix64(h ^ static_cast<std::uint32_t>(r.value));
   }
   return sum;
