@@ -62,44 +62,32 @@ void with_all(mpi::Comm& comm, Act&& act) {
   }
 }
 
-/// Each rank on what it has, which is given up. Where the mesh has what meshes in parts cannot have, nothing
-/// is done, and what is returned says so, on all ranks.
-std::string work_in_parts(MPI_Comm on, mpi::RankArrays& mine, const ImproveOptions& options,
-                          Outcome& outcome) {
-  mpi::Comm comm(on);
+/// Each rank on what it has, which is given up.
+void work_in_parts(mpi::Comm& comm, mpi::RankArrays& mine, const ImproveOptions& options, Outcome& outcome) {
   mpi::DistributedMesh mesh(comm);
-  try {
-    with_all(comm, [&] { mpi::from_arrays(mesh, mine, mpi::Keep::kIfEven); });
-  } catch (const mpi::RankFailed& failed) {
-    if (failed.code() != PETSC_ERR_ARG_WRONG) throw;
-    return failed.what();
-  }
+  mpi::from_arrays(mesh, mine, mpi::Keep::kIfEven);
   mine = {};
-  with_all(comm, [&] {
-    const mpi::PartsResult result = mpi::improve(mesh, options);
-    outcome.in_parts = true;
-    outcome.n_cells = result.after.n_cells;
-    outcome.n_invalid = result.after.n_invalid;
-    outcome.mine = new_plex(mesh);
-  });
-  return {};
+  const mpi::PartsResult result = mpi::improve(mesh, options);
+  outcome.in_parts = true;
+  outcome.n_cells = result.after.n_cells;
+  outcome.n_invalid = result.after.n_invalid;
+  outcome.mine = new_plex(mesh);
 }
 
 Outcome run(MPI_Comm on, LocalPlex mine, const ImproveOptions& options) {
   Outcome outcome;
   mpi::Comm comm(on);
   try {
-    Arrangement arranged;
     with_all(comm, [&] {
       outcome.n_cells_before = comm.sum(mine.cells.size());
-      arranged = arrange(comm, std::move(mine));
+      Arrangement arranged = arrange(comm, std::move(mine));
       outcome.labelling = std::move(arranged.labelling);
       outcome.why_together = reason_against_parts(comm, options);
+      if (outcome.why_together.empty())
+        work_in_parts(comm, arranged.arrays, options, outcome);
+      else
+        work_together(comm, arranged.arrays, options, outcome);
     });
-    // With messages of its own: after a refusal they begin anew.
-    if (outcome.why_together.empty())
-      outcome.why_together = work_in_parts(on, arranged.arrays, options, outcome);
-    if (!outcome.in_parts) with_all(comm, [&] { work_together(comm, arranged.arrays, options, outcome); });
   } catch (const mpi::RankFailed& failed) {
     outcome.code = failed.code();
     outcome.line = failed.what();

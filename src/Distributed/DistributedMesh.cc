@@ -119,7 +119,7 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);
   start_zone();
   find_pinched();
-  return turn_negative_components(*this);
+  return orient(*this, std::move(piece.turned));
 }
 
 /// Of vertices further away a part does not hold all cells. Where any rank has a pinched one, all keep bytes.

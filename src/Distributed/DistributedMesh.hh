@@ -74,10 +74,11 @@ class DistributedMesh : private detail::PartState {
   struct Piece {
     TetMesh mesh;
     std::vector<std::uint64_t> vertex_number, cell_number;
-    std::vector<int> owner;  ///< of each vertex
+    std::vector<int> owner;            ///< of each vertex
+    std::vector<std::uint8_t> turned;  ///< cells that build() has turned here; empty where none was
   };
   /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
-  /// qualities yet. Cells are turned as build() does.
+  /// qualities yet. Cells are turned as build() does; throws InvalidInput for a mesh that cannot be oriented.
   Turned assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
   /// After assemble(), for what a file says of vertices, edges and faces: each on the rank that owns its
   /// smallest vertex, with its place in the file as its number, maybe several times. Of several labels of a

@@ -350,14 +350,14 @@ DistributedMesh::Piece Incoming::piece() {
   }
   block_begin_ = {};
   piece.mesh = build(std::move(points), cells, {}, nullptr, NonManifold::kKeep, Turning::kConflicts);
-  const auto was_turned = [&](CellHandle c) { return piece.mesh.cell(c).v[2].idx() != cells[c.idx()][2]; };
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (HalfFaceHandle m : piece.mesh.cell(CellHandle(i)).mate)
-      HFR_REQUIRE(!m.is_valid() || was_turned(CellHandle(i)) == was_turned(cell_of(m)),
-                  "cells " + std::to_string(piece.cell_number[i]) + " and " +
-                      std::to_string(piece.cell_number[cell_of(m).idx()]) +
-                      " are ordered against one another, and a mesh in parts has to be oriented alike; "
-                      "hfremesh turns such cells");
+  const auto was_turned = [&](std::size_t i) {
+    return piece.mesh.cell(CellHandle(i)).v[2].idx() != cells[i][2];
+  };
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!was_turned(i)) continue;
+    piece.turned.resize(cells.size(), 0);
+    piece.turned[i] = 1;
+  }
   for (std::size_t c = 0; c < regions.size(); ++c) piece.mesh.set_region(CellHandle(c), regions[c]);
   return piece;
 }

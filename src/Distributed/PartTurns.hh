@@ -2,13 +2,19 @@
 #ifndef HFR_DISTRIBUTED_PART_TURNS_HH
 #define HFR_DISTRIBUTED_PART_TURNS_HH
 
+#include <cstdint>
+#include <vector>
+
 #include "Distributed/DistributedMesh.hh"
 
 namespace hfr::mpi {
 
-/// Turns cells of a mesh as build() does: all of them where most are negative, then each part that hangs
-/// together through faces and has more negative cells than positive ones. All take part.
-Turned turn_negative_components(DistributedMesh& parts);
+/// Turns cells of a mesh as build() does: those that are ordered against most of what they hang together with
+/// through faces, then all where most are negative, then each part that hangs together and has more negative
+/// cells than positive ones. `turned`: by cell, whether it was turned already so that the cells of this part
+/// agree; empty where none was. Throws InvalidInput, on all ranks, for a mesh that cannot be oriented. All
+/// take part.
+Turned orient(DistributedMesh& parts, std::vector<std::uint8_t> turned);
 
 }  // namespace hfr::mpi
 

@@ -319,19 +319,77 @@ TEST(UntangledParts, PiecesOfNegativeCellsAreTurnedAsInSharedMemory) {
     }
 }
 
-TEST(UntangledParts, CellsThatAreOrderedAgainstOneAnotherAreNamed) {
+/// A third of the cells, half, and most of them; and two cells of which none is more.
+TEST(UntangledParts, CellsThatAreOrderedAgainstOneAnotherAreTurnedAsInSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  const auto expect_same = [&](const io::MeshData& data) {
+    if (comm.rank() == 0) io::write_mesh(path, data);
+    comm.sum(0);
+    mpi::DistributedMesh parts(comm);
+    BuildReport report;
+    io::assemble(io::read_mesh(path), {}, &report);
+    const std::string notes = testing::PrintToString(mpi::read_ranges(parts, path, 300));
+    EXPECT_THAT(notes, testing::HasSubstr(std::to_string(report.reoriented.size()) +
+                                          " cells were written the other"));
+    EXPECT_EQ(notes.find("flipped as a whole") != std::string::npos, report.flipped) << notes;
+    EXPECT_TRUE(mpi::check(parts).is_good);
+    mpi::write_vtu(parts, folder.path() / "parts.vtu");
+    if (comm.rank() == 0) {
+      io::write(folder.path() / "whole.vtu", io::read(path));
+      EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
+    }
+    comm.sum(0);
+  };
+  for (const double share : {0.3, 0.5, 0.8}) {
+    SCOPED_TRACE(share);
+    io::MeshData data = io::disassemble(tangled_inside({5, 4, 6}, 0.5, 3));
+    const io::MeshData other = io::disassemble(moved_box({3, 3, 3}, [](Vec3 p, bool) {
+      return p + Vec3{10, 0, 0};
+    }));
+    const auto n = static_cast<Index>(data.points.size());
+    for (auto cell : other.cells) {
+      for (Index& v : cell) v += n;
+      data.cells.push_back(cell);
+    }
+    data.points.insert(data.points.end(), other.points.begin(), other.points.end());
+    std::mt19937_64 engine(7);
+    for (auto& cell : data.cells)
+      if (std::uniform_real_distribution<double>()(engine) < share) std::swap(cell[1], cell[3]);
+    expect_same(data);
+    Seen seen;
+    expect_same_run(comm, folder, path, polish_towards(12), seen);
+  }
+  io::MeshData two;
+  two.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  two.cells = {{0, 1, 2, 3}, {1, 3, 2, 4}};
+  expect_same(two);
+  std::swap(two.cells[0], two.cells[1]);
+  expect_same(two);
+}
+
+/// A strip of cells {i, i+1, i+2, i+3} whose last face is its first one, the other way round.
+TEST(UntangledParts, WhatCannotBeOrientedIsRefusedOnAllRanks) {
   mpi::Comm world(MPI_COMM_WORLD);
   const SharedFolder folder(world);
   const auto path = folder.path() / "in.mesh";
   if (world.rank() == 0) {
+    constexpr Index kLong = 61;
+    constexpr std::array<Index, 3> kEnd = {1, 0, 2};
+    const auto number = [&](Index i) { return i < kLong ? i : kEnd[i - kLong]; };
     io::MeshData data;
-    data.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-    data.cells = {{0, 1, 2, 3}, {1, 3, 2, 4}};
+    for (Index i = 0; i < kLong; ++i)
+      data.points.push_back({std::cos(0.1 * i), std::sin(0.1 * i), 0.3 * static_cast<double>(i % 3)});
+    for (Index i = 0; i < kLong; ++i)
+      data.cells.push_back({number(i), number(i + 1), number(i + 2), number(i + 3)});
     io::write_mesh(path, data);
+    EXPECT_THROW(io::read(path), InvalidInput);
   }
   world.sum(0);
-  const std::string refusal = refusal_of([&](mpi::DistributedMesh& parts) { mpi::read_ranges(parts, path); });
-  EXPECT_THAT(refusal, testing::HasSubstr("in.mesh: cells 0 and 1 are ordered against one another"));
+  const std::string refusal =
+      refusal_of([&](mpi::DistributedMesh& parts) { mpi::read_ranges(parts, path, 10); });
+  EXPECT_THAT(refusal, testing::HasSubstr("the mesh cannot be oriented"));
 }
 
 TEST(UntangledParts, SumsHaveTheOrderOfNumbersHoweverManyComeTogether) {
