@@ -332,7 +332,7 @@ HeldVertex held(const DistributedMesh& mesh, VertexHandle v, bool is_near) {
   const Workspace& work = mesh.work();
   one.is_pinched = !work.pinched.empty() && work.pinched[v.idx()] != 0;
   one.star_size = work.star_size[v.idx()];
-  one.incident = mesh.number(mesh.part().incident_cell(v));
+  if (const CellHandle c = mesh.part().incident_cell(v); c.is_valid()) one.incident = mesh.number(c);
   return one;
 }
 

@@ -209,12 +209,13 @@ RunControl control_of(Comm& comm, const ImproveOptions& options) {
   comm.sum(n);
   std::function<void(const Progress&)> progress = options.progress;
   if (n[1] > 0 && !progress) progress = [](const Progress&) {};  // what is told all have to find out together
-  RunControl control(options.time_limit, options.cancel, std::move(progress));
-  if (n[0] == 0) return control;
+  if (n[0] == 0) return RunControl(options.time_limit, options.cancel, std::move(progress));
+  RunControl control(comm.min(options.time_limit), options.cancel, std::move(progress));
   control.agree_by([&comm](std::optional<Stop> mine) -> std::optional<Stop> {
-    constexpr double kNone = std::numeric_limits<double>::infinity();
-    const double first = comm.min(mine ? static_cast<double>(*mine) : kNone);
-    return first < kNone ? std::optional(static_cast<Stop>(first)) : std::nullopt;
+    constexpr std::array kInOrder = {Stop::kCancelled, Stop::kTimeLimit};  // as stopped() asks
+    const auto at = mine ? std::ranges::find(kInOrder, *mine) - kInOrder.begin() : std::ssize(kInOrder);
+    const auto first = static_cast<std::size_t>(comm.min(static_cast<double>(at)));
+    return first < kInOrder.size() ? std::optional(kInOrder[first]) : std::nullopt;
   });
   return control;
 }
@@ -299,12 +300,13 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   HFR_REQUIRE(reason.empty(), "meshes in parts do not have " + reason + " yet");
   const par::Policy policy = options.policy;
   const double goal = options.min_dihedral.value_or(0);
-  const PartFixes fixes(mesh, options.surface);
+  PartFixes fixes(mesh, options.surface);
   PartsResult result;
   result.before = result.after = survey(mesh, goal, policy);
   if (options.min_dihedral && result.before.n_below_goal == 0 && result.before.n_invalid == 0) {
     result.goal_reached = true;
     result.stop = Stop::kGoal;
+    fixes.release();
     return result;
   }
   // As in shared memory: where the run goes over everything.
@@ -337,6 +339,7 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   result.seconds = control.seconds();
   result.mine.n_rounds = residents.n_rounds();
   look_at_part(mesh, result.mine);
+  fixes.release();
   return result;
 }
 

@@ -67,14 +67,16 @@ std::string reason_against(const ImproveOptions& options);
 ///
 /// Candidates for new vertices and searched clusters come together on rank 0, some 300 bytes each, and on all
 /// ranks the surroundings of the last few cells, up to 32 patches. Unless it polishes a mesh of positive
-/// cells alone (options.polish_only), each rank keeps copies of its part to go back to; where the mesh has
-/// invalid cells, or a boundary that lies on itself, rank 0 selects the winners of all rounds. Throws
-/// InvalidInput for what reason_against() names: another metric than volume-length for all cells,
-/// a surface that may change, published pipelines, devices, maps, other smoothers; and where the mesh lacks
+/// cells alone (options.polish_only) that touches itself nowhere, each rank keeps copies of its part to go
+/// back to; where the mesh has invalid cells, or a boundary that lies on itself, rank 0 selects the winners
+/// of rounds, and where it has pinched vertices, those of rounds with a candidate that has two of them.
+/// Throws InvalidInput for what reason_against() names: another metric than volume-length for all cells, a
+/// surface that may change, published pipelines, devices, maps, other smoothers; and where the mesh lacks
 /// what options.surface names as fixed, by the numbers of the whole.
 ///
 /// Ranks may have other time limits and callbacks: all stop where one of them is to, and hear of the same
-/// progress. A limit costs a reduction for each round.
+/// progress. A limit costs a reduction for each round. A rank whose callback throws has to call Comm::fail(),
+/// as for any other failure; the mesh is of no further use then.
 PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
 
 /// What check() of the parts has found.

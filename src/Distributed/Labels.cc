@@ -2,6 +2,7 @@
 // Labels and locks of a mesh in parts: from where they are known to all ranks that hold a cell of theirs.
 // From then on they go with the cells. No pass removes what they hang on, so none of them ever changes.
 #include <algorithm>
+#include <array>
 #include <string>
 #include <tuple>
 
@@ -76,20 +77,23 @@ void DistributedMesh::refuse_loose(std::span<const LabelRecord> records) const {
 }
 
 std::vector<std::uint8_t> DistributedMesh::has_cell(std::span<const LabelRecord> records) const {
-  TupleMap<2, std::size_t> edges;
-  TupleMap<3, std::size_t> faces;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const LabelRecord& r = records[i];
-    if (r.kind == Kind::kEdge) edges.set({vertex_at(r.v[0]), vertex_at(r.v[1])}, i);
-    if (r.kind == Kind::kFace) faces.set({vertex_at(r.v[0]), vertex_at(r.v[1]), vertex_at(r.v[2])}, i);
-  }
-  std::vector<std::uint8_t> has(records.size(), 0);
-  const auto note = [&](const auto& map) {
-    const std::vector<std::uint8_t> used = used_entries(mesh_, map);
-    for (std::size_t e = 0; e < used.size(); ++e) has[map.entries()[e].value] = used[e];
+  const auto edge = [&](const LabelRecord& r) { return std::array{vertex_at(r.v[0]), vertex_at(r.v[1])}; };
+  const auto face = [&](const LabelRecord& r) {
+    return std::array{vertex_at(r.v[0]), vertex_at(r.v[1]), vertex_at(r.v[2])};
   };
-  note(edges);
-  note(faces);
+  TupleMap<2, bool> edges;
+  TupleMap<3, bool> faces;
+  for (const LabelRecord& r : records) {
+    if (r.kind == Kind::kEdge) edges.set(edge(r), true);
+    if (r.kind == Kind::kFace) faces.set(face(r), true);
+  }
+  const std::vector<std::uint8_t> used_edges = used_entries(mesh_, edges),
+                                  used_faces = used_entries(mesh_, faces);
+  std::vector<std::uint8_t> has;
+  for (const LabelRecord& r : records)  // some of them twice
+    has.push_back(r.kind == Kind::kEdge   ? used_edges[edges.position(edge(r))]
+                  : r.kind == Kind::kFace ? used_faces[faces.position(face(r))]
+                                          : std::uint8_t{0});
   return has;
 }
 

@@ -2,6 +2,7 @@
 #include "Distributed/PartFixes.hh"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <set>
 #include <string>
@@ -113,10 +114,10 @@ void require_all(const DistributedMesh& parts, const std::vector<LabelRecord>& r
 }  // namespace
 
 PartFixes::PartFixes(DistributedMesh& parts, const SurfaceOptions& options) : parts_(parts) {
-  if (!options.fixed_patches.empty()) require_patches(parts, options);
   const std::vector<LabelRecord> records = named_by(options);
+  if (!records.empty()) require_all(parts, records);
+  if (!options.fixed_patches.empty()) require_patches(parts, options);
   if (records.empty()) return;
-  require_all(parts, records);
   std::vector<std::uint64_t> places;
   for (std::size_t i : own_among(parts, records))
     if (!is_fixed(parts, records[i])) places.push_back(i);
@@ -127,7 +128,7 @@ PartFixes::PartFixes(DistributedMesh& parts, const SurfaceOptions& options) : pa
     fresh_.push_back(records[i]);
 }
 
-PartFixes::~PartFixes() {
+void PartFixes::release() {
   if (fresh_.empty()) return;
   TetMesh& part = parts_.part();
   Locks& locks = TetMesh::Writer(part).locks();
@@ -144,6 +145,7 @@ PartFixes::~PartFixes() {
     if (r.kind == Kind::kFixedFace) locks.faces.erase_unordered(v);
   }
   parts_.work().frozen = constrained_vertices(part, {});
+  fresh_.clear();
 }
 
 }  // namespace hfr::mpi

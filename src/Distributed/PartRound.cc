@@ -33,7 +33,7 @@ struct Announcement {
   std::uint32_t seed_place = 0, seed_kind = 0, number = 0, n_cells = 0;
 };
 
-/// A candidate as rank 0 hears of it where links are checked; its cells and what it makes follow.
+/// A candidate as rank 0 hears of it where nothing may be made twice; its cells and what it makes follow.
 struct Contender {
   std::uint64_t key = 0;
   SeedName name{};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -122,8 +123,12 @@ std::string reason_against(const RemesherOptions& options) {
   if (!options.fields.empty()) return "fields";
   if (options.ids) return "ids that never change";
   const SurfaceOptions& surface = options.improve.surface;
-  if (!surface.fixed_vertices.empty() || !surface.fixed_edges.empty() || !surface.fixed_faces.empty())
-    return "fixed vertices, edges and faces, whose numbers would change with each repair";
+  if (!surface.fixed_vertices.empty() || !surface.fixed_edges.empty() || !surface.fixed_faces.empty() ||
+      !surface.fixed_patches.empty())
+    return "fixed patches, faces, edges and vertices";  // whose numbers change with a repair
+  // A repair that is cut short would have to be undone.
+  if (options.improve.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
+  if (options.improve.cancel) return "repairs that may be cancelled";
   return reason_against(options.improve);
 }
 

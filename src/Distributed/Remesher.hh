@@ -40,7 +40,8 @@ std::string reason_against(const RemesherOptions& options);
 ///
 /// There are the triggers min_dihedral, inverted and every, and OnInversion::kRepair and kRefuse. Throws
 /// InvalidInput for what reason_against() names: other triggers, sub-steps, vertices that follow, fields,
-/// ids, and what mpi::improve() does not have. A step looks at all cells of a rank.
+/// ids, what is fixed, time limits, cancelling, and what mpi::improve() does not have. A step looks at all
+/// cells of a rank.
 class Remesher {
  public:
   /// Of what from_arrays() takes, which says what it throws. Here and after each repair that has changed

@@ -37,9 +37,8 @@ struct RoundOptions {
   /// is given up, the last in rank order first.
   std::size_t may_lose = std::numeric_limits<std::size_t>::max();
   std::size_t may_gain = std::numeric_limits<std::size_t>::max();
-  /// Where the mesh is a part of a larger one; null: it is all there is. Then no
-  /// vertex may be pinched; where operators add vertices, they come last in the order of
-  /// numbers (docs/distributed.md).
+  /// Where the mesh is a part of a larger one; null: it is all there is. There is no worst_first then; where
+  /// operators add vertices, they come last in the order of numbers (docs/distributed.md).
   RoundPlace* place = nullptr;
 };
 

@@ -172,6 +172,17 @@ TEST(InParts, ACheckFindsWhatOneRankHasWrong) {
               }),
               HasSubstr("another number of cells"));
   EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                for (std::size_t v = 0;; ++v)
+                  if (parts.is_own(V(v)) && !parts.is_among_own(V(v))) {
+                    TetMesh::Writer(parts.part()).set_incident_cell(V(v), {});
+                    return;
+                  } else if (comm.size() == 1) {
+                    TetMesh::Writer(parts.part()).set_incident_cell(V(0), {});
+                    return;
+                  }
+              }),
+              HasSubstr("incident cell"));
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
                 TetMesh::Writer writer(parts.part());
                 for (HalfFaceHandle h : parts.part().cell_halffaces(own_cell(parts)))
                   if (const HalfFaceHandle m = parts.part().opposite_halfface(h); m.is_valid()) {
@@ -186,6 +197,15 @@ TEST(InParts, ACheckFindsWhatOneRankHasWrong) {
                 for (std::size_t v = 0; v < parts.part().n_vertices(); ++v)
                   if (!parts.is_own(V(v)) && parts.part().incident_cell(V(v)).is_valid()) {
                     parts.part().set_point(V(v), {-1, -1, -1});
+                    return;
+                  }
+              }),
+              HasSubstr("as rank " + std::to_string(bad) + " holds it"));
+  EXPECT_THAT(found_after([&](mpi::DistributedMesh& parts) {
+                for (std::size_t v = 0;; ++v)
+                  if (!parts.is_own(V(v)) && parts.within_two().has(v, bad)) {
+                    parts.work().pinched.assign(parts.part().n_vertices(), 0);
+                    parts.work().pinched[v] = 1;
                     return;
                   }
               }),

@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "Distributed/Labelled.hh"
@@ -79,7 +81,7 @@ TEST_F(FixedInParts, IsAsFreeAfterwardsAsBefore) {
   };
   EXPECT_EQ(n_fixed(), 1U);
   {
-    const mpi::PartFixes fixes(parts, named);
+    mpi::PartFixes fixes(parts, named);
     EXPECT_EQ(n_fixed(), named.fixed_vertices.size());
     const Locks& locks = parts.part().locks();
     EXPECT_EQ(comm.sum(locks.edges.empty() ? 0 : 1), static_cast<std::uint64_t>(comm.size()));
@@ -92,6 +94,7 @@ TEST_F(FixedInParts, IsAsFreeAfterwardsAsBefore) {
             std::ranges::all_of(here, [&](VertexHandle v) { return parts.work().frozen[v.idx()] != 0; }));
       }
     }
+    fixes.release();
   }
   EXPECT_EQ(n_fixed(), 1U);
   EXPECT_TRUE(parts.part().locks().empty());
@@ -122,6 +125,17 @@ TEST_F(FixedInParts, WhatTheMeshDoesNotHaveIsNamedOnAllRanks) {
               s.fixed_vertices = {V(3), V(125)};
             }),
             "fix vertex:125: there are 125 vertices, counted from 0");
+  EXPECT_EQ(refusal([](S& s) {
+              s.fixed_vertices = {V(125)};
+              s.fixed_patches = {5};
+            }),
+            "fix vertex:125: there are 125 vertices, counted from 0");
+  EXPECT_EQ(refusal([](S& s) {
+              s.fixed_edges = {{V(0), V(1)}, {V(1), V(0)}, {V(0), V(1)}};
+              s.fixed_faces = {{V(0), V(1), V(6)}, {V(6), V(0), V(1)}};
+              s.fixed_vertices = {V(7), V(7)};
+            }),
+            "");
   EXPECT_EQ(refusal([](S& s) {
               s.fixed_edges = {{V(0), V(1)}, {V(200), V(99)}};
             }),
@@ -176,15 +190,24 @@ TEST_F(FixedInParts, ACancelOnOneRankEndsAllAtTheSameQuestion) {
   }
 }
 
-TEST_F(FixedInParts, ATimeLimitEndsARunWithASoundMesh) {
+/// Of one rank, met in the middle of the run: in a callback that all ranks hear, it waits for its clock.
+TEST_F(FixedInParts, ATimeLimitOfOneRankEndsTheRunOfAll) {
   write(valid_box(7, 0.35, 8));
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, path, 300);
   ImproveOptions options;
   options.policy = {};
-  if (comm.rank() == 0) options.time_limit = 1e-9;  // of that rank alone
+  constexpr double kSeconds = 0.2;
+  const auto start = std::chrono::steady_clock::now();
+  if (comm.rank() == 0) {
+    options.time_limit = kSeconds;
+    options.progress = [&, n = 0](const Progress&) mutable {
+      if (++n == 6) std::this_thread::sleep_until(start + std::chrono::duration<double>(2 * kSeconds));
+    };
+  }
   const mpi::PartsResult result = mpi::improve(parts, options);
   EXPECT_EQ(result.stop, Stop::kTimeLimit);
+  EXPECT_TRUE(result.changed);
   EXPECT_GE(result.after.worst, result.before.worst);
   EXPECT_TRUE(mpi::check(parts).is_good);
 }

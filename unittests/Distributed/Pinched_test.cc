@@ -12,6 +12,7 @@
 #include "Distributed/Labelled.hh"
 #include "Distributed/WholeStars.hh"
 #include "Operators/LimitMeshes.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr::test {
 namespace {
@@ -51,14 +52,14 @@ TetMesh torn(Index n, double jitter, double keep, std::uint64_t seed) {
 
 class PinchedParts : public testing::Test {
  protected:
-  /// Returns the stages, on rank 0.
+  /// Returns stages and operators that have changed something, on rank 0.
   std::set<std::string> run(const TetMesh& mesh, const ImproveOptions& options) {
     if (comm.rank() == 0) io::write(path, mesh);
     comm.sum(0);
     const Result shared = expect_same_run(comm, folder, path, options);
     std::set<std::string> stages;
     for (const PassReport& pass : shared.passes)
-      if (pass.winners > 0) stages.insert(pass.stage);
+      if (pass.winners > 0) stages.insert({pass.stage, pass.op});
     return stages;
   }
 
@@ -74,26 +75,41 @@ TEST_F(PinchedParts, BoxesThatTouchInVerticesHaveTheBytesOfSharedMemory) {
   }
 }
 
-/// With inverted cells, so that links are checked, too.
 TEST_F(PinchedParts, TornBoxesHaveTheBytesOfSharedMemory) {
+  bool is_any_inverted = false;
   for (const double keep : {0.95, 0.6})
     for (const double jitter : {0.3, 0.45}) {
       SCOPED_TRACE(keep);
       SCOPED_TRACE(jitter);
       run(torn(5, jitter, keep, 3), all_stages());
       run(torn(5, jitter, keep, 4), polish_towards(20));
+      is_any_inverted |= !invalid_cells(torn(5, jitter, keep, 3), {}).empty();
     }
+  EXPECT_TRUE(is_any_inverted) << "links are never checked";
+}
+
+TEST_F(PinchedParts, WhatIsFixedStays) {
+  const TetMesh mesh = torn(5, 0.4, 0.6, 3);
+  ImproveOptions options = all_stages();
+  for (std::size_t c = 0; c + 40 < mesh.n_cells(); c += 40) {
+    const auto& v = mesh.cell(C(c)).v;
+    options.surface.fixed_edges.push_back({v[1], v[3]});
+    options.surface.fixed_faces.push_back({v[0], v[3], v[2]});
+  }
+  run(mesh, options);
 }
 
 TEST_F(PinchedParts, OtherOperatorsHaveTheBytesOfSharedMemory) {
-  for (const Rounds rounds : {Rounds::kAuto, Rounds::kMixed}) {
-    ImproveOptions options = rounds == Rounds::kAuto ? polish_towards(28) : all_stages();
-    options.ops = Ops::kDefault | Ops::kCluster;
-    options.rounds = rounds;
-    const auto stages = run(torn(6, 0.3, 0.9, 9), options);
-    if (comm.rank() == 0) {
-      EXPECT_THAT(stages, testing::Contains("polish"));
+  std::set<std::string> done;
+  for (const Rounds rounds : {Rounds::kAuto, Rounds::kMixed})
+    for (ImproveOptions options : {polish_towards(20), all_stages()}) {
+      options.ops = Ops::kDefault | Ops::kCluster;
+      if (options.polish_only) options.ops = without(options.ops, Ops::kInsert);
+      options.rounds = rounds;
+      done.merge(run(torn(7, 0.4, 0.99, 9), options));
     }
+  if (comm.rank() == 0) {
+    EXPECT_THAT(done, testing::IsSupersetOf({"polish", "mixed", "insert", "cluster"}));
   }
 }
 
@@ -104,7 +120,10 @@ TEST_F(PinchedParts, LargeStarsHaveTheBytesOfSharedMemory) {
     const Vec3 p = mesh.point(V(v));
     mesh.set_point(V(v), p + Vec3{0, 0, 0.02 * (generate::random_unit(1, v) - 0.5)});
   }
-  run(mesh, all_stages());
+  const auto done = run(mesh, all_stages());
+  if (comm.rank() == 0) {
+    EXPECT_THAT(done, testing::Not(testing::IsEmpty()));
+  }
   const generate::Arrays everyone = neighbourly(20);
   run(build(everyone.points, everyone.cells), all_stages());
 }
@@ -120,7 +139,8 @@ TEST_F(PinchedParts, ABoxThatWasTurnedOverIsTurnedBackByItself) {
   if (comm.rank() == 0) io::write_mesh(path, data);
   comm.sum(0);
   mpi::DistributedMesh parts(comm);
-  EXPECT_THAT(mpi::read_ranges(parts, path, 300), testing::Contains(testing::HasSubstr("were written the other way round")));
+  EXPECT_THAT(mpi::read_ranges(parts, path, 300),
+              testing::Contains(testing::HasSubstr("were written the other way round")));
   expect_same_run(comm, folder, path, all_stages());
 }
 

@@ -204,8 +204,14 @@ TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.indicator_field = "bad"; }),
               testing::HasSubstr("indicator"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.maps = true; }), testing::HasSubstr("maps"));
+  EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.time_limit = 1; }),
+              testing::HasSubstr("time limits"));
+  EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.cancel = [] { return false; }; }),
+              testing::HasSubstr("cancelled"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.surface.fixed_vertices = {V(0)}; }),
-              testing::HasSubstr("fixed vertices"));
+              testing::HasSubstr("fixed patches, faces, edges and vertices"));
+  EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.surface.fixed_patches = {9}; }),
+              testing::HasSubstr("fixed patches"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.min_dihedral = 20; }),
               testing::HasSubstr("must not be above the goal"));
 }

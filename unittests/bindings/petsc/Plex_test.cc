@@ -288,7 +288,6 @@ TEST(PetscAdaptor, AMeshStaysInPartsWhereItCan) {
   ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_surface"), 0);
 }
 
-/// Two boxes that meet in one vertex alone: no mesh in parts can have that.
 TEST(PetscAdaptor, CellsThatAreOrderedAgainstTheirNeighboursStayInParts) {
   generate::Arrays arrays = regular();
   std::swap(arrays.cells[7][1], arrays.cells[7][2]);
@@ -299,6 +298,7 @@ TEST(PetscAdaptor, CellsThatAreOrderedAgainstTheirNeighboursStayInParts) {
   EXPECT_EQ(n_inverted(after.get()), 0);
 }
 
+/// Two boxes that meet in one vertex alone.
 TEST(PetscAdaptor, MeshesThatTouchInAVertexStayInParts) {
   generate::Arrays arrays = regular();
   const generate::Arrays other = regular();
