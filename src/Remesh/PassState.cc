@@ -120,9 +120,8 @@ void PassState::report(const char* op, const Turn& turn, const RoundCounts& coun
   pass.seconds_commit = counts.seconds_commit;
   pass.on_device = on_device;
   run_.control.add(std::move(pass));
-  run_.control.tell(stage_, turn.iteration, n_invalid_, [&] {
-    return on_device ? device_->smallest_dihedral() : run_.smallest_dihedral();
-  });
+  run_.control.tell(stage_, turn.iteration, n_invalid_,
+                    [&] { return on_device ? device_->smallest_dihedral() : run_.smallest_dihedral(); });
 }
 
 void PassState::to_host() {
