@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "Distributed/Cutout.hh"
 #include "Distributed/Labelled.hh"
 #include "Distributed/WholeStars.hh"
 #include "Operators/LimitMeshes.hh"
@@ -173,6 +174,36 @@ TEST_F(PinchedParts, WhoHoldsAllCellsKnows) {
   EXPECT_GT(n_before, 20U);
   mpi::improve(parts, all_stages());
   EXPECT_LE(expect_known(), n_before);
+}
+
+/// Whatever group of cells leads there.
+TEST_F(PinchedParts, CutoutsHaveAllThatLiesSoNear) {
+  const TetMesh mesh = torn(4, 0.3, 0.4, 9);
+  if (comm.rank() == 0) io::write(path, mesh);
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, path, 300);
+  const auto near = [&](std::set<std::size_t>& cells) {  // and those that share a vertex with one of them
+    std::set<VertexHandle> vertices;
+    for (std::size_t c : cells) vertices.insert(mesh.cell(C(c)).v.begin(), mesh.cell(C(c)).v.end());
+    for (CellHandle c : mesh.cells())
+      if (std::ranges::any_of(mesh.cell(c).v, [&](VertexHandle v) { return vertices.contains(v); }))
+        cells.insert(c.idx());
+  };
+  std::size_t n_beyond = 0;  // cutouts that walks alone would not have made
+  for (std::uint64_t first = 0; first < mesh.n_cells(); first += 5)
+    for (const std::uint8_t depth : {std::uint8_t{0}, std::uint8_t{2}}) {
+      mpi::Cutout cutout(parts, {&first, 1}, {&depth, 1}, mpi::Cutout::Where::kOnAll);
+      std::set<std::size_t> found, wanted = {first};
+      for (CellHandle c : cutout.mesh().cells()) found.insert(cutout.number(c));
+      for (int i = 0; i <= depth; ++i) near(wanted);
+      EXPECT_EQ(found, wanted) << "round cell " << first << ", " << int{depth};
+      std::set<std::size_t> walked;
+      for (VertexHandle v : mesh.cell(C(first)).v)
+        for (CellHandle c : mesh.vertex_cells(v)) walked.insert(c.idx());
+      n_beyond += depth == 0 && walked.size() < wanted.size() ? 1 : 0;
+    }
+  EXPECT_GT(n_beyond, 10U);
 }
 
 TEST_F(PinchedParts, MorePinchesThanThereWereAreAFault) {
