@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -174,6 +176,27 @@ TEST_F(PinchedParts, WhoHoldsAllCellsKnows) {
   EXPECT_GT(n_before, 20U);
   mpi::improve(parts, all_stages());
   EXPECT_LE(expect_known(), n_before);
+}
+
+/// Pairs of cells on triangles round one axis, all with the same two tips: any pair may become three cells
+/// round the edge of the tips, which may be made once.
+TEST_F(PinchedParts, AnEdgeBetweenPinchedVerticesIsMadeOnce) {
+  constexpr Index kPairs = 12;
+  std::vector<Vec3> points = {{0, 0, 0.2}, {0, 0, -0.2}};
+  std::vector<Corners> cells;
+  for (Index i = 0; i < kPairs; ++i) {
+    const auto first = static_cast<Index>(points.size());
+    for (int k = 0; k < 3; ++k) {
+      const double angle = 2 * std::numbers::pi * (k / 3.0 + 0.37 * i), radius = 1 + 0.03 * i;
+      points.push_back({radius * std::cos(angle), radius * std::sin(angle), 0});
+    }
+    cells.push_back({first, first + 1, first + 2, 0});
+    cells.push_back({first, first + 2, first + 1, 1});
+  }
+  const auto done = run(build(points, cells), polish_towards(25));
+  if (comm.rank() == 0) {
+    EXPECT_THAT(done, testing::Contains("face"));
+  }
 }
 
 /// Whatever group of cells leads there.
