@@ -174,8 +174,13 @@ TEST_F(PinchedParts, WhoHoldsAllCellsKnows) {
   };
   const std::uint64_t n_before = expect_known();
   EXPECT_GT(n_before, 20U);
+  const auto copy = parts.copy();
   mpi::improve(parts, all_stages());
   EXPECT_LE(expect_known(), n_before);
+  parts.work().pinched.assign(parts.part().n_vertices() + 1, 0);  // whatever it was
+  parts.put_back(*copy);
+  EXPECT_EQ(parts.work().pinched.size(), parts.part().n_vertices());
+  EXPECT_EQ(expect_known(), n_before);
 }
 
 /// Pairs of cells on triangles round one axis, all with the same two tips: any pair may become three cells
