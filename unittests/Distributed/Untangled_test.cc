@@ -280,6 +280,19 @@ TEST(UntangledParts, LabelledMeshesHaveTheBytesOfSharedMemory) {
 
 /// What only the whole shows: a piece of the mesh that was written the other way round, and the whole. Parts
 /// that have inverted cells alone are none.
+/// A box of n³ cubes that hangs together with nothing else.
+void put_box_beside(io::MeshData& data, Index n) {
+  const io::MeshData box = io::disassemble(moved_box({n, n, n}, [](Vec3 p, bool) {
+    return p + Vec3{10, 0, 0};
+  }));
+  const auto first = static_cast<Index>(data.points.size());
+  for (auto cell : box.cells) {
+    for (Index& v : cell) v += first;
+    data.cells.push_back(cell);
+  }
+  data.points.insert(data.points.end(), box.points.begin(), box.points.end());
+}
+
 TEST(UntangledParts, PiecesOfNegativeCellsAreTurnedAsInSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
@@ -290,17 +303,12 @@ TEST(UntangledParts, PiecesOfNegativeCellsAreTurnedAsInSharedMemory) {
       SCOPED_TRACE(turns_small);
       if (comm.rank() == 0) {
         io::MeshData data = io::disassemble(tangled_inside({3, 4, 3}, 0.5, 3));
-        io::MeshData other = io::disassemble(moved_box({2, 2, 2}, [](Vec3 p, bool) {
-          return p + Vec3{10, 0, 0};
-        }));
         if (turns_large)
           for (auto& cell : data.cells) std::swap(cell[2], cell[3]);
-        for (auto& cell : other.cells) {
-          if (turns_small) std::swap(cell[2], cell[3]);
-          for (Index& v : cell) v += static_cast<Index>(data.points.size());
-          data.cells.push_back(cell);
-        }
-        data.points.insert(data.points.end(), other.points.begin(), other.points.end());
+        const std::size_t n_large = data.cells.size();
+        put_box_beside(data, 2);
+        for (std::size_t c = n_large; c < data.cells.size() && turns_small; ++c)
+          std::swap(data.cells[c][2], data.cells[c][3]);
         io::write_mesh(path, data);
       }
       comm.sum(0);
@@ -345,15 +353,7 @@ TEST(UntangledParts, CellsThatAreOrderedAgainstOneAnotherAreTurnedAsInSharedMemo
   for (const double share : {0.3, 0.5, 0.8}) {
     SCOPED_TRACE(share);
     io::MeshData data = io::disassemble(tangled_inside({5, 4, 6}, 0.5, 3));
-    const io::MeshData other = io::disassemble(moved_box({3, 3, 3}, [](Vec3 p, bool) {
-      return p + Vec3{10, 0, 0};
-    }));
-    const auto n = static_cast<Index>(data.points.size());
-    for (auto cell : other.cells) {
-      for (Index& v : cell) v += n;
-      data.cells.push_back(cell);
-    }
-    data.points.insert(data.points.end(), other.points.begin(), other.points.end());
+    put_box_beside(data, 3);
     std::mt19937_64 engine(7);
     for (auto& cell : data.cells)
       if (std::uniform_real_distribution<double>()(engine) < share) std::swap(cell[1], cell[3]);
