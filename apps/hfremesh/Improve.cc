@@ -70,7 +70,7 @@ ExitCode run_on_surface(io::MeshData data, const ImproveLine& line, const Improv
   };
   if (line.ignore_labels) add(drop_labels(data));
   add(notes_on_idle_options(line, false));
-  return improve_surface({line.input, line.output, line.dry_run, line.surface, line.min_dihedral,
+  return improve_surface({line.input, line.output, line.dry_run, line.surface.mode, line.min_dihedral,
                           line.min_angle, line.time_limit, options.surface, write_options, seconds_read},
                          std::move(data), common, report);
 }

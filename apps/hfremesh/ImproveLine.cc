@@ -106,28 +106,12 @@ void add_method_options(Command command, ImproveLine& line) {
 
 void add_surface_options(Command command, ImproveLine& line) {
   command.group("Surface");
-  command
-      .option("--surface", line.surface,
-              "What may happen to the surface: frozen (nothing), flat (new triangles in "
-              "planar faces), free (within --hausdorff of the input)")
-      .type_name("MODE")
-      .shows_default("frozen")
-      .one_of({"frozen", "flat", "free"});
-  command
-      .option("--hausdorff", line.hausdorff,
-              "Largest distance between input and output surface, with --surface free; 0: as flat")
-      .type_name("LENGTH")
-      .shows_default("0.3 of the mean edge, at most 0.5 % of the diagonal")
-      .check(real_number(0));
-  command.option("--feature-angle", line.feature_angle, "Edges sharper than this stay, with --surface free")
-      .type_name("DEG")
-      .shows_default("40")
-      .check(real_number(0, 180));
+  add_surface_mode_options(command, line.surface);
   command.flag("--label-features", line.label_features,
                "Write sharp edges and corners of the surface as labels");
   command.flag("--ignore-labels", line.ignore_labels,
                "Leave out labels of triangles, edges and vertices that would keep something as it is");
-  add_fix_option(command, line.fix);
+  add_fix_option(command, line.surface.fix);
   command
       .option("--periodic", line.periodic,
               "Patches A:B that match each other by a translation: their vertices move together")
@@ -163,6 +147,34 @@ void set_min_dihedral(const std::string& degrees, ImproveOptions& options) {
     options.raise_min_dihedral = true;
   else if (!degrees.empty())
     options.min_dihedral = real_of(degrees);
+}
+
+void add_surface_mode_options(Command command, SurfaceLine& line) {
+  command
+      .option("--surface", line.mode,
+              "What may happen to the surface: frozen (nothing), flat (new triangles in "
+              "planar faces), free (within --hausdorff of the input)")
+      .type_name("MODE")
+      .shows_default("frozen")
+      .one_of({"frozen", "flat", "free"});
+  command
+      .option("--hausdorff", line.hausdorff,
+              "Largest distance between input and output surface, with --surface free; 0: as flat")
+      .type_name("LENGTH")
+      .shows_default("0.3 of the mean edge, at most 0.5 % of the diagonal")
+      .check(real_number(0));
+  command.option("--feature-angle", line.feature_angle, "Edges sharper than this stay, with --surface free")
+      .type_name("DEG")
+      .shows_default("40")
+      .check(real_number(0, 180));
+}
+
+void set_surface(const SurfaceLine& line, const std::vector<std::string>& periodic, SurfaceOptions& options) {
+  if (line.mode == "flat") options.mode = SurfaceMode::kFlat;
+  if (line.mode == "free") options.mode = SurfaceMode::kFree;
+  if (line.hausdorff >= 0) options.hausdorff = line.hausdorff;
+  if (line.feature_angle) options.feature_angle = *line.feature_angle;
+  add_locks(options, line.fix, periodic);
 }
 
 void add_fix_option(Command command, std::vector<std::string>& fix) {
@@ -233,11 +245,7 @@ ImproveOptions improve_options(const ImproveLine& line, const CommonOptions& com
   if (!line.compat.empty()) options.compat = Compat::kJpdc2013;
   if (!line.device.empty()) options.device = device_choice_from_name(line.device);
   if (line.time_limit > 0) options.time_limit = line.time_limit;
-  if (line.surface == "flat") options.surface.mode = SurfaceMode::kFlat;
-  if (line.surface == "free") options.surface.mode = SurfaceMode::kFree;
-  if (line.hausdorff >= 0) options.surface.hausdorff = line.hausdorff;
-  if (line.feature_angle) options.surface.feature_angle = *line.feature_angle;
-  add_locks(options.surface, line.fix, line.periodic);
+  set_surface(line.surface, line.periodic, options.surface);
   options.policy = common.policy();
   options.statistics =
       common.prints_table() || !common.json.empty() || !line.ids.empty() || line.presentation.any();
@@ -258,7 +266,7 @@ Json options_json(const ImproveLine& line, const ImproveOptions& options) {
   json["smoother"] = line.smoother.empty() ? Json() : Json(line.smoother);
   json["rounds"] = line.rounds.empty() ? Json() : Json(line.rounds);
   json["compat"] = line.compat.empty() ? Json() : Json(line.compat);
-  json["surface"] = line.surface.empty() ? "frozen" : line.surface;
+  json["surface"] = line.surface.mode.empty() ? "frozen" : line.surface.mode;
   json["device"] = line.device.empty() ? "cpu" : line.device;
   json["hybrid"] = options.hybrid;
   json["bulk_nodes"] = options.bulk_nodes;
@@ -278,14 +286,14 @@ std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_
   const auto left_out = [&](bool given, const char* option, const char* by) {
     if (given) notes.push_back(fmt::format("{} does nothing with {}", option, by));
   };
-  const bool frozen = on_tetrahedra && (line.surface.empty() || line.surface == "frozen");
-  const bool free = line.surface == "free" || (line.surface.empty() && !on_tetrahedra);
-  idle(!free && !line.label_features && line.hausdorff >= 0, "--hausdorff",
+  const bool frozen = on_tetrahedra && (line.surface.mode.empty() || line.surface.mode == "frozen");
+  const bool free = line.surface.is_free() || (line.surface.mode.empty() && !on_tetrahedra);
+  idle(!free && !line.label_features && line.surface.hausdorff >= 0, "--hausdorff",
        "--surface free or --label-features");
-  idle(!free && !line.label_features && line.feature_angle, "--feature-angle",
+  idle(!free && !line.label_features && line.surface.feature_angle, "--feature-angle",
        "--surface free or --label-features");
   const auto is_patch = [](const std::string& what) { return what.starts_with("patch:"); };
-  idle(frozen && std::ranges::any_of(line.fix, is_patch), "--fix patch", "--surface flat or free");
+  idle(frozen && std::ranges::any_of(line.surface.fix, is_patch), "--fix patch", "--surface flat or free");
   idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
   const int usual_width = PresentationFiles{}.png_width;
   idle(line.presentation.png.empty() && line.presentation.png_width != usual_width, "--png-width", "--png");

@@ -15,6 +15,16 @@
 
 namespace hfr::app {
 
+/// What may become of the surface, as it was given.
+struct SurfaceLine {
+  std::string mode;
+  double hausdorff = -1;  ///< negative = not given
+  std::optional<double> feature_angle;
+  std::vector<std::string> fix;
+
+  bool is_free() const { return mode == "free"; }
+};
+
 /// What of a command line counts for `improve`, as it was given; names are looked up before the input is
 /// read.
 struct ImproveLine {
@@ -25,10 +35,8 @@ struct ImproveLine {
   bool label_features = false;
   bool ignore_labels = false;
   std::string ops, metric, smoother, rounds, compat;
-  std::string surface;
-  std::vector<std::string> fix, periodic;
-  double hausdorff = -1;  ///< negative = not given
-  std::optional<double> feature_angle;
+  SurfaceLine surface;
+  std::vector<std::string> periodic;
   std::string device;  ///< as device_choice_from_name() has it
   bool no_insert = false;
   std::string min_dihedral;        ///< degrees or "max"
@@ -48,7 +56,10 @@ void set_min_dihedral(const std::string& degrees, ImproveOptions& options);
 /// The operators of a run and how they take turns; `ops` and `rounds` must outlive the parser's run.
 void add_ops_option(Command command, std::string& ops);
 void add_rounds_option(Command command, std::string& rounds);
+void add_surface_mode_options(Command command, SurfaceLine& line);
 void add_fix_option(Command command, std::vector<std::string>& fix);
+/// Into the options; `periodic`: pairs of patches.
+void set_surface(const SurfaceLine& line, const std::vector<std::string>& periodic, SurfaceOptions& options);
 /// `line` and `common` must outlive the parser's run.
 void add_improve_options(Command command, ImproveLine& line, CommonOptions& common);
 /// What the library is asked for. Throws for a name that there is not.

@@ -22,7 +22,6 @@
 #include "Files.hh"
 #include "ImproveLine.hh"
 #include "Json.hh"
-#include "Locks.hh"
 #include "Numbers.hh"
 #include "Options.hh"
 #include "Parser.hh"
@@ -49,7 +48,7 @@ struct PartsLine {
   int iterations = 0;
   std::size_t min_cells = 0, max_cells = 0;
   double time_limit = 0;  ///< seconds; 0 = none
-  std::vector<std::string> fix;
+  SurfaceLine surface;
   std::uint64_t seed = 2013;
   int threads_each = 1;
   std::string partition = "coordinates";
@@ -64,7 +63,7 @@ struct PartsLine {
   /// Options of a run, where there is none.
   bool has_idle_options() const {
     return !improves() && (!ops.empty() || !rounds.empty() || no_insert || bulk_nodes || iterations > 0 ||
-                           min_cells > 0 || max_cells > 0 || time_limit > 0 || !fix.empty());
+                           min_cells > 0 || max_cells > 0 || time_limit > 0 || !surface.mode.empty() || !surface.fix.empty());
   }
 };
 
@@ -121,7 +120,8 @@ void add_options(Command command, PartsLine& line) {
       .type_name("S")
       .check(positive_number())
       .shows_default("none");
-  add_fix_option(command, line.fix);
+  add_surface_mode_options(command, line.surface);
+  add_fix_option(command, line.surface.fix);
   command.option("--threads-each", line.threads_each, "Threads of each rank")
       .type_name("N")
       .shows_default()
@@ -174,7 +174,8 @@ ImproveOptions improve_options(const PartsLine& line) {
   options.min_cells = line.min_cells;
   options.max_cells = line.max_cells;
   if (line.time_limit > 0) options.time_limit = line.time_limit;
-  add_locks(options.surface, line.fix, {});
+  set_surface(line.surface, {}, options.surface);
+  options.statistics = line.prints() || !line.json.empty();
   options.policy = par::Policy{line.threads_each};
   return options;
 }
@@ -343,6 +344,7 @@ class PartsRun {
     report_["options"] = {{"min_dihedral", std::move(wanted)},
                           {"ops", ops_to_list(options.ops)},
                           {"polish_only", options.polish_only},
+                          {"surface", line_.surface.mode.empty() ? "frozen" : line_.surface.mode},
                           {"passes_only", options.passes_only},
                           {"coarsen", options.coarsen},
                           {"bulk_nodes", options.bulk_nodes},
@@ -413,6 +415,10 @@ class PartsRun {
     reporting(ExitCode::kUsage, [&] { result = mpi::improve(mesh_, improve_options(line_)); });
     say_found("improved", result.after, note_seconds("improve"));
     report_["after"] = json_of(result.after);
+    if (result.surface.mode != SurfaceMode::kFrozen) {
+      report_["surface"] = surface_json(result.surface);
+      if (comm_.rank() == 0 && line_.prints()) print_surface(result.surface);
+    }
     report_["result"] = {{"changed", result.changed},
                          {"goal_reached", result.goal_reached},
                          {"stop", stop_name(result.stop)},

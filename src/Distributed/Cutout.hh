@@ -43,6 +43,8 @@ class Cutout {
   /// A vertex that has come since.
   bool is_new(VertexHandle v) const { return v.idx() >= vertices_.size(); }
   CellHandle cell_at(std::uint64_t number) const;
+  /// Of those that it was built with.
+  VertexHandle vertex_at(std::uint64_t number) const;
   /// A new deleted slot, with that number.
   CellHandle add_slot(std::uint64_t number);
   /// What the whole is to be told of them.
@@ -56,7 +58,6 @@ class Cutout {
  private:
   void build(const std::vector<DistributedMesh::CellRecord>& cells, const std::vector<std::uint64_t>& taken,
              bool has_pinched);
-  VertexHandle vertex_at(std::uint64_t number) const;
 
   TetMesh mesh_;
   Workspace work_;

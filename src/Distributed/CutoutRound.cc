@@ -23,7 +23,7 @@ struct Announcement {
   SeedName name{};
   std::uint64_t seed_number = 0;
   std::uint32_t seed_place = 0, number = 0;
-  std::uint32_t n_removed = 0, n_created = 0;
+  std::uint32_t n_removed = 0, n_created = 0, n_removed_first = 0, n_created_first = 0;
   std::uint8_t removes_vertex = 0, adds_vertex = 0;
 };
 
@@ -31,6 +31,7 @@ struct Announcement {
 struct Award {
   std::uint32_t number = 0;
   std::uint64_t new_vertex = kNoNumber;
+  std::uint64_t order = 0;  ///< among the winners of all ranks
 };
 
 }  // namespace
@@ -94,15 +95,16 @@ void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std:
   const std::span<const std::uint64_t> free = parts_.free_slots();
   std::vector<std::uint64_t> back;
   std::unordered_set<std::uint64_t> taken, made;
+  std::uint64_t n_winners = 0;
   for (const Contender& one : all) {
     if (std::any_of(one.cells.begin(), one.cells.end(), [&](std::uint64_t c) { return taken.contains(c); }))
       continue;
     if (forbids_twice && !add_unless_there(one.made, made)) continue;
     taken.insert(one.cells.begin(), one.cells.end());
-    const std::size_t n_removed = one.told.n_removed, n_created = one.told.n_created;
-    const std::size_t n_same = std::min(n_removed, n_created);
-    const std::size_t loss = one.told.removes_vertex != 0 ? n_removed - n_same : 0;
-    const std::size_t gain = one.told.adds_vertex != 0 ? n_created - n_same : 0;
+    const Announcement& told = one.told;
+    const std::size_t n_same = std::min(told.n_removed, told.n_created);
+    const std::size_t loss = told.removes_vertex != 0 ? told.n_removed - n_same : 0;
+    const std::size_t gain = told.adds_vertex != 0 ? told.n_created - n_same : 0;
     if (loss > may_lose || gain > may_gain) {
       ++slots_.n_held_back;
       continue;
@@ -111,10 +113,14 @@ void CutoutRound::decide(std::vector<Contender>& all, std::size_t may_lose, std:
     may_gain -= gain;
     Prize prize;
     prize.award.number = one.told.number;
-    for (std::size_t k = n_same; k < n_created; ++k)
-      prize.fresh.push_back(slots_.n_taken < free.size() ? free[free.size() - ++slots_.n_taken]
-                                                         : parts_.n_slots() + slots_.n_fresh++);
-    for (std::size_t k = n_same; k < n_removed; ++k) back.push_back(one.cells[k]);
+    prize.award.order = n_winners++;
+    for (const CavityPart& p :
+         parts_of(told.n_removed, told.n_created, told.n_removed_first, told.n_created_first)) {
+      for (std::size_t k = p.n_removed; k < p.n_created; ++k)
+        prize.fresh.push_back(slots_.n_taken < free.size() ? free[free.size() - ++slots_.n_taken]
+                                                           : parts_.n_slots() + slots_.n_fresh++);
+      for (std::size_t k = p.n_created; k < p.n_removed; ++k) back.push_back(one.cells[p.first_removed + k]);
+    }
     if (one.told.adds_vertex != 0) prize.award.new_vertex = parts_.n_vertices() + slots_.n_vertices++;
     prizes[static_cast<std::size_t>(one.home)].push_back(std::move(prize));
   }
@@ -141,7 +147,7 @@ auto CutoutRound::select(const Candidates& candidates, std::size_t may_lose, std
     to[0].put(Announcement{
         candidates.key(i), candidates.name(i), seed.cell.is_valid() ? cutout_.number(seed.cell) : kNoNumber,
         seed.place, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(plan.n_removed),
-        static_cast<std::uint32_t>(plan.n_created), plan.removes_vertex ? std::uint8_t{1} : std::uint8_t{0},
+        static_cast<std::uint32_t>(plan.n_created), plan.n_removed_first, plan.n_created_first, plan.removes_vertex ? std::uint8_t{1} : std::uint8_t{0},
         plan.adds_vertex ? std::uint8_t{1} : std::uint8_t{0}});
     std::vector<std::uint64_t> cells;
     for (CellHandle c : candidates.scope(i)) cells.push_back(cutout_.number(c));
@@ -182,6 +188,7 @@ auto CutoutRound::select(const Candidates& candidates, std::size_t may_lose, std
       Winner winner{award.number, candidates.seed(award.number), in.get_all<std::uint64_t>()};
       if (award.new_vertex != kNoNumber) new_vertices.push_back(award.new_vertex);
       selected.winners.push_back(std::move(winner));
+      order_.push_back(award.order);
     }
   cutout_.number_new_vertices(std::move(new_vertices));
   return selected;
@@ -191,6 +198,7 @@ void CutoutRound::finish(std::span<const Commit> commits) {
   for (const Commit& commit : commits) {
     Change& change = changes_.emplace_back();
     for (CellHandle c : commit.removed) change.removed.push_back(cutout_.number(c));
+    if (commit.removed_vertex.is_valid()) change.deleted.push_back(cutout_.number(commit.removed_vertex));
     std::vector<VertexHandle> vertices;
     for (CellHandle c : commit.created) {
       change.cells.push_back(cutout_.record(c));
@@ -246,6 +254,7 @@ void CutoutRound::bring_home() {
   for (const Change& change : changes_) {
     mine.put(parts_.comm().rank());
     mine.put_all(change.removed);
+    mine.put_all(change.deleted);
     mine.put_all(change.vertices);
     mine.put_all(change.cells);
     mine.put_all(change.labels);
@@ -257,10 +266,12 @@ void CutoutRound::bring_home() {
   for (Unpacker in(said); !in.at_end();) {
     const auto rank = in.get<int>();
     const auto removed = in.get_all<std::uint64_t>();
+    const auto deleted = in.get_all<std::uint64_t>();
     const auto v = in.get_all<Touched>();
     const auto c = in.get_all<DistributedMesh::CellRecord>();
     const auto l = in.get_all<LabelRecord>();
     if (!near.remove(parts_, removed)) continue;
+    near.deleted.insert(near.deleted.end(), deleted.begin(), deleted.end());
     for (const Touched& one : v) vertices.push_back({one, rank});
     near.created.insert(near.created.end(), c.begin(), c.end());
     near.labels.insert(near.labels.end(), l.begin(), l.end());

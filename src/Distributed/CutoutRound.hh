@@ -60,6 +60,8 @@ class CutoutRound : public RoundPlace {
 
   /// Of all ranks the cells from which an evaluation has come to the rim.
   const std::vector<std::uint64_t>& met() const { return met_; }
+  /// Of each of this rank's winners its place among those of all.
+  std::span<const std::uint64_t> order() const { return order_; }
   /// What the winners of all ranks have changed, into this part, unless the round is void: each rank takes
   /// what lies near its own vertices. A new vertex belongs to the owner of the vertex with the smallest
   /// number among its neighbours.
@@ -79,7 +81,7 @@ class CutoutRound : public RoundPlace {
   };
   /// What of one winner the other ranks need.
   struct Change {
-    std::vector<std::uint64_t> removed;
+    std::vector<std::uint64_t> removed, deleted;  // cells; a vertex
     std::vector<Touched> vertices;
     std::vector<DistributedMesh::CellRecord> cells;
     std::vector<LabelRecord> labels;
@@ -93,7 +95,7 @@ class CutoutRound : public RoundPlace {
 
   Cutout& cutout_;
   DistributedMesh& parts_;
-  std::vector<std::uint64_t> met_;
+  std::vector<std::uint64_t> met_, order_;
   bool has_candidates_ = false;  // on any rank
   SlotChange slots_;
   std::vector<std::uint64_t> freed_;  // in the order in which they go to the free list
@@ -111,25 +113,42 @@ void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t>
 ///
 /// `make_op(cutout)`: the operator, with the qualities and the rim of the cutout. `cells`: numbers,
 /// ascending, the same on all ranks. `first_depth`: layers that are tried first, at least 1; the result does
-/// not depend on it. All take part.
-template <class MakeOp>
+/// not depend on it. `make_seeds(cutout)`: those of its centres. `tell(cutout, round, order)`: before the parts
+/// know of what this rank's winners have changed, once; see CutoutRound::order(). All take part.
+template <class MakeOp, class MakeSeeds, class Tell>
 RoundCounts round_on_cutout(DistributedMesh& parts, const Ranks::Look& look,
-                            std::span<const std::uint64_t> cells, std::uint8_t first_depth,
-                            MakeOp&& make_op) {
+                            std::span<const std::uint64_t> cells, std::uint8_t first_depth, MakeOp&& make_op,
+                            MakeSeeds&& make_seeds, Tell&& tell) {
   std::vector<std::uint8_t> depth(cells.size(), first_depth);
   for (;;) {
     Cutout cutout(parts, cells, depth);
     const auto op = make_op(cutout);
     using Op = std::remove_const_t<decltype(op)>;
-    std::vector<typename Op::Seed> seeds;
-    for (std::uint64_t number : cutout.centres()) seeds.emplace_back(cutout.cell_at(number));
     CutoutRound place(cutout, parts);
     Round<Op> round(cutout.mesh(), cutout.work(), options_of(look, place));
+    const std::vector<typename Op::Seed> seeds = make_seeds(cutout);
     const RoundCounts counts = round.run(op, seeds);
+    if (place.met().empty()) tell(cutout, round, place.order());
     place.bring_home();
     if (place.met().empty()) return counts;
     deepen(cells, place.met(), depth);
   }
+}
+
+/// The same of operators whose seeds are cells.
+template <class MakeOp>
+RoundCounts round_on_cutout(DistributedMesh& parts, const Ranks::Look& look,
+                            std::span<const std::uint64_t> cells, std::uint8_t first_depth,
+                            MakeOp&& make_op) {
+  using Seed = typename std::invoke_result_t<MakeOp&, Cutout&>::Seed;
+  return round_on_cutout(
+      parts, look, cells, first_depth, make_op,
+      [](const Cutout& cutout) {
+        std::vector<Seed> seeds;
+        for (std::uint64_t number : cutout.centres()) seeds.emplace_back(cutout.cell_at(number));
+        return seeds;
+      },
+      [](const Cutout&, const auto&, std::span<const std::uint64_t>) {});
 }
 
 }  // namespace hfr::mpi

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hfremesh/Distributed/Comm.hh"
+#include "hfremesh/Distributed/LabelOrder.hh"
 #include "hfremesh/Distributed/PartLabels.hh"
 #include "hfremesh/Distributed/Partition.hh"
 #include "hfremesh/Distributed/RankSets.hh"
@@ -32,6 +33,7 @@ struct PartState {
   std::unordered_map<std::uint64_t, Index> later_;  // slots from n_sorted_ on
   std::uint64_t n_slots_ = 0, n_vertices_ = 0;
   std::vector<std::uint64_t> free_;
+  LabelOrder face_order_;  // while the labels of faces are followed
 };
 
 }  // namespace detail
@@ -89,6 +91,17 @@ class DistributedMesh : private detail::PartState {
   /// To all ranks that hold a cell with these vertices, and into this part. Each on the rank that owns its
   /// smallest vertex. All take part.
   void hand_out_labels(std::span<const LabelRecord> records);
+
+  /// From here to leave_face_labels(), labels of faces may change: each rank holds the order of all labelled
+  /// faces. All take part.
+  void follow_face_labels();
+  struct LabelledFace {
+    LabelOrder::Face v{};  ///< in the order of the label
+    std::int32_t label = 0;
+  };
+  /// These faces of the whole are no more, and these have a label now: the same on all ranks.
+  void change_face_labels(std::span<const LabelOrder::Face> gone, std::span<const LabelledFace> set);
+  void leave_face_labels();
 
   /// Of this part, to come back to: some 50 bytes a cell. It answers no questions on what lies near.
   std::shared_ptr<const DistributedMesh> copy() const;

@@ -20,6 +20,7 @@
 #include "Distributed/PartFixes.hh"
 #include "Distributed/PartPasses.hh"
 #include "Distributed/PartPatchSearch.hh"
+#include "Distributed/PartSurface.hh"
 #include "Distributed/PartUnfolding.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
@@ -53,6 +54,16 @@ class Residents : public Ranks, public MeshInParts {
     return passes_.dig(dig, waiting);
   }
   RoundCounts search(const Search& search) override { return passes_.search(search); }
+  /// For the time of a run whose surface may change.
+  void set_surface(PartSurface* surface) { surface_ = surface; }
+  std::optional<RoundCounts> surface_pass(const SurfaceLook& look) override {
+    Look listed = look.look;
+    listed.is_marked = false;  // the surface is looked at wherever it has changed
+    const auto counts = surface_->pass(look, passes_.listed(listed));
+    if (counts) n_rounds_ += counts->rounds;
+    return counts;
+  }
+  bool is_folded_since(std::uint32_t clock) override;
   Tally tally(double below) override { return passes_.tally(below); }
   std::size_t n_cells() const override { return static_cast<std::size_t>(mesh_.n_cells()); }
   void bring_back(TetMesh&, Workspace&) override {}
@@ -101,7 +112,24 @@ class Residents : public Ranks, public MeshInParts {
   par::Policy policy_;
   std::uint64_t n_rounds_ = 0;
   PartPasses passes_;
+  PartSurface* surface_ = nullptr;
 };
+
+/// As SurfacePasses has it, each rank at its own vertices.
+bool Residents::is_folded_since(std::uint32_t clock) {
+  const TetMesh& part = mesh_.part();
+  const Workspace& work = mesh_.work();
+  std::vector<VertexHandle> changed;
+  for (VertexHandle v : own_vertices(mesh_))
+    if (work.frozen[v.idx()] && work.changed[v.idx()] > clock) changed.push_back(v);
+  bool is_folded = is_folded_at(part, changed, policy_);
+  const auto is_pinched = [&](VertexHandle v) { return !work.pinched.empty() && work.pinched[v.idx()] != 0; };
+  if (!is_folded && std::any_of(changed.begin(), changed.end(), is_pinched))
+    is_folded = !folded_faces(part, policy_, [&](VertexHandle v) {
+                   return is_pinched(v) && std::binary_search(changed.begin(), changed.end(), v);
+                 }).empty();
+  return mesh_.comm().sum(is_folded ? 1 : 0) > 0;
+}
 
 /// Of whose inverted cells the volumes come together on all ranks.
 Standing Residents::standing() {
@@ -233,7 +261,9 @@ std::string reason_against(const ImproveOptions& options) {
   if (!options.polish_only && options.metric != Metric::kVolumeLength)
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;
-  if (surface.mode != SurfaceMode::kFrozen) return "surfaces that may change";
+  if (surface.mode != SurfaceMode::kFrozen && !options.polish_only)
+    return "surfaces that may change in other runs than a polish towards a goal";
+  if (!surface.periodic.empty()) return "periodic patches";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
@@ -321,9 +351,18 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   findings.is_folded = is_folded(mesh, policy);
   DeviceSession device;
   Residents residents(mesh, policy);
+  std::optional<PartSurface> surface;
+  if (options.surface.mode != SurfaceMode::kFrozen) {
+    HFR_REQUIRE(found.n_invalid == 0,
+                "meshes in parts do not have surfaces that may change round inverted and flat cells yet: "
+                "mend these with a frozen surface first");
+    surface.emplace(mesh, options.surface, options.statistics, policy);
+    residents.set_surface(&*surface);
+  }
   Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
           nullptr,     nullptr,     strategy.bounds, false,   &residents};
-  if (options.polish_only && found.n_invalid == 0 && !findings.is_folded && mesh.work().pinched.empty()) {
+  if (surface) run.surface = surface->get();
+  if (options.polish_only && !surface && found.n_invalid == 0 && !findings.is_folded && mesh.work().pinched.empty()) {
     result.has_fallen = polish_valid(run, goal, result.before.worst);
   } else {
     Checkpoint checkpoint(residents, policy);
@@ -331,6 +370,10 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
     run_to_the_end(run);
   }
   result.changed = control.n_changes() > 0;
+  if (surface) {
+    mesh.leave_face_labels();
+    result.surface = surface->report();
+  }
   if (order && !result.changed) mesh.renumber(*order);
   result.after = survey(mesh, goal, policy);
   result.goal_reached = result.after.n_below_goal == 0 && result.after.n_invalid == 0;

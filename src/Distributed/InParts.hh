@@ -56,6 +56,7 @@ struct PartsResult {
   /// With polish_only: the input had positive cells, and the smallest angle is below its smallest one, for
   /// which hfr::improve() would have put the input back. Seen only where an obtuse angle was the worst.
   bool has_fallen = false;
+  SurfaceReport surface;  ///< without regions
   std::vector<PassReport> passes;
   double seconds = 0;
   RankFigures mine;  ///< of this rank: rounds, and its part at the end; see gather_figures()

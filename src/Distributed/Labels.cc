@@ -131,6 +131,55 @@ void DistributedMesh::hand_out_labels(std::span<const LabelRecord> records) {
     take(Unpacker(message.bytes).get_all<LabelRecord>());
 }
 
+void DistributedMesh::follow_face_labels() {
+  struct Numbered {
+    std::uint64_t number = 0;
+    LabelOrder::Face v{};
+  };
+  std::vector<Numbered> faces;
+  const auto entries = mesh_.labels().faces.entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto& v = entries[i].vertices;
+    if (is_own(*std::min_element(v.begin(), v.end())))
+      faces.push_back({labels_.face_number(i), {number(v[0]), number(v[1]), number(v[2])}});
+  }
+  faces = comm_.all_gather(std::span<const Numbered>(faces));
+  std::sort(faces.begin(), faces.end(), [](const Numbered& a, const Numbered& b) { return a.number < b.number; });
+  std::vector<LabelOrder::Face> order;
+  for (const Numbered& one : faces) order.push_back(one.v);
+  face_order_.assign(order);
+}
+
+void DistributedMesh::change_face_labels(std::span<const LabelOrder::Face> gone,
+                                         std::span<const LabelledFace> set) {
+  const auto here = [&](const LabelOrder::Face& f) {
+    return std::array{vertex_at(f[0]), vertex_at(f[1]), vertex_at(f[2])};
+  };
+  const auto is_here = [](const std::array<VertexHandle, 3>& v) {
+    return std::all_of(v.begin(), v.end(), [](VertexHandle u) { return u.is_valid(); });
+  };
+  for (const LabelOrder::Face& f : gone) {
+    face_order_.erase(f);
+    if (const auto v = here(f); is_here(v)) labels_.erase_face(mesh_, v);
+  }
+  TupleMap<3, std::int32_t> come;
+  for (const LabelledFace& one : set) {
+    face_order_.set(one.v);
+    if (const auto v = here(one.v); is_here(v)) come.set(v, one.label);
+  }
+  if (come.empty()) return;
+  const std::vector<std::uint8_t> is_used = used_entries(mesh_, come);
+  for (std::size_t i = 0; i < come.size(); ++i)
+    if (is_used[i] != 0) labels_.set_face(mesh_, come.entries()[i].vertices, come.entries()[i].value);
+}
+
+void DistributedMesh::leave_face_labels() {
+  labels_.number_faces(mesh_, [&](const std::array<VertexHandle, 3>& v) {
+    return face_order_.number({number(v[0]), number(v[1]), number(v[2])});
+  });
+  face_order_.clear();
+}
+
 /// Those of rank 0's mesh.
 void DistributedMesh::scatter_labels(const TetMesh* mesh, std::span<const int> owner) {
   std::vector<std::vector<LabelRecord>> to(comm_.n_ranks());

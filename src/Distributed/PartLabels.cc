@@ -73,6 +73,20 @@ void PartLabels::put(TetMesh& mesh, const LabelRecord& r, const std::array<Verte
   }
 }
 
+/// As TupleMap does.
+void PartLabels::erase_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v) {
+  auto& faces = mesh.labels().faces;
+  const std::size_t at = faces.position(v);
+  if (!faces.erase_unordered(v)) return;
+  face_number_[at] = face_number_.back();
+  face_number_.pop_back();
+}
+
+void PartLabels::set_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v, std::int32_t label) {
+  mesh.labels().faces.set(v, label);
+  face_number_.resize(mesh.labels().faces.size(), kNoNumber);
+}
+
 std::vector<LabelRecord> PartLabels::found_at(const TetMesh& mesh, std::span<const CellHandle> cells,
                                               std::span<const VertexHandle> vertices) const {
   using Kind = LabelRecord::Kind;

@@ -59,6 +59,15 @@ class PartLabels {
         if (v != kNoNumber) v = number(VertexHandle(v));
     return records;
   }
+  /// Where the surface changes: a face loses its label, or gets one; vertices in the order of the label.
+  void erase_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v);
+  void set_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v, std::int32_t label);
+  /// `number_of`: vertices of a face → its number.
+  template <class NumberOf>
+  void number_faces(const TetMesh& mesh, NumberOf&& number_of) {
+    const auto entries = mesh.labels().faces.entries();
+    for (std::size_t i = 0; i < entries.size(); ++i) face_number_[i] = number_of(entries[i].vertices);
+  }
   /// Of entry i of Labels::faces, and of Labels::edges.
   std::uint64_t face_number(std::size_t i) const { return face_number_[i]; }
   std::uint64_t edge_number(std::size_t i) const { return edge_number_[i]; }

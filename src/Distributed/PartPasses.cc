@@ -76,7 +76,6 @@ RoundCounts PartPasses::search(const Ranks::Search& search) {
   return counts;
 }
 
-/// Cells of the part that the pass has to look at.
 Worklist PartPasses::listed(const Ranks::Look& look) {
   const TetMesh& part = parts_.part();
   Workspace& work = parts_.work();

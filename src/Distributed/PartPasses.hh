@@ -31,9 +31,10 @@ class PartPasses {
   /// For looks that are marked: vertices of the cells of the whole below so many degrees, and of so many
   /// layers round them.
   void mark_round(double degrees, int layers);
+  /// Cells of the part that a pass has to look at.
+  Worklist listed(const Ranks::Look& look);
 
  private:
-  Worklist listed(const Ranks::Look& look);
   bool is_marked(VertexHandle v) const;
   template <class M>
   RoundCounts pass(const Ranks::Look& look, const M& metric);

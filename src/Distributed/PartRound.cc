@@ -85,8 +85,12 @@ auto PartRound::select(const Candidates& candidates, std::size_t may_lose, std::
   selected.held_back = hand_out_slots(may_lose, may_gain, selected.winners);
   pending_.clear();
   std::size_t w = 0;
-  for (const Entry& entry : entries_)
-    if (entry.state == State::kWon) note_pending(w++, entry);
+  for (const Entry& entry : entries_) {
+    if (entry.state != State::kWon) continue;
+    note_pending(w++, entry);
+    if (tell_)
+      places_.push_back({key(entry), name(entry), seed_number(entry), seed(entry).place, is_own(entry)});
+  }
   entries_ = {};
   told_ = {};
   others_ = {};
@@ -417,6 +421,7 @@ void PartRound::note_pending(std::size_t winner, const Entry& entry) {
 
 void PartRound::finish(std::span<const Commit> commits) {
   const Comm::InPhase phase(comm_, Phase::kBorder);
+  if (tell_) tell_(places_);
   for (const Pending& one : pending_) {
     mesh_.note_changed(one.vertices);
     for (CellHandle c : commits[one.winner].created) mesh_.note_created(c);

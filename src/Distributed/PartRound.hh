@@ -2,7 +2,11 @@
 #ifndef HFR_DISTRIBUTED_PART_ROUND_HH
 #define HFR_DISTRIBUTED_PART_ROUND_HH
 
+#include <functional>
+#include <span>
+#include <tuple>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
@@ -25,7 +29,20 @@ namespace hfr::mpi {
 /// changed within two edges of another rank's vertices.
 class PartRound : public RoundPlace {
  public:
+  /// A winner's place in the order of all.
+  struct Place {
+    std::uint64_t key = 0;
+    SeedName name{};
+    std::uint64_t seed_number = 0;
+    std::uint32_t seed_place = 0;
+    bool is_own = false;
+    auto order() const { return std::tie(key, name, seed_number, seed_place); }
+  };
+
   explicit PartRound(DistributedMesh& mesh) : mesh_(mesh), comm_(mesh.comm()) {}
+  /// tell(places), once what was committed here stands in the part and before handles of vertices become
+  /// others: the place of each of the round's winners.
+  void when_committed(std::function<void(std::span<const Place>)> tell) { tell_ = std::move(tell); }
   RoundOptions options(RoundOptions options) {
     options.place = this;
     return options;
@@ -140,6 +157,8 @@ class PartRound : public RoundPlace {
   std::vector<std::vector<std::uint64_t>> made_;  // by own candidates, where nothing may be made twice
   std::vector<std::uint32_t> undecided_;
   std::vector<Pending> pending_;
+  std::function<void(std::span<const Place>)> tell_;
+  std::vector<Place> places_;           // where somebody is to be told
   std::vector<std::uint64_t> dropped_;  // entries given up for the number of cells
   std::size_t sub_rounds_ = 0;
 };

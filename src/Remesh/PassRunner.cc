@@ -29,9 +29,6 @@ namespace {
 // Seeds of a listed cell, about: others have a smaller listed cell, or are constrained.
 constexpr double kEdgesOfCell = 4, kFacesOfCell = 3;
 
-RankMetric rank_metric(const Untangling& metric) { return RankMetric(metric); }
-RankMetric rank_metric(VolumeLength) { return hfr::Metric::kVolumeLength; }
-
 }  // namespace
 
 // What there is in improve(), but for the surface: a new operator is its files, one row here, and one line of
@@ -141,8 +138,10 @@ std::size_t PassRunner<Metric>::insert(const Turn& turn, double gain) {
     waiting_.clear();
     if (ranks_) ranks_->forget_waiting();
   }
-  if (ranks_ && run().is_part()) return ranks_->insert(row(PassKind::kInsert).name, turn, gain);
-  return insert_pass(turn);
+  if (!ranks_ || !run().is_part()) return insert_pass(turn);
+  const bool has_room = run().has_room();
+  const std::size_t n_inserted = ranks_->insert(row(PassKind::kInsert).name, turn, gain);
+  return n_inserted + (has_room && run().surface ? surface_.split(turn) : 0);
 }
 
 template <class Metric>

@@ -21,7 +21,7 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
   // Counts decide, never a clock: the same passes run there each time.
   const Run& run = state_.run_;
   if (!run.ranks || !run.ranks->can_do(kind, metric_)) return false;
-  if (run.surface || turn.focus.everything() || !turn.focus.around.empty()) return false;
+  if ((run.surface && !run.is_part()) || turn.focus.everything() || !turn.focus.around.empty()) return false;
   const bool checks_links = state_.n_invalid() > 0 || run.findings.is_folded;
   if ((checks_links && !run.is_part()) || run.strategy.pass.ranks_exactly) return false;
   if (kind == PassKind::kSmooth && run.strategy.pass.smoother != Smoother::kNewton) return false;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
@@ -29,6 +30,20 @@ struct RankMetric {
   RankMetric(Metric of = Metric::kMinSine) : metric(of) {}
   explicit RankMetric(const Untangling& of)
       : metric(Metric::kVolumeLength), untangles(true), untangling(of) {}
+};
+inline RankMetric rank_metric(const Untangling& metric) { return RankMetric(metric); }
+inline RankMetric rank_metric(VolumeLength) { return Metric::kVolumeLength; }
+inline RankMetric rank_metric(MinSine2) { return Metric::kMinSine; }
+inline RankMetric rank_metric(MinDihedral) { return Metric::kMinDihedral; }
+
+/// Passes over the surface; see SurfacePasses.
+enum class SurfacePass : std::uint8_t {
+  kSwap,
+  kInterfaceSwap,  ///< over what kSwap has looked at
+  kCollapse,
+  kMove,
+  kSplit,
+  kOffset,  ///< over all vertices
 };
 
 /// Other processes that can do some of the passes of a run, with the same bits: what Distributed/ has for
@@ -71,6 +86,17 @@ class Ranks {
     double gain = 1;  ///< this and the others: of ClusterSearch
     std::uint64_t max_points = 0, max_nodes = 0;
   };
+  /// One pass over the surface of the run; the look's kind, its number of cells that may go and whether links
+  /// are checked have no meaning.
+  struct SurfaceLook {
+    SurfacePass pass{};
+    Look look;
+    /// Of moves: SurfaceSearch::gain where more vertices are looked at than both bounds, that and one in so
+    /// many of the mesh.
+    double gain_of_many = 1;
+    std::uint64_t many = 0, many_share = 1;
+    double worst = 0;  ///< SurfaceOffset::worst
+  };
   struct Tally {
     std::size_t n_invalid = 0, n_below = 0;
     double worst = 0;
@@ -99,6 +125,11 @@ class Ranks {
   }
   /// The same for cluster search.
   virtual RoundCounts search(const Search&) { return {}; }
+  /// Where keep_mesh(), and the run has a surface. Nothing where no cell is looked at.
+  virtual std::optional<RoundCounts> surface_pass(const SurfaceLook&) { return std::nullopt; }
+  /// Whether a surface that has changed lies on or goes through itself at a vertex that has since the clock
+  /// stood there.
+  virtual bool is_folded_since(std::uint32_t) { return false; }
   /// Of all cells.
   virtual Tally tally(double below) = 0;
   virtual std::size_t n_cells() const = 0;

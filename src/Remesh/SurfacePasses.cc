@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
+#include "HalfFace/Errors.hh"
 #include "Operators/Metrics.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/PassState.hh"
@@ -83,8 +86,72 @@ std::vector<EdgeHandle> SurfacePasses<Metric>::edges(const Worklist& list, bool 
 }
 
 template <class Metric>
+Ranks::SurfaceLook SurfacePasses<Metric>::look_of(SurfacePass pass, const Turn& turn,
+                                                  std::uint32_t since) const {
+  const Run& run = state_.run();
+  const PassEffort& effort = run.strategy.pass;
+  Ranks::SurfaceLook look;
+  look.pass = pass;
+  if constexpr (std::is_same_v<Metric, CustomMetric>)
+    throw InternalError("meshes in parts do not have this metric");
+  else
+    look.look.metric = rank_metric(metric_);
+  look.look.below = turn.focus.below;
+  look.look.since = since;
+  look.look.seed = effort.seed;
+  look.look.may_gain = run.bounds.may_gain(run.n_cells());
+  look.look.threads = run.policy().threads;
+  look.look.is_marked = turn.focus.is_marked;
+  look.gain_of_many = effort.move_gain;
+  look.many = effort.many_moves;
+  look.many_share = effort.many_moves_share;
+  look.worst = state_.worst();
+  return look;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::look_in_parts(Looked kind, const Turn& turn) {
+  struct Step {
+    SurfacePass pass;
+    const char* name;
+  };
+  const Run& run = state_.run();
+  const std::uint32_t since = std::exchange(looked_[kind], run.work.clock);
+  std::vector<Step> steps;
+  if (kind == kSwaps) steps.push_back({SurfacePass::kSwap, "surface swap"});
+  if (kind == kSwaps && run.surface->has_interfaces())
+    steps.push_back({SurfacePass::kInterfaceSwap, "surface interface"});
+  if (kind == kCollapses) steps.push_back({SurfacePass::kCollapse, "surface node"});
+  if (kind == kMoves) steps.push_back({SurfacePass::kMove, "surface smooth"});
+  std::size_t changes = 0;
+  for (const Step& step : steps) {
+    const double start = run.control.seconds();
+    const auto counts = run.ranks->surface_pass(look_of(step.pass, turn, since));
+    if (!counts) break;
+    state_.report(step.name, turn, *counts, run.control.seconds() - start);
+    changes += counts->winners;
+  }
+  return changes;
+}
+
+template <class Metric>
+std::size_t SurfacePasses<Metric>::split_in_parts(const Turn& turn) {
+  const Run& run = state_.run();
+  const double start = run.control.seconds();
+  const std::uint32_t since = std::exchange(looked_[kSplits], run.work.clock);
+  const RoundCounts counts =
+      run.ranks->surface_pass(look_of(SurfacePass::kSplit, turn, since)).value_or(RoundCounts{});
+  if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
+  state_.count(turn.focus);
+  if (counts.winners > 0) look_for_folds(looked_[kSplits]);
+  state_.report("surface split", turn, counts, run.control.seconds() - start);
+  return counts.winners;
+}
+
+template <class Metric>
 std::size_t SurfacePasses<Metric>::split(const Turn& turn) {
   using Op = SurfaceSplit<Metric>;
+  if (state_.run().is_part()) return split_in_parts(turn);
   const Run& run = state_.run();
   SurfaceMesh& surface = *run.surface;
   const double start = run.control.seconds();
@@ -262,6 +329,11 @@ std::size_t SurfacePasses<Metric>::iterate(const Turn& turn) {
   std::size_t changes = 0;
   const auto look = [&](Looked kind, auto&& pass) {
     if (run.control.stopped()) return;
+    if (run.is_part()) {
+      changes += look_in_parts(kind, turn);
+      if (state_.n_invalid() > 0) state_.count(turn.focus);
+      return;
+    }
     const Worklist list = state_.changed_since(std::exchange(looked_[kind], run.work.clock), turn.focus);
     if (!list.cells().empty()) changes += pass(list);
     if (state_.n_invalid() > 0) state_.count(turn.focus);
@@ -279,6 +351,10 @@ template <class Metric>
 void SurfacePasses<Metric>::look_for_folds(std::uint32_t since) {
   const Run& run = state_.run();
   if (run.findings.is_folded) return;
+  if (run.is_part()) {
+    run.findings.is_folded = run.ranks->is_folded_since(since);
+    return;
+  }
   const auto has_changed = [&](std::size_t v) {
     return run.work.frozen[v] && run.work.changed[v] > since && !run.mesh.is_deleted(VertexHandle(v));
   };
@@ -297,14 +373,23 @@ template <class Metric>
 void SurfacePasses<Metric>::restore_volume(const VolumeEffort& effort) {
   const Run& run = state_.run();
   SurfaceMesh& surface = *run.surface;
-  const Worklist all(run.mesh, run.policy(), [](CellHandle) { return true; });
-  std::vector<VertexHandle> vertices = free_vertices(run.mesh, surface, run.work, all);
-  take_bound(surface, vertices);  // those of periodic patches stay
-  for (int i = 1; i <= effort.passes && std::abs(surface.volume_gain()) > effort.enough; ++i) {
-    const double start = run.control.seconds();
+  std::vector<VertexHandle> vertices;
+  if (!run.is_part()) {
+    const Worklist all(run.mesh, run.policy(), [](CellHandle) { return true; });
+    vertices = free_vertices(run.mesh, surface, run.work, all);
+    take_bound(surface, vertices);  // those of periodic patches stay
+  }
+  const auto pass = [&](const Turn& turn) {
+    if (run.is_part())
+      return run.ranks->surface_pass(look_of(SurfacePass::kOffset, turn, 0)).value_or(RoundCounts{});
     const RoundCounts counts = hfr::smooth_pass(run.mesh, run.work, SurfaceOffset{&surface, state_.worst()},
                                                 metric_, vertices, run.policy());
     surface.on_move(run.mesh, vertices);
+    return counts;
+  };
+  for (int i = 1; i <= effort.passes && std::abs(surface.volume_gain()) > effort.enough; ++i) {
+    const double start = run.control.seconds();
+    const RoundCounts counts = pass({.iteration = i});
     look_for_folds(run.work.clock - 1);
     state_.count(Focus{});
     state_.report("surface volume", {.iteration = i}, counts, run.control.seconds() - start);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "HalfFace/Handles.hh"
+#include "Remesh/Ranks.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr {
@@ -38,6 +39,11 @@ class SurfacePasses {
 
  private:
   enum Looked : std::size_t { kSwaps, kCollapses, kMoves, kSplits, kLooked };
+
+  /// What all ranks do together where the mesh is in parts.
+  Ranks::SurfaceLook look_of(SurfacePass pass, const Turn& turn, std::uint32_t since) const;
+  std::size_t look_in_parts(Looked kind, const Turn& turn);
+  std::size_t split_in_parts(const Turn& turn);
 
   std::size_t swaps(const Turn& turn, const Worklist& list);
   template <class Op>

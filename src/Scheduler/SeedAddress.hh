@@ -57,6 +57,27 @@ SeedAddress address_of(const Seed& seed) {
   return {seed.cell, {}};
 }
 
+/// Seeds that grow from an edge, as those of SurfaceSplit: likewise.
+template <class Seed>
+concept GrowsFromEdge = std::constructible_from<Seed, EdgeHandle> && requires(const Seed& seed) {
+  { seed.edge } -> std::convertible_to<EdgeHandle>;
+  seed.growth;
+};
+template <GrowsFromEdge Seed>
+SeedAddress address_of(const Seed& seed) {
+  return address_of(seed.edge);
+}
+
+/// Seeds at a vertex, as those of SurfaceCollapse: evaluated again, they are without what else a seed says.
+template <class Seed>
+concept IsAtVertex = requires(const Seed& seed) {
+  { seed.vertex } -> std::convertible_to<VertexHandle>;
+};
+template <IsAtVertex Seed>
+SeedAddress address_of(const Seed& seed) {
+  return address_of(seed.vertex);
+}
+
 template <class Seed>
 concept HasAddress = requires(const Seed& seed) {
   { address_of(seed) } -> std::same_as<SeedAddress>;
@@ -103,6 +124,10 @@ Seed seed_at(const SeedAddress& at) {
     return Seed{at.cell, static_cast<std::uint8_t>(at.place)};
   else if constexpr (GrowsFromCell<Seed>)
     return Seed(at.cell);
+  else if constexpr (GrowsFromEdge<Seed>)
+    return Seed(seed_at<EdgeHandle>(at));
+  else if constexpr (IsAtVertex<Seed>)
+    return Seed{at.vertex};
   else
     return Seed(halfface_of(at.cell, static_cast<int>(at.place)));
 }

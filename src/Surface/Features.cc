@@ -257,55 +257,51 @@ void add_fixed(Arrays& arrays, const SurfaceOptions& options) {
     if (v.idx() < arrays.points.size()) arrays.locked_vertices.push_back(v);
 }
 
-/// Labelled faces inside a region are no part of the surface, but the vertices and edges they share with it
-/// are locked.
+/// A labelled face inside a region is no part of the surface, but the vertices and edges it shares with it are
+/// locked.
+bool is_inside(const TetMesh& mesh, const std::array<VertexHandle, 3>& f) {
+  const HalfFaceHandle h = mesh.find_halfface(f);
+  return h.is_valid() && !mesh.is_boundary(h) &&
+         mesh.region(cell_of(h)) == mesh.region(cell_of(mesh.opposite_halfface(h)));
+}
+
 void lock_labelled_inside(const TetMesh& mesh, Arrays& arrays) {
   std::vector<std::uint8_t> on_surface(mesh.n_vertices(), 0);
   for (const auto& f : arrays.faces)
     for (VertexHandle v : f) on_surface[v.idx()] = 1;
   for (const auto& entry : mesh.labels().faces.entries()) {
-    const bool known = std::all_of(entry.vertices.begin(), entry.vertices.end(),
-                                   [&](VertexHandle v) { return on_surface[v.idx()] != 0; });
-    if (known) {
-      const HalfFaceHandle h = mesh.find_halfface(entry.vertices);
-      if (!h.is_valid() || mesh.is_boundary(h) ||
-          mesh.region(cell_of(h)) != mesh.region(cell_of(mesh.opposite_halfface(h))))
-        continue;
-    }
-    for (VertexHandle v : entry.vertices) arrays.locked_vertices.push_back(v);
+    const auto& v = entry.vertices;
+    const bool known = std::all_of(v.begin(), v.end(), [&](VertexHandle u) { return on_surface[u.idx()] != 0; });
+    if (known && !is_inside(mesh, v)) continue;
+    arrays.locked_vertices.insert(arrays.locked_vertices.end(), v.begin(), v.end());
   }
 }
 
-}  // namespace
+/// Is the half-face a face of the surface? Interfaces count from the smaller region.
+bool is_surface(const TetMesh& mesh, HalfFaceHandle h) {
+  const HalfFaceHandle m = mesh.opposite_halfface(h);
+  return !m.is_valid() || mesh.region(cell_of(h)) < mesh.region(cell_of(m));
+}
 
-Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
-  const auto halffaces = par::compact<Index>(policy, 4 * mesh.n_cells(), [&](std::size_t i) {
-    const HalfFaceHandle h(i);
-    if (mesh.is_deleted(cell_of(h))) return false;
-    const HalfFaceHandle m = mesh.opposite_halfface(h);
-    return !m.is_valid() || mesh.region(cell_of(h)) < mesh.region(cell_of(m));
-  });
-  const FixedFaces fixed(options, mesh.locks());
-  Arrays arrays;
-  arrays.points = mesh.points();
+void add_face(const TetMesh& mesh, HalfFaceHandle h, const FixedFaces& fixed, Arrays& arrays) {
   const auto& labels = mesh.labels().faces;
-  for (Index i : halffaces) {
-    const HalfFaceHandle h(i);
-    const auto f = mesh.halfface_vertices(h);
-    const std::size_t entry = labels.position(f);
-    const int* label = entry < labels.size() ? &labels.entries()[entry].value : nullptr;
-    arrays.faces.push_back({f[0], f[2], f[1]});
-    arrays.halffaces.push_back(h);
-    arrays.patch.push_back(label ? *label : 0);
-    const bool inward = label && CyclicOrder::key(labels.entries()[entry].vertices) == CyclicOrder::key(f);
-    arrays.inward.push_back(inward ? 1 : 0);
-    const HalfFaceHandle m = mesh.opposite_halfface(h);
-    arrays.interface.push_back(m.is_valid() ? 1 : 0);
-    arrays.regions.push_back({mesh.region(cell_of(h)), m.is_valid() ? mesh.region(cell_of(m)) : 0});
-    arrays.fixed.push_back(fixed.has(f, label) ? 1 : 0);
-    arrays.locked.push_back(arrays.fixed.back() || fixed.is_periodic(label) ? 1 : 0);
-  }
-  lock_labelled_inside(mesh, arrays);
+  const auto f = mesh.halfface_vertices(h);
+  const std::size_t entry = labels.position(f);
+  const int* label = entry < labels.size() ? &labels.entries()[entry].value : nullptr;
+  arrays.faces.push_back({f[0], f[2], f[1]});
+  arrays.halffaces.push_back(h);
+  arrays.patch.push_back(label ? *label : 0);
+  const bool inward = label && CyclicOrder::key(labels.entries()[entry].vertices) == CyclicOrder::key(f);
+  arrays.inward.push_back(inward ? 1 : 0);
+  const HalfFaceHandle m = mesh.opposite_halfface(h);
+  arrays.interface.push_back(m.is_valid() ? 1 : 0);
+  arrays.regions.push_back({mesh.region(cell_of(h)), m.is_valid() ? mesh.region(cell_of(m)) : 0});
+  arrays.fixed.push_back(fixed.has(f, label) ? 1 : 0);
+  arrays.locked.push_back(arrays.fixed.back() || fixed.is_periodic(label) ? 1 : 0);
+}
+
+/// What labels of edges, and what is fixed, hold.
+void add_locks(const TetMesh& mesh, Arrays& arrays) {
   for (const auto& entry : mesh.labels().edges.entries()) {  // edges inside the volume, too
     arrays.locked_edges.push_back(entry.vertices);
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
@@ -318,7 +314,41 @@ Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy po
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), entry.vertices.begin(), entry.vertices.end());
   for (VertexHandle v : mesh.vertices())
     if (mesh.is_fixed(v)) arrays.locked_vertices.push_back(v);
+}
+
+}  // namespace
+
+Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy) {
+  const auto halffaces = par::compact<Index>(policy, 4 * mesh.n_cells(), [&](std::size_t i) {
+    return !mesh.is_deleted(cell_of(HalfFaceHandle(i))) && is_surface(mesh, HalfFaceHandle(i));
+  });
+  const FixedFaces fixed(options, mesh.locks());
+  Arrays arrays;
+  arrays.points = mesh.points();
+  for (Index i : halffaces) add_face(mesh, HalfFaceHandle(i), fixed, arrays);
+  lock_labelled_inside(mesh, arrays);
+  add_locks(mesh, arrays);
   add_fixed(arrays, options);
+  return arrays;
+}
+
+Arrays gather_own(const TetMesh& part, const SurfaceOptions& options,
+                  const std::function<bool(CellHandle)>& is_own_cell,
+                  const std::function<bool(VertexHandle)>& is_own_vertex) {
+  const FixedFaces fixed(options, part.locks());
+  Arrays arrays;
+  arrays.points = part.points();
+  for (std::size_t c = 0; c < part.n_cells(); ++c) {
+    if (part.is_deleted(CellHandle(c)) || !is_own_cell(CellHandle(c))) continue;
+    for (HalfFaceHandle h : part.cell_halffaces(CellHandle(c)))
+      if (is_surface(part, h)) add_face(part, h, fixed, arrays);
+  }
+  for (const auto& entry : part.labels().faces.entries()) {
+    const auto& v = entry.vertices;
+    if (is_own_vertex(*std::min_element(v.begin(), v.end())) && is_inside(part, v))
+      arrays.locked_vertices.insert(arrays.locked_vertices.end(), v.begin(), v.end());
+  }
+  add_locks(part, arrays);
   return arrays;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -30,6 +31,11 @@ struct Arrays {
   std::vector<VertexHandle> locked_vertices;
 };
 Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
+/// Of a part of a mesh what its own cells and vertices say, which no other part does; but for locks, which all
+/// may tell that know of them. Faces that have been locked by name are those of TetMesh::locks().
+Arrays gather_own(const TetMesh& part, const SurfaceOptions& options,
+                  const std::function<bool(CellHandle)>& is_own_cell,
+                  const std::function<bool(VertexHandle)>& is_own_vertex);
 Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options);
 
 /// An edge of the surface: faces f[0] and f[1] meet in it, local edge k from corner k to the next.

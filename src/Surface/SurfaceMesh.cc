@@ -221,10 +221,40 @@ void SurfaceMesh::rebuild(const TetMesh& mesh, par::Policy policy) {
   impl_.swap(again.impl_);
 }
 
-SurfaceMesh::SurfaceMesh(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SurfaceMesh::SurfaceMesh(std::shared_ptr<Impl> impl, const VertexNumbers* numbers)
+    : impl_(std::move(impl)), numbers_(numbers) {}
+
+SurfaceMesh::SurfaceMesh(const surface::Arrays& arrays, std::vector<std::uint64_t> numbers,
+                         const SurfaceOptions& options)
+    : impl_(new Impl) {
+  HFR_ASSERT(numbers.size() == arrays.points.size() && options.periodic.empty());
+  impl_->options = checked(options);
+  impl_->in_whole = std::move(numbers);
+  impl_->begin(arrays, options);
+}
+
+std::unique_ptr<SurfaceMesh> SurfaceMesh::seen_from(const VertexNumbers& numbers) const {
+  return std::unique_ptr<SurfaceMesh>(new SurfaceMesh(impl_, &numbers));
+}
+
+VertexHandle SurfaceMesh::handle_of(std::uint64_t number) const {
+  const auto& numbers = impl_->in_whole;
+  const auto at = std::lower_bound(numbers.begin(), numbers.end(), number);
+  return at == numbers.end() || *at != number ? VertexHandle()
+                                              : VertexHandle(static_cast<std::size_t>(at - numbers.begin()));
+}
+
+std::uint64_t SurfaceMesh::number_of(VertexHandle v) const { return impl_->in_whole[v.idx()]; }
+
+VertexHandle SurfaceMesh::announce(std::uint64_t number) {
+  auto& numbers = impl_->in_whole;
+  HFR_ASSERT(numbers.empty() || numbers.back() < number);
+  numbers.push_back(number);
+  return VertexHandle(numbers.size() - 1);
+}
 
 std::unique_ptr<SurfaceMesh> SurfaceMesh::copy() const {
-  return std::unique_ptr<SurfaceMesh>(new SurfaceMesh(std::make_unique<Impl>(*impl_)));
+  return std::unique_ptr<SurfaceMesh>(new SurfaceMesh(std::make_shared<Impl>(*impl_)));
 }
 
 void SurfaceMesh::take_back(const SurfaceMesh& copied) { *impl_ = *copied.impl_; }
@@ -280,22 +310,26 @@ std::size_t SurfaceMesh::n_points() const { return impl_->motion_constraint.size
 
 const MotionConstraint& SurfaceMesh::motion_constraint(VertexHandle v) const {
   static const MotionConstraint kInner;
-  return v.idx() < impl_->motion_constraint.size() ? impl_->motion_constraint[v.idx()] : kInner;
+  const VertexHandle here = inner(v);
+  return here.idx() < impl_->motion_constraint.size() ? impl_->motion_constraint[here.idx()] : kInner;
 }
 
 bool SurfaceMesh::has_interfaces() const { return impl_->has_interfaces; }
 
 std::span<const VertexHandle> SurfaceMesh::orbit(VertexHandle v) const {
+  if (impl_->orbits.empty()) return {};
+  HFR_ASSERT(!numbers_);
   if (v.idx() >= impl_->orbit_of.size() || impl_->orbit_of[v.idx()] == kNoOrbit) return {};
   return impl_->orbits[impl_->orbit_of[v.idx()]];
 }
 
 bool SurfaceMesh::is_feature(VertexHandle a, VertexHandle b) const {
-  const OmHalfedge h = impl_->find(a, b);
+  const OmHalfedge h = impl_->find(inner(a), inner(b));
   return h.is_valid() && impl_->om.status(impl_->om.edge_handle(h)).feature();
 }
 
 HalfFaceHandle SurfaceMesh::halfface(const TetMesh& mesh, std::size_t f) {
+  HFR_ASSERT(!numbers_);
   const OmFace face(static_cast<int>(f));
   if (impl_->om.status(face).deleted()) return {};
   const auto wanted = impl_->vertices(face);
@@ -308,7 +342,8 @@ HalfFaceHandle SurfaceMesh::halfface(const TetMesh& mesh, std::size_t f) {
 }
 
 std::size_t SurfaceMesh::face(const TetMesh& mesh, HalfFaceHandle h) const {
-  const OmFace f = impl_->find(mesh.halfface_vertices(h));
+  const auto v = mesh.halfface_vertices(h);
+  const OmFace f = impl_->find({inner(v[0]), inner(v[1]), inner(v[2])});
   return f.is_valid() ? static_cast<std::size_t>(f.idx()) : kNoFace;
 }
 
@@ -317,51 +352,53 @@ bool SurfaceMesh::is_deleted(std::size_t f) const {
 }
 
 std::array<VertexHandle, 3> SurfaceMesh::face_vertices(std::size_t f) const {
-  return impl_->vertices(OmFace(static_cast<int>(f)));
+  return outer(impl_->vertices(OmFace(static_cast<int>(f))));
 }
 
 int SurfaceMesh::patch(std::size_t f) const { return impl_->faces[f].patch; }
 
-Vec3 SurfaceMesh::point(VertexHandle v) const {
-  const auto& p = impl_->om.point(impl_->first[v.idx()]);
-  return {p[0], p[1], p[2]};
-}
+Vec3 SurfaceMesh::point(VertexHandle v) const { return impl_->point(inner(v)); }
 
 void SurfaceMesh::star(VertexHandle v, std::vector<std::array<VertexHandle, 3>>& out) const {
-  impl_->for_sheets(v, [&](OmVertex w) {
-    for (auto it = impl_->om.cvf_iter(w); it.is_valid(); ++it) out.push_back(impl_->vertices(*it));
+  impl_->for_sheets(inner(v), [&](OmVertex w) {
+    for (auto it = impl_->om.cvf_iter(w); it.is_valid(); ++it) out.push_back(outer(impl_->vertices(*it)));
   });
 }
 
 std::array<VertexHandle, 2> SurfaceMesh::across(VertexHandle a, VertexHandle b) const {
   const Om& om = impl_->om;
   std::array<VertexHandle, 2> apexes;
-  const OmHalfedge h = impl_->find(a, b);
+  const OmHalfedge h = impl_->find(inner(a), inner(b));
   if (!h.is_valid()) return apexes;
   const std::array<OmHalfedge, 2> sides = {h, om.opposite_halfedge_handle(h)};
   for (std::size_t i = 0; i < 2; ++i)
     if (!om.is_boundary(sides[i]))
-      apexes[i] = impl_->vertex_of(om.to_vertex_handle(om.next_halfedge_handle(sides[i])));
+      apexes[i] = outer(impl_->vertex_of(om.to_vertex_handle(om.next_halfedge_handle(sides[i]))));
   return apexes;
 }
 
-bool SurfaceMesh::is_inner(VertexHandle a, VertexHandle b) const {
-  const Om& om = impl_->om;
-  const OmHalfedge h = impl_->find_only(a, b);
+bool SurfaceMesh::Impl::is_inner(VertexHandle a, VertexHandle b) const {
+  const OmHalfedge h = find_only(a, b);
   if (!h.is_valid()) return false;
   const OmEdge e = om.edge_handle(h);
   if (om.is_boundary(e) || om.status(e).feature()) return false;
-  const FaceRecord& f = impl_->record(om.face_handle(h));
-  const FaceRecord& g = impl_->record(om.face_handle(om.opposite_halfedge_handle(h)));
+  const FaceRecord& f = record(om.face_handle(h));
+  const FaceRecord& g = record(om.face_handle(om.opposite_halfedge_handle(h)));
   return !f.locked && !g.locked && f.patch == g.patch && f.facet == g.facet;
 }
 
-bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
-  return is_inner(a, b) && impl_->om.is_flip_ok(impl_->om.edge_handle(impl_->find(a, b)));
+bool SurfaceMesh::is_inner(VertexHandle a, VertexHandle b) const {
+  return impl_->is_inner(inner(a), inner(b));
 }
 
-bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
+bool SurfaceMesh::may_swap(VertexHandle a, VertexHandle b) const {
+  const VertexHandle p = inner(a), q = inner(b);
+  return impl_->is_inner(p, q) && impl_->om.is_flip_ok(impl_->om.edge_handle(impl_->find(p, q)));
+}
+
+bool SurfaceMesh::may_split(VertexHandle first, VertexHandle last) const {
   const Om& om = impl_->om;
+  const VertexHandle a = inner(first), b = inner(last);
   const OmHalfedge h = impl_->find_only(a, b);
   if (!h.is_valid() || om.status(om.edge_handle(h)).locked()) return false;
   if (om.is_boundary(om.edge_handle(h))) {
@@ -375,8 +412,9 @@ bool SurfaceMesh::may_split(VertexHandle a, VertexHandle b) const {
   return true;
 }
 
-void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& out) {
-  const SurfaceKind kind = motion_constraint(v).kind;
+void SurfaceMesh::collapse_targets(VertexHandle vertex, std::vector<VertexHandle>& out) {
+  const SurfaceKind kind = motion_constraint(vertex).kind;
+  const VertexHandle v = inner(vertex);
   if ((kind != SurfaceKind::kFacet && kind != SurfaceKind::kCurve) || !impl_->has_one_sheet(v)) return;
   Om& om = impl_->om;
   const OmVertex from = impl_->first[v.idx()];
@@ -389,7 +427,7 @@ void SurfaceMesh::collapse_targets(VertexHandle v, std::vector<VertexHandle>& ou
     if (on_rim && !om.is_boundary(om.edge_handle(*it))) continue;
     const VertexHandle onto = impl_->vertex_of(om.to_vertex_handle(*it));
     if (om.is_collapse_ok(*it) && impl_->find_only(v, onto).is_valid() && !impl_->closes(*it))
-      out.push_back(onto);
+      out.push_back(outer(onto));
   }
 }
 

@@ -14,6 +14,20 @@
 
 namespace hfr {
 
+namespace surface {
+struct Arrays;
+}
+
+/// What a mesh that is a part of a larger one calls the vertices of that one.
+class VertexNumbers {
+ public:
+  virtual ~VertexNumbers() = default;
+  /// In the whole, of a vertex of the part.
+  virtual std::uint64_t number(VertexHandle v) const = 0;
+  /// Invalid where the part has none of that number.
+  virtual VertexHandle vertex_at(std::uint64_t number) const = 0;
+};
+
 /// What a vertex may do.
 enum class SurfaceKind : std::uint8_t {
   kInside,  ///< not on the surface
@@ -51,9 +65,23 @@ class SurfaceMesh {
   /// change as they may there; all others, which face cells that are no part, stay as they are, with their
   /// vertices.
   SurfaceMesh(const TetMesh& part, const SurfaceMesh& whole, std::span<const VertexHandle> vertices);
+  /// The surface of a mesh that is cut into parts, for whoever holds one of them. `arrays` have its vertices
+  /// alone, in the order of their `numbers`, and its handles count these. Without periodic patches.
+  SurfaceMesh(const surface::Arrays& arrays, std::vector<std::uint64_t> numbers,
+              const SurfaceOptions& options);
   ~SurfaceMesh();
   SurfaceMesh(const SurfaceMesh&) = delete;
   SurfaceMesh& operator=(const SurfaceMesh&) = delete;
+
+  /// The same surface as a part of the mesh sees it, whose vertices `numbers` tells: what it is asked is said
+  /// in handles of the part. What happens to it is told to this one, and shows in both. Neither may outlive
+  /// `numbers`.
+  std::unique_ptr<SurfaceMesh> seen_from(const VertexNumbers& numbers) const;
+  /// Of a mesh in parts: the handle by which the surface knows that vertex; invalid where it has none.
+  VertexHandle handle_of(std::uint64_t number) const;
+  std::uint64_t number_of(VertexHandle v) const;
+  /// A vertex will come with that number, which is larger than those of all others.
+  VertexHandle announce(std::uint64_t number);
 
   /// Largest distance that the options allow on this surface; 0 but in free mode.
   static double allowed_distance(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {});
@@ -134,14 +162,32 @@ class SurfaceMesh {
   void take_back(const SurfaceMesh& copied);
   /// Brings patch labels of the volume up to date with what has happened since.
   void write_labels(TetMesh& mesh);
+  /// What write_labels() does, in that order: labels of faces that are no more, and those that are set.
+  struct LabelChanges {
+    std::vector<std::array<VertexHandle, 3>> gone;
+    struct Set {
+      std::array<VertexHandle, 3> vertices;
+      int label = 0;
+    };
+    std::vector<Set> set;
+  };
+  LabelChanges take_label_changes();
 
   /// True when the surface is that of the mesh, face by face and point by point.
   bool in_step(const TetMesh& mesh) const;
 
  private:
   struct Impl;
-  explicit SurfaceMesh(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit SurfaceMesh(std::shared_ptr<Impl> impl, const VertexNumbers* numbers = nullptr);
+  /// Between handles of whoever asks and those of the surface.
+  VertexHandle inner(VertexHandle v) const { return numbers_ ? handle_of(numbers_->number(v)) : v; }
+  VertexHandle outer(VertexHandle v) const { return numbers_ ? numbers_->vertex_at(number_of(v)) : v; }
+  std::array<VertexHandle, 3> outer(const std::array<VertexHandle, 3>& f) const {
+    return {outer(f[0]), outer(f[1]), outer(f[2])};
+  }
+
+  std::shared_ptr<Impl> impl_;
+  const VertexNumbers* numbers_ = nullptr;  // where it is seen from a part
 };
 
 /// Largest distance of the points of one surface from another (`there`), and the other way round (`back`).

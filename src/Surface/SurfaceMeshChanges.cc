@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What has happened to the surface, told one change at a time.
 #include <limits>
+#include <utility>
 
 #include "Surface/SurfaceMeshImpl.hh"
 
@@ -201,19 +202,24 @@ void SurfaceMesh::on_split(VertexHandle a, VertexHandle b, VertexHandle middle, 
   impl_->share_samples(round, std::move(samples));
 }
 
-void SurfaceMesh::write_labels(TetMesh& mesh) {
-  if (impl_->gone.empty() && impl_->fresh.empty()) return;
-  auto& labels = mesh.labels().faces;
-  for (const auto& f : impl_->gone) labels.erase_unordered(f);
-  for (int i : impl_->fresh) {
+auto SurfaceMesh::take_label_changes() -> LabelChanges {
+  LabelChanges changes;
+  changes.gone = std::exchange(impl_->gone, {});
+  for (int i : std::exchange(impl_->fresh, {})) {
     const OmFace f(i);
     if (impl_->om.status(f).deleted()) continue;
     auto v = impl_->vertices(f);
     if (impl_->record(f).inward) std::swap(v[1], v[2]);
-    labels.set(v, impl_->record(f).patch);
+    changes.set.push_back({v, impl_->record(f).patch});
   }
-  impl_->gone.clear();
-  impl_->fresh.clear();
+  return changes;
+}
+
+void SurfaceMesh::write_labels(TetMesh& mesh) {
+  const LabelChanges changes = take_label_changes();
+  auto& labels = mesh.labels().faces;
+  for (const auto& f : changes.gone) labels.erase_unordered(f);
+  for (const LabelChanges::Set& one : changes.set) labels.set(one.vertices, one.label);
 }
 
 bool SurfaceMesh::in_step(const TetMesh& mesh) const {

@@ -129,6 +129,7 @@ struct SurfaceMesh::Impl {
   bool has_interfaces = false;
   std::vector<std::vector<VertexHandle>> orbits;
   std::vector<std::uint32_t> orbit_of;  // per vertex; empty without orbits
+  std::vector<std::uint64_t> in_whole;  // of a mesh in parts: numbers of vertices, ascending
   bool alone = false;                   // there are no cells
   bool is_open = false;                 // a surface without cells that encloses nothing
 
@@ -211,6 +212,11 @@ struct SurfaceMesh::Impl {
                    const Guesses& beneath, double distance) const;
 
   OmVertex add_vertex(VertexHandle v, Vec3 p);
+  bool is_inner(VertexHandle a, VertexHandle b) const;
+  Vec3 point(VertexHandle v) const {
+    const auto& p = om.point(first[v.idx()]);
+    return {p[0], p[1], p[2]};
+  }
   /// To be called before the vertices of a face change: its label has to go from them (write_labels()).
   void note_gone(OmFace f) {
     if (record(f).patch != 0) gone.push_back(vertices(f));
@@ -232,6 +238,8 @@ struct SurfaceMesh::Impl {
   void account(const std::vector<OmFace>& some, double sign);
   /// True when a volume that has lost or gained much already would lose or gain more.
   static bool is_too_much(const Region& region, double six_more, double share);
+  bool keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_removed,
+                   std::span<const Triangle> removed, std::span<const Triangle> created) const;
   bool keeps_regions(std::span<const std::array<VertexHandle, 3>> faces_removed,
                      std::span<const Triangle> removed, std::span<const Triangle> created) const;
   int cuts_of(const Triangle& t) const {

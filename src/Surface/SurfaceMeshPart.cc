@@ -11,7 +11,8 @@ SurfaceMesh::SurfaceMesh(const TetMesh& part, const SurfaceMesh& whole,
   HFR_ASSERT(there.flat() && !there.alone);
   impl_->options = there.options;
   surface::Arrays arrays = surface::gather(part, SurfaceOptions{}, {});
-  const auto whole_of = [&](VertexHandle v) { return vertices[v.idx()]; };
+  const auto known_as = [&](VertexHandle v) { return vertices[v.idx()]; };
+  const auto whole_of = [&](VertexHandle v) { return whole.inner(known_as(v)); };
 
   surface::Features features;
   features.edges = surface::find_edges(arrays);
@@ -40,10 +41,10 @@ SurfaceMesh::SurfaceMesh(const TetMesh& part, const SurfaceMesh& whole,
   for (std::size_t i = 0; i < arrays.faces.size(); ++i)
     for (VertexHandle v : arrays.faces[i])
       if (features.motion_constraint[v.idx()].kind == SurfaceKind::kInside)
-        features.motion_constraint[v.idx()] = whole.motion_constraint(whole_of(v));
+        features.motion_constraint[v.idx()] = whole.motion_constraint(known_as(v));
   for (std::size_t i = 0; i < arrays.faces.size(); ++i)
     for (VertexHandle v : arrays.faces[i])
-      if (arrays.fixed[i] || !there.has_one_sheet(whole_of(v)) || !whole.orbit(whole_of(v)).empty())
+      if (arrays.fixed[i] || !there.has_one_sheet(whole_of(v)) || !whole.orbit(known_as(v)).empty())
         features.motion_constraint[v.idx()] = {SurfaceKind::kFixed, part.point(v), {}};
   impl_->build(arrays, features);
   impl_->motion_constraint = std::move(features.motion_constraint);

@@ -160,11 +160,21 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
                               std::span<const Triangle> removed, std::span<const Triangle> created) const {
   if (!have_area(created)) return false;
   if (impl_->flat()) return look_the_same_way(created, removed);
-  if (!impl_->keeps_regions(faces_removed, removed, created)) return false;
+  if (!numbers_) return impl_->keeps_shape(faces_removed, removed, created);
+  thread_local std::vector<std::array<VertexHandle, 3>> faces;  // of this thread, so that it is allocated once
+  faces.clear();
+  for (const auto& f : faces_removed) faces.push_back({inner(f[0]), inner(f[1]), inner(f[2])});
+  return impl_->keeps_shape(faces, removed, created);
+}
+
+bool SurfaceMesh::Impl::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces_removed,
+                                    std::span<const Triangle> removed,
+                                    std::span<const Triangle> created) const {
+  if (!keeps_regions(faces_removed, removed, created)) return false;
 
   // What was beneath the old triangles is likely to be beneath the new ones.
-  Impl::Guesses beneath;
-  const double h = kBetween * impl_->hausdorff;
+  Guesses beneath;
+  const double h = kBetween * hausdorff;
   std::size_t last = 0;                        // the created triangle that the sample before was near to
   thread_local std::vector<NearTriangle> now;  // of this thread, so that it is allocated once
   now.clear();
@@ -194,21 +204,21 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
     return true;
   };
   for (std::size_t i = 0; i < faces_removed.size(); ++i) {
-    const OmFace face = impl_->find(faces_removed[i]);
+    const OmFace face = find(faces_removed[i]);
     if (!face.is_valid()) return false;
-    const FaceRecord& record = impl_->record(face);
-    if (!beneath.full() && std::find(beneath.begin(), beneath.end(), record.beneath) == beneath.end())
-      beneath.push_back(record.beneath);
-    if (!keep_their_distance(record.samples[0], i, h, /*unless_as_far=*/false)) return false;
+    const FaceRecord& of_face = record(face);
+    if (!beneath.full() && std::find(beneath.begin(), beneath.end(), of_face.beneath) == beneath.end())
+      beneath.push_back(of_face.beneath);
+    if (!keep_their_distance(of_face.samples[0], i, h, /*unless_as_far=*/false)) return false;
   }
-  if (!impl_->are_near(created, removed, beneath, h) || !impl_->turn_little(created, removed, beneath, 2 * h))
+  if (!are_near(created, removed, beneath, h) || !turn_little(created, removed, beneath, 2 * h))
     return false;
-  const double close = kCloseBetween * impl_->hausdorff;
-  for (std::size_t i = 0; i < faces_removed.size() && impl_->samples_between; ++i)
-    if (!keep_their_distance(impl_->record(impl_->find(faces_removed[i])).samples[1], i, close,
+  const double close = kCloseBetween * hausdorff;
+  for (std::size_t i = 0; i < faces_removed.size() && samples_between; ++i)
+    if (!keep_their_distance(record(find(faces_removed[i])).samples[1], i, close,
                              /*unless_as_far=*/true))
       return false;
-  return impl_->are_near_between(created, beneath, close);
+  return are_near_between(created, beneath, close);
 }
 
 bool SurfaceMesh::Impl::is_too_much(const Region& region, double six_more, double share) {

@@ -36,6 +36,7 @@ struct SurfaceSplit {
   const SurfaceMesh* surface;
   double gain = 1.02;
   std::size_t max_cells = 48;
+  const CutRim* rim = nullptr;  ///< where the mesh is cut out of a larger one
 
   void scope(const TetMesh& mesh, const Seed& seed, Scope& out) const;
   std::optional<Plan> evaluate(const TetMesh& mesh, const Seed& seed) const;

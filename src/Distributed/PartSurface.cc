@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Distributed/PartSurface.hh"
+
+#include <algorithm>
+#include <array>
+
+#include "Distributed/PartSurfaceImpl.hh"
+#include "HalfFace/Errors.hh"
+#include "Remesh/Surfaces.hh"
+#include "Surface/Features.hh"
+
+namespace hfr::mpi {
+namespace {
+
+/// A face of the surface as ranks tell each other of it, and what they hold of it.
+struct FaceRecord {
+  std::uint64_t half_face = 0;  // 4 · number of the cell + corner
+  std::array<std::uint64_t, 3> v{};
+  std::array<std::int32_t, 2> regions{};
+  std::int32_t patch = 0;
+  std::uint8_t inward = 0, interface = 0, fixed = 0, locked = 0;
+};
+struct PointRecord {
+  std::uint64_t number = 0;
+  Vec3 point;
+};
+
+template <class T, class Order>
+void sort_and_unite(std::vector<T>& items, Order&& order) {
+  std::ranges::sort(items, {}, order);
+  const auto rest = std::ranges::unique(items, {}, order);
+  items.erase(rest.begin(), rest.end());
+}
+
+/// The surface of the whole: its vertices alone, in the order of their numbers.
+struct WholeSurface {
+  std::vector<std::uint64_t> numbers;
+  std::vector<Vec3> points;
+  surface::Arrays arrays;  // of these points
+
+  VertexHandle handle(std::uint64_t number) const {
+    const auto at = std::ranges::lower_bound(numbers, number);
+    return at == numbers.end() || *at != number
+               ? VertexHandle()
+               : VertexHandle(static_cast<std::size_t>(at - numbers.begin()));
+  }
+  std::vector<Triangle> triangles(bool of_boundary) const {
+    std::vector<Triangle> all;
+    for (std::size_t i = 0; i < arrays.faces.size(); ++i)
+      if (!of_boundary || arrays.interface[i] == 0) all.push_back(surface::corners(points, arrays.faces[i]));
+    return all;
+  }
+};
+
+/// Faces of the boundary first, of each rank's own cells; then points, then what is locked.
+WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options) {
+  const TetMesh& part = parts.part();
+  Comm& comm = parts.comm();
+  SurfaceOptions by_patch = options;  // what is named otherwise is fixed in the parts
+  by_patch.fixed_vertices.clear();
+  by_patch.fixed_edges.clear();
+  by_patch.fixed_faces.clear();
+  const surface::Arrays own = surface::gather_own(
+      part, by_patch, [&](CellHandle c) { return parts.is_own(c); },
+      [&](VertexHandle v) { return parts.is_own(v); });
+  const auto number = [&](VertexHandle v) { return parts.number(v); };
+
+  std::vector<FaceRecord> faces;
+  std::vector<PointRecord> points;
+  for (std::size_t i = 0; i < own.faces.size(); ++i) {
+    const HalfFaceHandle h = own.halffaces[i];
+    FaceRecord& f = faces.emplace_back();
+    f.half_face = 4 * parts.number(cell_of(h)) + static_cast<std::uint64_t>(corner_of(h));
+    for (std::size_t k = 0; k < 3; ++k) f.v[k] = number(own.faces[i][k]);
+    f.regions = {own.regions[i][0], own.regions[i][1]};
+    f.patch = own.patch[i];
+    f.inward = own.inward[i];
+    f.interface = own.interface[i];
+    f.fixed = own.fixed[i];
+    f.locked = own.locked[i];
+    for (VertexHandle v : own.faces[i]) points.push_back({number(v), part.point(v)});
+  }
+  const auto by_number = [](const PointRecord& p) { return p.number; };
+  sort_and_unite(points, by_number);
+  faces = comm.all_gather(std::span<const FaceRecord>(faces));
+  points = comm.all_gather(std::span<const PointRecord>(points));
+  std::ranges::sort(faces, {}, [](const FaceRecord& f) { return f.half_face; });
+  sort_and_unite(points, by_number);
+  std::vector<std::uint64_t> vertices;
+  for (VertexHandle v : own.locked_vertices) vertices.push_back(number(v));
+  vertices = comm.all_gather(std::span<const std::uint64_t>(vertices));
+  std::vector<std::array<std::uint64_t, 2>> edges;
+  for (const auto& e : own.locked_edges) edges.push_back({number(e[0]), number(e[1])});
+  edges = comm.all_gather(std::span<const std::array<std::uint64_t, 2>>(edges));
+
+  WholeSurface whole;
+  for (const PointRecord& p : points) {
+    whole.numbers.push_back(p.number);
+    whole.points.push_back(p.point);
+  }
+  surface::Arrays& arrays = whole.arrays;
+  arrays.points = whole.points;
+  arrays.halffaces.resize(faces.size());  // they are of no one mesh
+  for (const FaceRecord& f : faces) {
+    arrays.faces.push_back({whole.handle(f.v[0]), whole.handle(f.v[1]), whole.handle(f.v[2])});
+    arrays.patch.push_back(f.patch);
+    arrays.inward.push_back(f.inward);
+    arrays.interface.push_back(f.interface);
+    arrays.regions.push_back({f.regions[0], f.regions[1]});
+    arrays.fixed.push_back(f.fixed);
+    arrays.locked.push_back(f.locked);
+  }
+  const auto identity = [](const auto& item) { return item; };
+  sort_and_unite(vertices, identity);
+  for (std::uint64_t v : vertices)
+    if (whole.handle(v).is_valid()) arrays.locked_vertices.push_back(whole.handle(v));
+  for (const auto& e : edges) {
+    const VertexHandle a = whole.handle(e[0]), b = whole.handle(e[1]);
+    if (a.is_valid() && b.is_valid()) arrays.locked_edges.push_back({std::min(a, b), std::max(a, b)});
+  }
+  sort_and_unite(arrays.locked_edges, identity);
+  return whole;
+}
+
+}  // namespace
+
+PartSurface::PartSurface(DistributedMesh& parts, const SurfaceOptions& options, bool measure,
+                         par::Policy policy)
+    : impl_(new Impl(parts)) {
+  HFR_REQUIRE(options.periodic.empty(), "meshes in parts do not have periodic patches yet");
+  impl_->policy = policy;
+  impl_->measure = measure;
+  const WholeSurface whole = gather(parts, options);
+  if (measure) {
+    impl_->before = whole.triangles(/*of_boundary=*/false);
+    impl_->volume = enclosed_volume(whole.triangles(/*of_boundary=*/true));
+  }
+  impl_->whole = std::make_unique<SurfaceMesh>(whole.arrays, whole.numbers, options);
+  impl_->seen = impl_->whole->seen_from(impl_->numbers);
+  parts.follow_face_labels();
+}
+
+PartSurface::~PartSurface() = default;
+
+SurfaceMesh* PartSurface::get() const { return impl_->seen.get(); }
+
+void PartSurface::Impl::write_labels() {
+  const SurfaceMesh::LabelChanges changes = whole->take_label_changes();
+  const auto named = [&](const std::array<VertexHandle, 3>& f) {
+    return LabelOrder::Face{whole->number_of(f[0]), whole->number_of(f[1]), whole->number_of(f[2])};
+  };
+  std::vector<LabelOrder::Face> gone;
+  std::vector<DistributedMesh::LabelledFace> set;
+  for (const auto& f : changes.gone) gone.push_back(named(f));
+  for (const auto& one : changes.set) set.push_back({named(one.vertices), one.label});
+  if (!gone.empty() || !set.empty()) parts.change_face_labels(gone, set);
+}
+
+SurfaceReport PartSurface::report() const {
+  SurfaceReport report;
+  report.mode = impl_->whole->options().mode;
+  report.bound = impl_->whole->hausdorff();
+  report.feature_edges = impl_->whole->n_feature_edges();
+  if (!impl_->measure) return report;
+  const WholeSurface now = gather(impl_->parts, impl_->whole->options());
+  const std::vector<Triangle> after = now.triangles(/*of_boundary=*/false);
+  measure_surfaces(impl_->before, after, impl_->volume,
+                   enclosed_volume(now.triangles(/*of_boundary=*/true)), impl_->policy, report);
+  return report;
+}
+
+}  // namespace hfr::mpi

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What PartSurface is made of: for PartSurface.cc (what there is) and PartSurfacePasses.cc (what is done).
+#ifndef HFR_DISTRIBUTED_PART_SURFACE_IMPL_HH
+#define HFR_DISTRIBUTED_PART_SURFACE_IMPL_HH
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "Distributed/PartSurface.hh"
+#include "Surface/SurfaceMesh.hh"
+
+namespace hfr::mpi {
+
+/// Of the vertices of a part or of a cutout.
+template <class Mesh>
+class NumbersOf : public VertexNumbers {
+ public:
+  explicit NumbersOf(const Mesh& mesh) : mesh_(mesh) {}
+  std::uint64_t number(VertexHandle v) const override { return mesh_.number(v); }
+  VertexHandle vertex_at(std::uint64_t number) const override { return mesh_.vertex_at(number); }
+
+ private:
+  const Mesh& mesh_;
+};
+
+struct PartSurface::Impl {
+  DistributedMesh& parts;
+  par::Policy policy;
+  NumbersOf<DistributedMesh> numbers;
+  std::unique_ptr<SurfaceMesh> whole, seen;
+  std::vector<std::uint64_t> looked_at;  // by kSwap: numbers of cells of the part, ascending
+  bool measure = false;
+  std::vector<Triangle> before;
+  double volume = 0;  // enclosed before
+
+  explicit Impl(DistributedMesh& mesh) : parts(mesh), numbers(mesh) {}
+  /// Brings the labels of the parts up to date with what the surface has been told.
+  void write_labels();
+};
+
+}  // namespace hfr::mpi
+
+#endif
