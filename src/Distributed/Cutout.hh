@@ -50,6 +50,11 @@ class Cutout {
   /// What the whole is to be told of them.
   DistributedMesh::VertexRecord record(VertexHandle v) const;
   DistributedMesh::CellRecord record(CellHandle c) const;
+  void set_face_label(const std::array<VertexHandle, 3>& face, int label) {
+    labels_.set_face(mesh_, face, label);
+  }
+  /// False where it has none.
+  bool erase_face_label(const std::array<VertexHandle, 3>& face) { return labels_.erase_face(mesh_, face); }
   std::vector<LabelRecord> labels_of(std::span<const CellHandle> cells,
                                      std::span<const VertexHandle> vertices) const {
     return labels_.of(mesh_, cells, vertices, [this](VertexHandle v) { return number(v); });

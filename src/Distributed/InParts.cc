@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -54,14 +55,20 @@ class Residents : public Ranks, public MeshInParts {
     return passes_.dig(dig, waiting);
   }
   RoundCounts search(const Search& search) override { return passes_.search(search); }
-  /// For the time of a run whose surface may change.
-  void set_surface(PartSurface* surface) { surface_ = surface; }
-  std::optional<RoundCounts> surface_pass(const SurfaceLook& look) override {
+  /// For as long as this lives.
+  void add_surface(PartSurface& surface) { surfaces_[surface.get()] = &surface; }
+  std::optional<RoundCounts> surface_pass(SurfaceMesh& surface, const SurfaceLook& look) override {
     Look listed = look.look;
     listed.is_marked = false;  // the surface is looked at wherever it has changed
-    const auto counts = surface_->pass(look, passes_.listed(listed));
+    const auto counts = surfaces_.at(&surface)->pass(look, passes_.listed(listed));
     if (counts) n_rounds_ += counts->rounds;
     return counts;
+  }
+  std::shared_ptr<SurfaceMesh> surface(const SurfaceOptions& options) override;
+  void rebuild(SurfaceMesh& surface) override { surfaces_.at(&surface)->rebuild(); }
+  std::vector<FeatureCeiling> feature_ceilings(std::span<const CellHandle> cells,
+                                               const SurfaceOptions& options) override {
+    return PartSurface::ceilings(mesh_, cells, options);
   }
   bool is_folded_since(std::uint32_t clock) override;
   Tally tally(double below) override { return passes_.tally(below); }
@@ -84,8 +91,9 @@ class Residents : public Ranks, public MeshInParts {
   std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,
                                                std::span<const CellHandle> but) override;
   PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers,
+                             const SurfaceMesh* surface,
                              const std::function<PatchesDone(PatchPlace&)>& search) override {
-    return search_patches_in_parts(mesh_, cells, layers, search);
+    return search_patches_in_parts(mesh_, cells, layers, surface ? surfaces_.at(surface) : nullptr, search);
   }
   Standing standing() override;
   Box box() override;
@@ -112,8 +120,14 @@ class Residents : public Ranks, public MeshInParts {
   par::Policy policy_;
   std::uint64_t n_rounds_ = 0;
   PartPasses passes_;
-  PartSurface* surface_ = nullptr;
+  std::map<const SurfaceMesh*, PartSurface*> surfaces_;  // by what the run knows of them
 };
+
+std::shared_ptr<SurfaceMesh> Residents::surface(const SurfaceOptions& options) {
+  const auto made = std::make_shared<PartSurface>(mesh_, options, policy_);
+  add_surface(*made);
+  return {made->get(), [this, made](SurfaceMesh* surface) { surfaces_.erase(surface); }};
+}
 
 /// As SurfacePasses has it, each rank at its own vertices.
 bool Residents::is_folded_since(std::uint32_t clock) {
@@ -261,8 +275,6 @@ std::string reason_against(const ImproveOptions& options) {
   if (!options.polish_only && options.metric != Metric::kVolumeLength)
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;
-  if (surface.mode != SurfaceMode::kFrozen && !options.polish_only)
-    return "surfaces that may change in other runs than a polish towards a goal";
   if (!surface.periodic.empty()) return "periodic patches";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
@@ -348,25 +360,31 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   const Strategy strategy = resolve(options, found, static_cast<std::size_t>(result.before.n_cells));
   RunControl control = control_of(mesh.comm(), options);
   Findings findings;
-  findings.is_folded = is_folded(mesh, policy);
   DeviceSession device;
   Residents residents(mesh, policy);
-  std::optional<PartSurface> surface;
-  if (options.surface.mode != SurfaceMode::kFrozen) {
-    HFR_REQUIRE(found.n_invalid == 0,
-                "meshes in parts do not have surfaces that may change round inverted and flat cells yet: "
-                "mend these with a frozen surface first");
-    surface.emplace(mesh, options.surface, options.statistics, policy);
-    residents.set_surface(&*surface);
-  }
   Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
           nullptr,     nullptr,     strategy.bounds, false,   &residents};
-  if (surface) run.surface = surface->get();
-  if (options.polish_only && !surface && found.n_invalid == 0 && !findings.is_folded && mesh.work().pinched.empty()) {
+  std::optional<Checkpoint> checkpoint;
+  const auto keep_checkpoint = [&] { run.checkpoint = &checkpoint.emplace(residents, policy); };
+  std::optional<PartSurfaceRun> surface;
+  if (options.surface.mode != SurfaceMode::kFrozen) {
+    const bool is_valid = found.n_invalid == 0;
+    mesh.follow_face_labels();
+    keep_checkpoint();
+    if (!is_valid) run.keep(is_valid);  // before folds are spread
+    std::vector<PassReport> unfolding;
+    surface.emplace(mesh, options.surface, options.statistics, !is_valid, policy, unfolding,
+                    [&] { return control.stopped(); });
+    for (PassReport& pass : unfolding) control.add(std::move(pass));
+    residents.add_surface(surface->surface());
+    run.surface = surface->surface().get();
+  }
+  findings.is_folded = is_folded(mesh, policy);
+  if (options.polish_only && !surface && found.n_invalid == 0 && !findings.is_folded &&
+      mesh.work().pinched.empty()) {
     result.has_fallen = polish_valid(run, goal, result.before.worst);
   } else {
-    Checkpoint checkpoint(residents, policy);
-    run.checkpoint = &checkpoint;
+    if (!checkpoint) keep_checkpoint();
     run_to_the_end(run);
   }
   result.changed = control.n_changes() > 0;

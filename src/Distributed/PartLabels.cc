@@ -74,12 +74,13 @@ void PartLabels::put(TetMesh& mesh, const LabelRecord& r, const std::array<Verte
 }
 
 /// As TupleMap does.
-void PartLabels::erase_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v) {
+bool PartLabels::erase_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v) {
   auto& faces = mesh.labels().faces;
   const std::size_t at = faces.position(v);
-  if (!faces.erase_unordered(v)) return;
+  if (!faces.erase_unordered(v)) return false;
   face_number_[at] = face_number_.back();
   face_number_.pop_back();
+  return true;
 }
 
 void PartLabels::set_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v, std::int32_t label) {

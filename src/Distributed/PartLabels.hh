@@ -59,8 +59,9 @@ class PartLabels {
         if (v != kNoNumber) v = number(VertexHandle(v));
     return records;
   }
-  /// Where the surface changes: a face loses its label, or gets one; vertices in the order of the label.
-  void erase_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v);
+  /// Where the surface changes: a face loses its label, false where it has none; or it gets one, with its
+  /// vertices in that order.
+  bool erase_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v);
   void set_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v, std::int32_t label);
   /// `number_of`: vertices of a face → its number.
   template <class NumberOf>

@@ -17,18 +17,55 @@
 namespace hfr::mpi {
 namespace {
 
+/// Of faces, in the whole: those that have come have theirs before others are gone.
+struct LabelChanges {
+  std::vector<DistributedMesh::LabelledFace> set;
+  std::vector<LabelOrder::Face> gone;
+};
+
+/// Those of a cutout, which are to be changed in the parts as well.
+class CutoutLabels : public FaceLabels {
+ public:
+  CutoutLabels(Cutout& cutout) : cutout_(cutout) {}
+  void set(const std::array<VertexHandle, 3>& face, int label) override {
+    cutout_.set_face_label(face, label);
+    set_.push_back({face, label});
+  }
+  void erase(const std::array<VertexHandle, 3>& face) override {
+    if (cutout_.erase_face_label(face)) gone_.push_back(face);
+  }
+  /// Once all vertices have numbers.
+  LabelChanges changes() const {
+    const auto named = [&](const std::array<VertexHandle, 3>& f) {
+      return LabelOrder::Face{cutout_.number(f[0]), cutout_.number(f[1]), cutout_.number(f[2])};
+    };
+    LabelChanges changes;
+    for (const auto& [face, label] : set_) changes.set.push_back({named(face), label});
+    for (const auto& face : gone_) changes.gone.push_back(named(face));
+    return changes;
+  }
+
+ private:
+  Cutout& cutout_;
+  std::vector<std::pair<std::array<VertexHandle, 3>, int>> set_;
+  std::vector<std::array<VertexHandle, 3>> gone_;
+};
+
 /// The cutout as the place of a search, which all ranks have alike: each tries on some of the patches, and
 /// rank 0 puts back. Its list of free slots is the end of the whole's.
 class CutoutPatches : public PatchPlace {
  public:
-  CutoutPatches(Cutout& cutout, const DistributedMesh& parts, std::span<const std::uint64_t> worst)
+  CutoutPatches(Cutout& cutout, const DistributedMesh& parts, std::span<const std::uint64_t> worst,
+                const PartSurface* surface)
       : cutout_(cutout), parts_(parts), n_cells_(static_cast<std::size_t>(parts.n_cells())) {
+    if (surface) surface_ = surface->seen_from(cutout);
     for (std::uint64_t number : worst) worst_.push_back(cutout.cell_at(number));
   }
 
   TetMesh& mesh() override { return cutout_.mesh(); }
   std::span<const CellHandle> worst() const override { return worst_; }
   std::span<const std::uint8_t> pinched() const override { return cutout_.work().pinched; }
+  const SurfaceMesh* surface(const SurfaceMesh*) override { return surface_.get(); }
   std::size_t n_cells() const override { return n_cells_; }
   bool tries_on(std::size_t patch) const override {
     return patch % parts_.comm().n_ranks() == static_cast<std::size_t>(parts_.comm().rank());
@@ -45,6 +82,7 @@ class CutoutPatches : public PatchPlace {
     std::vector<std::uint64_t> removed;
     std::vector<VertexHandle> vertices;  // what there was, and what has come
     std::vector<CellHandle> cells;
+    LabelChanges labels;
   };
 
   void make_room(std::size_t n);
@@ -52,6 +90,7 @@ class CutoutPatches : public PatchPlace {
 
   Cutout& cutout_;
   const DistributedMesh& parts_;
+  std::shared_ptr<const SurfaceMesh> surface_;
   std::vector<CellHandle> worst_;
   std::size_t n_cells_;
   SlotChange slots_;
@@ -95,7 +134,8 @@ void CutoutPatches::put_back(const Patch& patch, const TetMesh& changed) {
   const std::vector<CellHandle>& free = TetMesh::Writer(mesh).free_cells();
   change.cells.insert(change.cells.end(), free.end() - static_cast<std::ptrdiff_t>(n_new - n_same),
                       free.end());
-  patch.put_back(mesh, changed);
+  CutoutLabels labels(cutout_);
+  patch.put_back(mesh, changed, labels);
   cutout_.work().grow(mesh);
   change.vertices = patch.vertices();
   for (std::size_t v = n_vertices; v < mesh.n_vertices(); ++v) change.vertices.push_back(VertexHandle(v));
@@ -103,6 +143,7 @@ void CutoutPatches::put_back(const Patch& patch, const TetMesh& changed) {
   std::vector<std::uint64_t> numbers(static_cast<std::size_t>(slots_.n_vertices));
   std::iota(numbers.begin(), numbers.end(), parts_.n_vertices());
   cutout_.number_new_vertices(std::move(numbers));
+  change.labels = labels.changes();
   own_new_vertices(change);
   n_cells_ = n_cells_ - n_old + n_new;
   changes_.push_back(std::move(change));
@@ -170,12 +211,15 @@ void CutoutPatches::say(Packer& said) {
     said.put_all(records);
     said.put_all(cells);
     said.put_all(cutout_.labels_of(change.cells, vertices));
+    said.put_all(change.labels.set);
+    said.put_all(change.labels.gone);
   }
 }
 
 }  // namespace
 
 PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std::uint64_t> cells, int layers,
+                                    const PartSurface* surface,
                                     const std::function<PatchesDone(PatchPlace&)>& search) {
   std::vector<std::uint64_t> ascending(cells.begin(), cells.end());
   std::ranges::sort(ascending);
@@ -183,7 +227,7 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
   Packer first;
   {
     Cutout cutout(parts, ascending, depth, Cutout::Where::kOnAll);
-    CutoutPatches place(cutout, parts, cells);
+    CutoutPatches place(cutout, parts, cells, surface);
     const PatchesDone done = search(place);
     if (parts.comm().rank() == 0) {
       first.put(done);
@@ -197,6 +241,7 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
   change_slots(parts, slots, in.get_all<std::uint64_t>());
   if (done.n_changed == 0) return done;
   NearChange near;
+  std::vector<LabelChanges> labels;
   const auto append = [&]<class T>(std::vector<T>& list, bool is_near) {
     const std::vector<T> more = in.get_all<T>();
     if (is_near) list.insert(list.end(), more.begin(), more.end());
@@ -207,8 +252,15 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
     append(near.vertices, is_near);
     append(near.created, is_near);
     append(near.labels, is_near);
+    LabelChanges& changes = labels.emplace_back();
+    changes.set = in.get_all<DistributedMesh::LabelledFace>();
+    changes.gone = in.get_all<LabelOrder::Face>();
   }
   write_home(parts, near);
+  for (const LabelChanges& changes : labels) {
+    parts.change_face_labels({}, changes.set);
+    parts.change_face_labels(changes.gone, {});
+  }
   // As Workspace::attach() has it in shared memory.
   Workspace& work = parts.work();
   std::fill(work.changed.begin(), work.changed.end(), work.clock);

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 
+#include "Distributed/Cutout.hh"
 #include "Distributed/PartSurfaceImpl.hh"
 #include "HalfFace/Errors.hh"
+#include "Remesh/SurfaceRun.hh"
 #include "Remesh/Surfaces.hh"
 #include "Surface/Features.hh"
+#include "Surface/SurfaceUnfold.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -124,25 +127,19 @@ WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options) {
 
 }  // namespace
 
-PartSurface::PartSurface(DistributedMesh& parts, const SurfaceOptions& options, bool measure,
-                         par::Policy policy)
+PartSurface::PartSurface(DistributedMesh& parts, const SurfaceOptions& options, par::Policy policy)
     : impl_(new Impl(parts)) {
   HFR_REQUIRE(options.periodic.empty(), "meshes in parts do not have periodic patches yet");
   impl_->policy = policy;
-  impl_->measure = measure;
-  const WholeSurface whole = gather(parts, options);
-  if (measure) {
-    impl_->before = whole.triangles(/*of_boundary=*/false);
-    impl_->volume = enclosed_volume(whole.triangles(/*of_boundary=*/true));
-  }
-  impl_->whole = std::make_unique<SurfaceMesh>(whole.arrays, whole.numbers, options);
-  impl_->seen = impl_->whole->seen_from(impl_->numbers);
-  parts.follow_face_labels();
+  impl_->options = options;
+  const WholeSurface now = gather(parts, options);
+  impl_->whole = std::make_unique<SurfaceMesh>(now.arrays, now.numbers, options);
+  impl_->seen.emplace(*impl_->whole, parts);
 }
 
 PartSurface::~PartSurface() = default;
 
-SurfaceMesh* PartSurface::get() const { return impl_->seen.get(); }
+SurfaceMesh* PartSurface::get() const { return &impl_->seen->get(); }
 
 void PartSurface::Impl::write_labels() {
   const SurfaceMesh::LabelChanges changes = whole->take_label_changes();
@@ -156,15 +153,73 @@ void PartSurface::Impl::write_labels() {
   if (!gone.empty() || !set.empty()) parts.change_face_labels(gone, set);
 }
 
-SurfaceReport PartSurface::report() const {
+void PartSurface::rebuild() {
+  const WholeSurface now = gather(impl_->parts, impl_->options);
+  impl_->whole->take_back(SurfaceMesh(now.arrays, now.numbers, impl_->options));
+}
+
+std::shared_ptr<const SurfaceMesh> PartSurface::seen_from(const Cutout& cutout) const {
+  const auto seen = std::make_shared<SurfaceOf<Cutout>>(*impl_->whole, cutout);
+  return {seen, &seen->get()};
+}
+
+std::vector<FeatureCeiling> PartSurface::ceilings(DistributedMesh& parts, std::span<const CellHandle> cells,
+                                                  const SurfaceOptions& options) {
+  const WholeSurface now = gather(parts, options);
+  return feature_ceilings(parts.part(), cells, options, now.arrays,
+                          [&](VertexHandle v) { return now.handle(parts.number(v)); });
+}
+
+struct PartSurfaceRun::Impl {
+  DistributedMesh& parts;
+  par::Policy policy;
+  SurfaceOptions options;
+  std::optional<PartSurface> surface;
+  std::vector<Triangle> before;  // where it is to be measured
+  double volume = 0;             // enclosed before
+  double bound = 0;              // largest distance allowed
+  double unfold_needs = 0;       // and what folds would take
+};
+
+PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& options, bool measure,
+                               bool unfold, par::Policy policy, std::vector<PassReport>& passes,
+                               const std::function<bool()>& stopped)
+    : impl_(new Impl{parts, policy, options, {}, {}, 0, 0, 0}) {
+  const WholeSurface now = gather(parts, options);
+  if (measure) {
+    impl_->before = now.triangles(/*of_boundary=*/false);
+    impl_->volume = enclosed_volume(now.triangles(/*of_boundary=*/true));
+  }
+  SurfaceOptions wanted = options;
+  impl_->bound = surface::allowed_distance(now.arrays, options);
+  if (unfold) {
+    SurfaceUnfolding done;
+    if (const auto points = hfr::unfold(now.arrays, options, policy, stopped, done))
+      for (std::size_t i = 0; i < points->size(); ++i)
+        if (const VertexHandle v = parts.vertex_at(now.numbers[i]); v.is_valid())
+          parts.part().set_point(v, (*points)[i]);
+    if (done.n_folded > 0) passes.push_back(report_of(done));
+    impl_->unfold_needs = done.needs;
+    // What is left of the distance; the surface is taken as it is now.
+    if (done.n_moved > 0 && wanted.mode == SurfaceMode::kFree)
+      wanted.hausdorff = impl_->bound - done.distance;
+  }
+  impl_->surface.emplace(parts, wanted, policy);
+}
+
+PartSurfaceRun::~PartSurfaceRun() = default;
+PartSurface& PartSurfaceRun::surface() const { return *impl_->surface; }
+
+SurfaceReport PartSurfaceRun::report() const {
+  const SurfaceMesh& surface = *impl_->surface->get();
   SurfaceReport report;
-  report.mode = impl_->whole->options().mode;
-  report.bound = impl_->whole->hausdorff();
-  report.feature_edges = impl_->whole->n_feature_edges();
-  if (!impl_->measure) return report;
-  const WholeSurface now = gather(impl_->parts, impl_->whole->options());
-  const std::vector<Triangle> after = now.triangles(/*of_boundary=*/false);
-  measure_surfaces(impl_->before, after, impl_->volume,
+  report.mode = surface.options().mode;
+  report.bound = impl_->bound;
+  report.unfold_needs = impl_->unfold_needs;
+  report.feature_edges = surface.n_feature_edges();
+  if (impl_->before.empty()) return report;
+  const WholeSurface now = gather(impl_->parts, impl_->options);
+  measure_surfaces(impl_->before, now.triangles(/*of_boundary=*/false), impl_->volume,
                    enclosed_volume(now.triangles(/*of_boundary=*/true)), impl_->policy, report);
   return report;
 }

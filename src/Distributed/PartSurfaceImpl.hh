@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "Distributed/PartSurface.hh"
@@ -24,17 +25,29 @@ class NumbersOf : public VertexNumbers {
   const Mesh& mesh_;
 };
 
+/// The surface as a mesh sees it that has some of its vertices.
+template <class Mesh>
+class SurfaceOf {
+ public:
+  SurfaceOf(const SurfaceMesh& whole, const Mesh& mesh) : numbers_(mesh), seen_(whole.seen_from(numbers_)) {}
+  SurfaceOf(const SurfaceOf&) = delete;
+  SurfaceOf& operator=(const SurfaceOf&) = delete;
+  SurfaceMesh& get() const { return *seen_; }
+
+ private:
+  NumbersOf<Mesh> numbers_;
+  std::unique_ptr<SurfaceMesh> seen_;
+};
+
 struct PartSurface::Impl {
   DistributedMesh& parts;
   par::Policy policy;
-  NumbersOf<DistributedMesh> numbers;
-  std::unique_ptr<SurfaceMesh> whole, seen;
+  SurfaceOptions options;
+  std::unique_ptr<SurfaceMesh> whole;
+  std::optional<SurfaceOf<DistributedMesh>> seen;
   std::vector<std::uint64_t> looked_at;  // by kSwap: numbers of cells of the part, ascending
-  bool measure = false;
-  std::vector<Triangle> before;
-  double volume = 0;  // enclosed before
 
-  explicit Impl(DistributedMesh& mesh) : parts(mesh), numbers(mesh) {}
+  explicit Impl(DistributedMesh& mesh) : parts(mesh) {}
   /// Brings the labels of the parts up to date with what the surface has been told.
   void write_labels();
 };

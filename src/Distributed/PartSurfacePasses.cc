@@ -54,20 +54,6 @@ struct SeedPlace {
   auto operator<=>(const SeedPlace&) const = default;
 };
 
-/// The surface as a mesh sees it that has some of its vertices.
-template <class Mesh>
-class SurfaceOf {
- public:
-  SurfaceOf(const SurfaceMesh& whole, const Mesh& mesh) : numbers_(mesh), seen_(whole.seen_from(numbers_)) {}
-  SurfaceOf(const SurfaceOf&) = delete;
-  SurfaceOf& operator=(const SurfaceOf&) = delete;
-  SurfaceMesh& get() const { return *seen_; }
-
- private:
-  NumbersOf<Mesh> numbers_;
-  std::unique_ptr<SurfaceMesh> seen_;
-};
-
 }  // namespace
 
 template <class Metric>
@@ -79,7 +65,7 @@ class PartSurface::Passes {
         comm_(impl.parts.comm()),
         mesh_(impl.parts.part()),
         work_(impl.parts.work()),
-        surface_(*impl.seen),
+        surface_(impl.seen->get()),
         look_(look),
         list_(list),
         metric_(metric) {}

@@ -5,17 +5,37 @@
 
 namespace hfr::mpi {
 
-struct PartSurface::Impl {};
-PartSurface::PartSurface(DistributedMesh&, const SurfaceOptions&, bool, par::Policy) {
+namespace {
+
+[[noreturn]] void refuse() {
   throw InvalidInput(
       "this hfremesh was built without OpenMesh and can only leave the surface as it is: use --surface frozen, "
       "or build with -DHFR_SURFACE=ON");
 }
+
+}  // namespace
+
+struct PartSurface::Impl {};
+PartSurface::PartSurface(DistributedMesh&, const SurfaceOptions&, par::Policy) { refuse(); }
 PartSurface::~PartSurface() = default;
 SurfaceMesh* PartSurface::get() const { return nullptr; }
 std::optional<RoundCounts> PartSurface::pass(const Ranks::SurfaceLook&, const Worklist&) {
   return std::nullopt;
 }
-SurfaceReport PartSurface::report() const { return {}; }
+void PartSurface::rebuild() {}
+std::shared_ptr<const SurfaceMesh> PartSurface::seen_from(const Cutout&) const { return nullptr; }
+std::vector<FeatureCeiling> PartSurface::ceilings(DistributedMesh&, std::span<const CellHandle> cells,
+                                                  const SurfaceOptions&) {
+  return std::vector<FeatureCeiling>(cells.size());
+}
+
+struct PartSurfaceRun::Impl {};
+PartSurfaceRun::PartSurfaceRun(DistributedMesh&, const SurfaceOptions&, bool, bool, par::Policy,
+                               std::vector<PassReport>&, const std::function<bool()>&) {
+  refuse();
+}
+PartSurfaceRun::~PartSurfaceRun() = default;
+PartSurface& PartSurfaceRun::surface() const { refuse(); }
+SurfaceReport PartSurfaceRun::report() const { return {}; }
 
 }  // namespace hfr::mpi

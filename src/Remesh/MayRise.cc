@@ -18,9 +18,12 @@ std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
   if (run.is_part()) std::erase_if(cells, [&](CellHandle c) { return !run.parts()->is_own(c); });
   std::vector<StuckCell> low = kept_from_rising(run.mesh, cells, kLeastRise, run.policy());
   // What a feature holds, the faces at it hold as well while they stay, which is quicker to see.
-  const bool is_kept =
-      std::any_of(low.begin(), low.end(), [](const StuckCell& c) { return is_proof(c.reason); });
-  if (run.surface && is_kept) blame_features(run.mesh, low, kLargestGoal, *run.surface, run.policy());
+  const auto is_kept = [&] {
+    const bool here =
+        std::any_of(low.begin(), low.end(), [](const StuckCell& c) { return is_proof(c.reason); });
+    return run.is_part() ? run.parts()->sum(here ? 1 : 0) > 0 : here;
+  };
+  if (run.surface && is_kept()) blame_features(run, low, kLargestGoal);
   return low;
 }
 

@@ -15,8 +15,11 @@
 #include "Remesh/Standing.hh"
 #include "Remesh/Survey.hh"
 #include "Remesh/Unfolding.hh"
+#include "Surface/HeldCells.hh"
 
 namespace hfr {
+
+class SurfaceMesh;
 
 /// Vertices, deleted ones included, and those of them that may move.
 struct VertexTally {
@@ -51,8 +54,17 @@ class MeshInParts {
                                                        std::span<const CellHandle> but) = 0;
   /// Brings together, in each process, what lies within so many layers of these cells, and lets all search
   /// there, of which one puts back. All have what that one has made of it, and get what it says.
+  /// `surface`: of the run, where its patches change it, too.
   virtual PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers,
+                                     const SurfaceMesh* surface,
                                      const std::function<PatchesDone(PatchPlace&)>& search) = 0;
+  /// The surface as it is now, of all of it, for as long as what is returned lives.
+  virtual std::shared_ptr<SurfaceMesh> surface(const SurfaceOptions& options) = 0;
+  /// After cells have been replaced that nobody told that surface of: see SurfaceMesh::rebuild().
+  virtual void rebuild(SurfaceMesh& surface) = 0;
+  /// Of these own cells; see hfr::feature_ceilings(). Without the ends of edges.
+  virtual std::vector<FeatureCeiling> feature_ceilings(std::span<const CellHandle> cells,
+                                                       const SurfaceOptions& options) = 0;
   virtual std::unique_ptr<Unfolding> unfolding(const UntangleEffort& effort) = 0;
   /// Of the part, to come back to.
   virtual std::shared_ptr<const void> copy() const = 0;

@@ -184,6 +184,24 @@ std::vector<CellHandle> Patch::slots_for(TetMesh& whole, TetMesh::Writer& writer
 }
 
 void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
+  class OfMesh : public FaceLabels {
+   public:
+    explicit OfMesh(TetMesh& mesh) : mesh_(mesh) {}
+    void set(const std::array<VertexHandle, 3>& face, int label) override {
+      mesh_.labels().faces.set(face, label);
+    }
+    void erase(const std::array<VertexHandle, 3>& face) override {
+      mesh_.labels().faces.erase_unordered(face);
+    }
+
+   private:
+    TetMesh& mesh_;
+  };
+  OfMesh labels(whole);
+  put_back(whole, changed, labels);
+}
+
+void Patch::put_back(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const {
   const Rim rim = this->rim(whole);
   TetMesh::Writer writer(whole);
   const std::vector<VertexHandle> vertices = put_vertices(whole, writer, changed);
@@ -212,8 +230,8 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
         const std::size_t entry = known.position(changed.halfface_vertices(halfface_of(local, k)));
         if (entry == known.size()) continue;
         const auto& v = known.entries()[entry].vertices;
-        whole.labels().faces.set({vertices[v[0].idx()], vertices[v[1].idx()], vertices[v[2].idx()]},
-                                 known.entries()[entry].value);
+        labels.set({vertices[v[0].idx()], vertices[v[1].idx()], vertices[v[2].idx()]},
+                   known.entries()[entry].value);
         continue;
       }
       kept.insert(at->first);
@@ -222,7 +240,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
     }
   }
   for (const auto& face : rim.boundary)
-    if (!kept.contains(face)) whole.labels().faces.erase_unordered(face);
+    if (!kept.contains(face)) labels.erase(face);
 }
 
 }  // namespace hfr

@@ -3,6 +3,7 @@
 #define HFR_REMESH_PATCH_HH
 
 #include <cstdint>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,15 @@
 #include "Scheduler/Workspace.hh"
 
 namespace hfr {
+
+/// Labels of the faces of a mesh in which a patch is put back.
+class FaceLabels {
+ public:
+  virtual ~FaceLabels() = default;
+  virtual void set(const std::array<VertexHandle, 3>& face, int label) = 0;
+  /// A face that may have had none.
+  virtual void erase(const std::array<VertexHandle, 3>& face) = 0;
+};
 
 /// Some cells of a mesh as a mesh of their own, to be tried on and put back if that has helped. Whatever
 /// faces the rest of the mesh, another region or the outside is its boundary, so that a run with a frozen
@@ -35,6 +45,8 @@ class Patch {
   /// Writes `changed`, which became of mesh() without collection of garbage, in place of the cells. The whole
   /// must not have changed there meanwhile; `work` must be attached again before it is used.
   void put_back(TetMesh& whole, const TetMesh& changed) const;
+  /// The same where somebody keeps account of the whole's labels of faces, and writes them.
+  void put_back(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const;
 
  private:
   struct Rim;

@@ -11,6 +11,7 @@
 namespace hfr {
 
 class Patch;
+class SurfaceMesh;
 
 /// What the tries on one patch have come to.
 struct PatchVerdict {
@@ -29,6 +30,8 @@ class PatchPlace {
   virtual std::span<const CellHandle> worst() const = 0;
   /// As Workspace has it.
   virtual std::span<const std::uint8_t> pinched() const = 0;
+  /// The surface of the run as this mesh sees it.
+  virtual const SurfaceMesh* surface(const SurfaceMesh* of_run) { return of_run; }
   /// Cells of the whole.
   virtual std::size_t n_cells() const = 0;
   /// Whether it is this process that tries on patch i.

@@ -172,10 +172,12 @@ struct Attempt {
 /// depend on that.
 class PatchTries {
  public:
-  /// `whole`: the run whose surface, if patches have one, may change in the patch as well.
-  PatchTries(const Patch& patch, const Run& whole, Room room, double goal, std::span<const Try> tries)
+  /// `surface`: that of `whole`, which may change in the patch as well, if patches have one.
+  PatchTries(const Patch& patch, const Run& whole, const SurfaceMesh* surface, Room room, double goal,
+             std::span<const Try> tries)
       : patch_(patch),
         whole_(whole),
+        surface_(whole.strategy.patch.has_surface ? surface : nullptr),
         room_(room),
         strategy_(strategy_of_patch(whole.strategy)),
         tries_(tries),
@@ -265,7 +267,7 @@ class PatchTries {
     lone.findings().is_folded = whole_.findings.is_folded;
     if (!begin(how, lone.run(), rules(), worked_for_)) return one;
     lone.work().attach(mesh, strategy_.pass.policy);
-    const PartOfSurface part(mesh, rules().has_surface ? whole_.surface : nullptr, patch_.vertices());
+    const PartOfSurface part(mesh, surface_, patch_.vertices());
     polish(lone.run(part.get()), strategy_.polish, worked_for_);
     one.worst = survey(mesh, strategy_.pass.policy).worst;
     one.has_room = room_.holds(mesh);
@@ -276,6 +278,7 @@ class PatchTries {
 
   const Patch& patch_;
   const Run& whole_;
+  const SurfaceMesh* const surface_;
   const Room room_;
   const Strategy strategy_;
   std::span<const Try> tries_;
@@ -293,9 +296,10 @@ std::vector<Outcome> search(const Run& run, PatchPlace& place, std::span<const P
                             const PatchEffort& effort) {
   const std::vector<Try> tries = tries_of(effort, run.strategy.pass.sites_of_many);
   std::deque<PatchTries> all;
+  const SurfaceMesh* const surface = run.surface ? place.surface(run.surface) : nullptr;
   std::vector<std::size_t> open;  // numbers of those that are tried on here
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    all.emplace_back(patches[i], run, room_of(patches[i], place.n_cells(), run.bounds), goal, tries);
+    all.emplace_back(patches[i], run, surface, room_of(patches[i], place.n_cells(), run.bounds), goal, tries);
     if (place.tries_on(i) && all.back().is_worth_trying(effort.few)) open.push_back(i);
   }
   par::for_each_dynamic(run.policy().for_items_of(kTryNanoseconds), open.size() * tries.size(), 1,
@@ -382,7 +386,7 @@ std::optional<PatchesDone> take_turn(const Run& run, double degrees, const Patch
     if (worst.size() > effort.few) return std::nullopt;
     worst.resize(std::min(n_centres, worst.size()));
     return run.parts()->search_patches(
-        worst, effort.layers, [&](PatchPlace& place) { return search_at(run, place, degrees, effort); });
+        worst, effort.layers, run.strategy.patch.has_surface ? run.surface : nullptr, [&](PatchPlace& place) { return search_at(run, place, degrees, effort); });
   }
   std::vector<CellHandle> worst = worst_cells_below(run.mesh, degrees, n, run.policy(), held, run.known());
   if (worst.size() > effort.few) return std::nullopt;
@@ -414,7 +418,7 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
         run.work.forget_qualities();
       else
         run.work.attach(run.mesh, run.policy());
-      if (run.strategy.patch.has_surface) rebuild(run.surface, run.mesh, run.policy());
+      if (run.strategy.patch.has_surface) rebuild_surface(run);
     }
     if (!done->worst_rose) break;
   }

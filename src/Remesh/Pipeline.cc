@@ -144,11 +144,11 @@ void run_flat(const Run& run, Beginning from) {
   const Strategy& strategy = *run.strategy.flat;
   Best best(run, strategy.claimed->goal->may_fall, Loss::kMadeUpFor);
   from.put_back(run);
-  const FlatSurface surface(run.mesh, *run.surface, run.policy());
+  const FlatSurface surface(run);
   Run part = run.with(strategy);
   part.surface = surface.get();
   run_usual(part);
-  rebuild(run.surface, run.mesh, run.policy());
+  rebuild_surface(run);
   best.settle();
 }
 

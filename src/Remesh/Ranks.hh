@@ -19,6 +19,7 @@ namespace hfr {
 
 enum class PassKind : std::uint8_t;
 class MeshInParts;
+class SurfaceMesh;
 
 /// What passes on ranks measure cells by: kMinSine, kMinDihedral, kVolumeLength, or Untangling, whose
 /// volume-length is of positive cells and which says how the others are measured.
@@ -126,7 +127,7 @@ class Ranks {
   /// The same for cluster search.
   virtual RoundCounts search(const Search&) { return {}; }
   /// Where keep_mesh(), and the run has a surface. Nothing where no cell is looked at.
-  virtual std::optional<RoundCounts> surface_pass(const SurfaceLook&) { return std::nullopt; }
+  virtual std::optional<RoundCounts> surface_pass(SurfaceMesh&, const SurfaceLook&) { return std::nullopt; }
   /// Whether a surface that has changed lies on or goes through itself at a vertex that has since the clock
   /// stood there.
   virtual bool is_folded_since(std::uint32_t) { return false; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "HalfFace/Errors.hh"
+#include "Remesh/Run.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/Surfaces.hh"
 #include "Surface/HeldCells.hh"
@@ -77,20 +78,24 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   SurfaceOptions wanted = options.surface;
   impl_->bound = SurfaceMesh::allowed_distance(mesh, wanted, options.policy);
   if (unfold) {
-    const Unfolding done = unfold_surface(mesh, options.surface, options.policy, stopped);
-    PassReport pass;
-    pass.stage = "unfold";
-    pass.op = "surface unfold";
-    pass.iteration = 1;
-    pass.seeds = pass.candidates = done.n_folded;
-    pass.winners = done.n_moved;
-    if (done.n_folded > 0) passes.push_back(pass);
+    const SurfaceUnfolding done = unfold_surface(mesh, options.surface, options.policy, stopped);
+    if (done.n_folded > 0) passes.push_back(report_of(done));
     impl_->unfold_needs = done.needs;
     // What is left of the distance; the surface is taken as it is now.
     if (done.n_moved > 0 && wanted.mode == SurfaceMode::kFree)
       wanted.hausdorff = impl_->bound - done.distance;
   }
   impl_->surface = std::make_unique<SurfaceMesh>(mesh, wanted, options.policy);
+}
+
+PassReport report_of(const SurfaceUnfolding& unfolding) {
+  PassReport pass;
+  pass.stage = "unfold";
+  pass.op = "surface unfold";
+  pass.iteration = 1;
+  pass.seeds = pass.candidates = unfolding.n_folded;
+  pass.winners = unfolding.n_moved;
+  return pass;
 }
 
 SurfaceMesh* SurfaceRun::get() const { return impl_->surface.get(); }
@@ -115,14 +120,18 @@ PartOfSurface::PartOfSurface(const TetMesh& part, const SurfaceMesh* whole,
     : surface_(whole ? std::make_shared<SurfaceMesh>(part, *whole, vertices) : nullptr) {}
 SurfaceMesh* PartOfSurface::get() const { return surface_.get(); }
 
-void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy) {
-  if (surface) surface->rebuild(mesh, policy);
+void rebuild_surface(const Run& run) {
+  if (run.surface && run.is_part())
+    run.parts()->rebuild(*run.surface);
+  else if (run.surface)
+    run.surface->rebuild(run.mesh, run.policy());
 }
 
-FlatSurface::FlatSurface(const TetMesh& mesh, const SurfaceMesh& free, par::Policy policy) {
-  SurfaceOptions options = free.options();
+FlatSurface::FlatSurface(const Run& run) {
+  SurfaceOptions options = run.surface->options();
   options.mode = SurfaceMode::kFlat;
-  flat_ = std::make_shared<SurfaceMesh>(mesh, options, policy);
+  flat_ = run.is_part() ? run.parts()->surface(options)
+                        : std::make_shared<SurfaceMesh>(run.mesh, options, run.policy());
 }
 SurfaceMesh* FlatSurface::get() const { return flat_.get(); }
 
@@ -159,11 +168,17 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
   return held;
 }
 
-void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                    const SurfaceOptions& options, par::Policy policy) {
+namespace {
+
+std::vector<CellHandle> cells_of(std::span<const StuckCell> stuck) {
   std::vector<CellHandle> cells;
   for (const StuckCell& cell : stuck) cells.push_back(cell.cell);
-  const auto ceilings = feature_ceilings(mesh, cells, options, policy);
+  return cells;
+}
+
+/// `ceilings`: of each of the cells.
+void blame(std::vector<StuckCell>& stuck, std::span<const FeatureCeiling> ceilings, double degrees,
+           const SurfaceOptions& options) {
   for (std::size_t i = 0; i < stuck.size(); ++i) {
     StuckReason& limit = stuck[i].reason;
     if (limit == StuckReason::kFoldedSurface) continue;
@@ -182,9 +197,19 @@ void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double d
   }
 }
 
+}  // namespace
+
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                    const SurfaceMesh& surface, par::Policy policy) {
-  blame_features(mesh, stuck, degrees, surface.options(), policy);
+                    const SurfaceOptions& options, par::Policy policy) {
+  blame(stuck, feature_ceilings(mesh, cells_of(stuck), options, policy), degrees, options);
+}
+
+void blame_features(const Run& run, std::vector<StuckCell>& stuck, double degrees) {
+  const SurfaceOptions& options = run.surface->options();
+  if (run.is_part())
+    blame(stuck, run.parts()->feature_ceilings(cells_of(stuck), options), degrees, options);
+  else
+    blame_features(run.mesh, stuck, degrees, options, run.policy());
 }
 
 }  // namespace hfr

@@ -12,6 +12,7 @@
 namespace hfr {
 
 class SurfaceMesh;
+struct Run;
 
 /// The surface of one run: made before its first pass unless it is frozen, and measured after its last.
 class SurfaceRun {
@@ -33,6 +34,10 @@ class SurfaceRun {
   std::unique_ptr<Impl> impl_;
 };
 
+struct SurfaceUnfolding;
+/// The line of a report on it.
+PassReport report_of(const SurfaceUnfolding& unfolding);
+
 /// The part of a flat surface that a patch has, for the time of a try on a copy of it; see SurfaceMesh. None
 /// where `whole` is null.
 class PartOfSurface {
@@ -46,14 +51,14 @@ class PartOfSurface {
  private:
   std::shared_ptr<SurfaceMesh> surface_;  // shared: a build without surfaces cannot delete one
 };
-/// After patches have been put back, or a run with a flat surface: the surface as it is now, which has to
-/// have the shape that it is to keep. Does nothing without one.
-void rebuild(SurfaceMesh* surface, const TetMesh& mesh, par::Policy policy);
+/// After patches have been put back, or a run with a flat surface: the surface of the run as it is now, which
+/// has to have the shape that it is to keep. Does nothing without one.
+void rebuild_surface(const Run& run);
 
 /// The surface of a free run before anything has changed it, as a flat one.
 class FlatSurface {
  public:
-  FlatSurface(const TetMesh& mesh, const SurfaceMesh& free, par::Policy policy);
+  explicit FlatSurface(const Run& run);
   FlatSurface(const FlatSurface&) = delete;
   FlatSurface& operator=(const FlatSurface&) = delete;
 
@@ -82,8 +87,8 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
 /// keep below the angle is said to be.
 void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
                     const SurfaceOptions& options, par::Policy policy);
-void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
-                    const SurfaceMesh& surface, par::Policy policy);
+/// Of a run with a surface; where its mesh is in parts, all processes ask, each with its own cells.
+void blame_features(const Run& run, std::vector<StuckCell>& stuck, double degrees);
 
 }  // namespace hfr
 

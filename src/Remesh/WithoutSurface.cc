@@ -52,9 +52,9 @@ SurfaceReport SurfaceRun::report(const TetMesh&) const { return {}; }
 
 PartOfSurface::PartOfSurface(const TetMesh&, const SurfaceMesh*, std::span<const VertexHandle>) {}
 SurfaceMesh* PartOfSurface::get() const { return nullptr; }
-void rebuild(SurfaceMesh*, const TetMesh&, par::Policy) {}
+void rebuild_surface(const Run&) {}
 
-FlatSurface::FlatSurface(const TetMesh&, const SurfaceMesh&, par::Policy) {}
+FlatSurface::FlatSurface(const Run&) {}
 SurfaceMesh* FlatSurface::get() const { return nullptr; }
 
 SurfaceCopy::SurfaceCopy(const SurfaceMesh*) {}
@@ -67,6 +67,6 @@ HeldCells held_cells(const TetMesh&, const std::vector<StuckCell>& stuck, double
   return held;
 }
 void blame_features(const TetMesh&, std::vector<StuckCell>&, double, const SurfaceOptions&, par::Policy) {}
-void blame_features(const TetMesh&, std::vector<StuckCell>&, double, const SurfaceMesh&, par::Policy) {}
+void blame_features(const Run&, std::vector<StuckCell>&, double) {}
 
 }  // namespace hfr

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <utility>
 
 #include "Quality/Metrics.hh"
 #include "Surface/Features.hh"
@@ -18,10 +20,14 @@ using surface::unit;
 /// The surface as one mode sees it.
 class View {
  public:
-  View(const TetMesh& mesh, SurfaceOptions options, SurfaceMode mode, par::Policy policy)
-      : tilts_(mode == SurfaceMode::kFree) {
+  using Named = std::function<VertexHandle(VertexHandle)>;
+
+  View(const TetMesh& mesh, const SurfaceOptions& options, SurfaceMode mode, par::Policy policy)
+      : View(surface::gather(mesh, options, policy), options, mode, {}) {}
+  /// `named`: what the arrays call a vertex of the mesh, where it is only a part.
+  View(surface::Arrays arrays, SurfaceOptions options, SurfaceMode mode, Named named)
+      : tilts_(mode == SurfaceMode::kFree), named_(std::move(named)), arrays_(std::move(arrays)) {
     options.mode = mode;
-    arrays_ = surface::gather(mesh, options, policy);
     features_ = surface::find_features(arrays_, options, surface::allowed_distance(arrays_, options));
   }
 
@@ -38,11 +44,11 @@ class View {
     const auto& v = mesh.cell(c).v;
     return std::any_of(v.begin(), v.end(),
                        [&](VertexHandle w) {
-                         const SurfaceKind kind = features_.motion_constraint[w.idx()].kind;
+                         const SurfaceKind kind = features_.motion_constraint[name(w).idx()].kind;
                          return kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve;
                        }) ||
            std::any_of(kEdgeCorners.begin(), kEdgeCorners.end(), [&](const auto& ends) {
-             const surface::Edge* e = edge(v[ends[0]], v[ends[1]]);
+             const surface::Edge* e = edge(name(v[ends[0]]), name(v[ends[1]]));
              return e && e->manifold && !e->feature && !arrays_.locked[e->f[0]] && !arrays_.locked[e->f[1]];
            });
   }
@@ -54,7 +60,7 @@ class View {
     const std::array<double, 6> own =
         dihedrals(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
     for (std::size_t k = 0; k < kEdgeCorners.size(); ++k) {
-      const surface::Edge* e = edge(v[kEdgeCorners[k][0]], v[kEdgeCorners[k][1]]);
+      const surface::Edge* e = edge(name(v[kEdgeCorners[k][0]]), name(v[kEdgeCorners[k][1]]));
       if (!e || !e->manifold || !e->feature) continue;
       if (for_good && !(stays(e->f[0]) && stays(e->f[1]))) continue;
       const double inside = angle_inside(*e);
@@ -76,6 +82,7 @@ class View {
     }
     return true;
   }
+  VertexHandle name(VertexHandle v) const { return named_ ? named_(v) : v; }
   const surface::Edge* edge(VertexHandle a, VertexHandle b) const {
     if (b < a) std::swap(a, b);
     const auto& edges = features_.edges;
@@ -102,7 +109,8 @@ class View {
     return convex ? 180 - turn : 180 + turn;
   }
 
-  bool tilts_;  // whether facets may leave their planes
+  bool tilts_;   // whether facets may leave their planes
+  Named named_;  // none where all is known by the handles of the mesh
   surface::Arrays arrays_;
   surface::Features features_;
 };
@@ -129,6 +137,16 @@ std::vector<FeatureCeiling> feature_ceilings(const TetMesh& mesh, std::span<cons
   if (cells.empty() || options.mode == SurfaceMode::kFrozen) return ceilings;
   const View view(mesh, options, options.mode, policy);
   for (std::size_t i = 0; i < cells.size(); ++i) ceilings[i] = view.ceiling(mesh, cells[i]);
+  return ceilings;
+}
+
+std::vector<FeatureCeiling> feature_ceilings(const TetMesh& part, std::span<const CellHandle> cells,
+                                             const SurfaceOptions& options, const surface::Arrays& arrays,
+                                             const std::function<VertexHandle(VertexHandle)>& named) {
+  std::vector<FeatureCeiling> ceilings(cells.size());
+  if (cells.empty()) return ceilings;
+  const View view(arrays, options, options.mode, named);
+  for (std::size_t i = 0; i < cells.size(); ++i) ceilings[i] = {view.ceiling(part, cells[i]).degrees, {}, {}};
   return ceilings;
 }
 

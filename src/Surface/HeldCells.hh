@@ -3,6 +3,7 @@
 #define HFR_SURFACE_HELD_CELLS_HH
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,10 @@
 #include "Surface/SurfaceOptions.hh"
 
 namespace hfr {
+
+namespace surface {
+struct Arrays;
+}
 
 /// The least that lets the surface of a cell change.
 enum class FreedBy : std::uint8_t {
@@ -35,6 +40,11 @@ struct FeatureCeiling {
 /// frozen mode.
 std::vector<FeatureCeiling> feature_ceilings(const TetMesh& mesh, std::span<const CellHandle> cells,
                                              const SurfaceOptions& options, par::Policy policy = {});
+/// The same of cells of a mesh in parts, by the surface of the whole; without the ends of edges. `named`:
+/// what the arrays call a vertex of the part, invalid where they have none.
+std::vector<FeatureCeiling> feature_ceilings(const TetMesh& part, std::span<const CellHandle> cells,
+                                             const SurfaceOptions& options, const surface::Arrays& arrays,
+                                             const std::function<VertexHandle(VertexHandle)>& named);
 
 }  // namespace hfr
 

@@ -332,10 +332,11 @@ class Attempts {
   InputSurface shape_;
 };
 
-/// The points of an unfolded surface, by vertex; nothing where no way to unfold it is any better.
+}  // namespace
+
 std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptions& options,
                                         par::Policy policy, const std::function<bool()>& stopped,
-                                        Unfolding& done) {
+                                        SurfaceUnfolding& done) {
   constexpr double kCoplanar = 1e-12;  // of the mean edge: what flat mode allows
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
   const Unfolder unfolder(arrays, options);
@@ -375,11 +376,9 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
   return best.points;
 }
 
-}  // namespace
-
-Unfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy,
+SurfaceUnfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy,
                          const std::function<bool()>& stopped) {
-  Unfolding done;
+  SurfaceUnfolding done;
   const auto points = unfold(surface::gather(mesh, options, policy), options, policy, stopped, done);
   if (!points) return done;
   for (VertexHandle v : mesh.vertices())

@@ -4,13 +4,16 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "HalfFace/TetMesh.hh"
+#include "Surface/Features.hh"
 #include "Surface/SurfaceOptions.hh"
 
 namespace hfr {
 
-struct Unfolding {
+struct SurfaceUnfolding {
   std::size_t n_folded = 0;  ///< faces that lay against the surface round them
   std::size_t n_left = 0;    ///< of these and others, after it
   std::size_t n_moved = 0;   ///< vertices
@@ -24,8 +27,12 @@ struct Unfolding {
 /// fewer folds, or where the new surface would be further from the old one than options allow. Cells may
 /// become inverted by it: to be done before these are mended. Nothing is done in frozen mode. `stopped`,
 /// asked often: true ends it with what fits so far.
-Unfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {},
+SurfaceUnfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {},
                          const std::function<bool()>& stopped = {});
+/// The same of a surface as arrays: the points of all vertices, nothing where none moves.
+std::optional<std::vector<Vec3>> unfold(const surface::Arrays& arrays, const SurfaceOptions& options,
+                                        par::Policy policy, const std::function<bool()>& stopped,
+                                        SurfaceUnfolding& done);
 
 }  // namespace hfr
 

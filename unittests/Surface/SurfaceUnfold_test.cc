@@ -40,7 +40,7 @@ TEST(SurfaceUnfold, FindsAllOfAFoldThatIsWiderThanTheRingsRoundAFace) {
     TetMesh mesh = wrung(degrees);
     const std::size_t folded = n_inwards(mesh);
     ASSERT_GT(folded, 80U) << degrees;
-    const Unfolding done = unfold_surface(mesh, within(1e-9));
+    const SurfaceUnfolding done = unfold_surface(mesh, within(1e-9));
     EXPECT_GE(done.n_folded, folded) << degrees;
     EXPECT_LE(done.n_folded, folded + 8) << degrees;
   }
@@ -50,7 +50,7 @@ TEST(SurfaceUnfold, SpreadsAWideFoldUntilNothingLooksInwards) {
   for (double degrees : {65.0, 75.0, 90.0}) {
     const TetMesh folded = wrung(degrees);
     TetMesh mesh = folded;
-    const Unfolding done = unfold_surface(mesh, within(0.04));
+    const SurfaceUnfolding done = unfold_surface(mesh, within(0.04));
     EXPECT_GT(done.n_moved, 0U) << degrees;
     EXPECT_EQ(done.n_left, 0U) << degrees;
     EXPECT_EQ(n_inwards(mesh), 0U) << degrees;
@@ -72,12 +72,12 @@ TEST(SurfaceUnfold, SpreadsAWideFoldUntilNothingLooksInwards) {
 TEST(SurfaceUnfold, LeavesAFoldThatTheDistanceDoesNotAllowAsItIsAndSaysWhichWould) {
   const TetMesh folded = wrung(90);
   TetMesh mesh = folded;
-  const Unfolding done = unfold_surface(mesh, within(0.005));
+  const SurfaceUnfolding done = unfold_surface(mesh, within(0.005));
   EXPECT_EQ(done.n_moved, 0U);
   EXPECT_EQ(done.n_left, done.n_folded);
   EXPECT_TRUE(std::ranges::equal(mesh.points(), folded.points()));
   ASSERT_GT(done.needs, 0.005);
-  const Unfolding again = unfold_surface(mesh, within(1.001 * done.needs));
+  const SurfaceUnfolding again = unfold_surface(mesh, within(1.001 * done.needs));
   EXPECT_GT(again.n_moved, 0U);
   EXPECT_EQ(again.n_left, 0U);
   EXPECT_EQ(n_inwards(mesh), 0U);
@@ -92,7 +92,7 @@ TEST(SurfaceUnfold, EndsWhenToldToWithWhatFitsSoFar) {
   for (const std::size_t last : {std::size_t{1}, std::size_t{2}, n_asked / 2}) {
     TetMesh mesh = folded;
     std::size_t n = 0;
-    const Unfolding done = unfold_surface(mesh, within(0.04), {}, [&] { return ++n >= last; });
+    const SurfaceUnfolding done = unfold_surface(mesh, within(0.04), {}, [&] { return ++n >= last; });
     EXPECT_LE(n, last + 2) << last;  // what comes after only asks and goes
     EXPECT_LE(done.n_left, done.n_folded) << last;
     EXPECT_LE(done.distance, 0.04) << last;
@@ -118,11 +118,11 @@ TEST(SurfaceUnfold, RunEndsWhereTheDistanceIsTooSmall) {
 
 TEST(SurfaceUnfold, IsTheSameForAnyNumberOfThreads) {
   TetMesh one = wrung(90);
-  const Unfolding alone = unfold_surface(one, within(0.04), {.threads = 1});
+  const SurfaceUnfolding alone = unfold_surface(one, within(0.04), {.threads = 1});
   EXPECT_FALSE(std::ranges::equal(one.points(), wrung(90).points()));
   for (int threads : {2, 3, 7}) {
     TetMesh mesh = wrung(90);
-    const Unfolding done = unfold_surface(mesh, within(0.04), {.threads = threads, .serial_below = 1});
+    const SurfaceUnfolding done = unfold_surface(mesh, within(0.04), {.threads = threads, .serial_below = 1});
     EXPECT_EQ(done.distance, alone.distance) << threads;
     EXPECT_TRUE(std::ranges::equal(mesh.points(), one.points())) << threads;
   }
@@ -132,7 +132,7 @@ TEST(SurfaceUnfold, TouchesNeitherAFrozenSurfaceNorOneWithoutFolds) {
   TetMesh mesh = wrung(90);
   EXPECT_EQ(unfold_surface(mesh, SurfaceOptions{}).n_folded, 0U);
   TetMesh smooth = wrung(40);
-  const Unfolding none = unfold_surface(smooth, within(0.04));
+  const SurfaceUnfolding none = unfold_surface(smooth, within(0.04));
   EXPECT_EQ(none.n_folded, 0U);
   EXPECT_EQ(none.n_moved, 0U);
   EXPECT_TRUE(std::ranges::equal(smooth.points(), wrung(40).points()));
