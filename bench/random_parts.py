@@ -5,7 +5,8 @@
 Usage: bench/random_parts.py BUILD [--seconds S] [--seed N] [--keep FOLDER]
 The meshes are boxes of 1 to 4 cubes a side: whole, torn (some cells are missing, so that it touches itself in
 vertices and edges), or in a row of which each has one vertex in common with the next; inverted, in two regions, with
-cells in any order and some ordered against their neighbours. Exit 1 where any output differs.
+labelled faces and edges, cells in any order and some ordered against their neighbours. The surface is frozen, flat or
+free. Exit 1 where any output differs.
 """
 
 import argparse
@@ -71,11 +72,34 @@ def mesh(rng):
     return points, cells, regions
 
 
-def write(path, points, cells, regions):
+def labelled(cells, regions, rng):
+    """Faces of the surface by side at random, some faces inside, and a few edges, each with a label."""
+    cells_of = {}
+    for i, cell in enumerate(cells):
+        for k in range(4):
+            cells_of.setdefault(tuple(sorted(cell[:k] + cell[k + 1 :])), []).append(i)
+    faces, edges = {}, {}
+    share, inside = rng.choice([0, 0.3, 1]), rng.choice([0, 0, 0.05])
+    for face, owners in cells_of.items():
+        is_surface = len(owners) == 1 or regions[owners[0]] != regions[owners[1]]
+        if rng.random() < (share if is_surface else inside):
+            faces[face] = rng.randrange(1, 4) if rng.random() < 0.1 else 1
+    for _ in range(rng.choice([0, 0, 3])):
+        edges[tuple(sorted(rng.sample(rng.choice(cells), 2)))] = rng.randrange(1, 3)
+    order = list(faces.items())
+    rng.shuffle(order)
+    return [(rng.sample(face, 3), label) for face, label in order], list(edges.items())
+
+
+def write(path, points, cells, regions, faces, edges):
     lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(points))]
     lines += [" ".join(map(repr, p)) + " 0" for p in points]
     lines += ["Tetrahedra", str(len(cells))]
     lines += [" ".join(str(v + 1) for v in cell) + f" {region}" for cell, region in zip(cells, regions)]
+    for name, items in (("Triangles", faces), ("Edges", edges)):
+        if items:
+            lines += [name, str(len(items))]
+            lines += [" ".join(str(v + 1) for v in vertices) + f" {label}" for vertices, label in items]
     path.write_text("\n".join(lines + ["End", ""]))
 
 
@@ -109,9 +133,15 @@ def main():
                 break
             rng = random.Random(seed)
             points, cells, regions = mesh(rng)
-            write(source, points, cells, regions)
+            faces, edges = labelled(cells, regions, rng)
+            write(source, points, cells, regions, faces, edges)
             of_parts, of_whole = (options.split() for options in rng.choice(RUNS))
-            more = fixed(cells, rng) if rng.random() < 0.5 else []
+            more = fixed(cells, rng) if rng.random() < 0.4 else []
+            more += ["--surface", rng.choice(["frozen", "flat", "flat", "free", "free"])]
+            if more[-1] != "frozen" and rng.random() < 0.2:
+                more += ["--fix", "patch:1"]
+            if more[-1] == "free" and rng.random() < 0.5:
+                more += ["--hausdorff", rng.choice(["0.001", "0.05", "0.3"])]
             ranks, threads = rng.randrange(1, 5), rng.randrange(1, 3)
             for path in (whole, parts):
                 path.unlink(missing_ok=True)

@@ -174,10 +174,13 @@ AngleTally Residents::tally_below(std::span<const double> degrees) {
 }
 
 VertexTally Residents::vertices() {
-  std::size_t n_movable = 0;
-  for (std::size_t i = 0; i < mesh_.part().n_vertices(); ++i)
-    n_movable += mesh_.is_own(VertexHandle(i)) && mesh_.work().frozen[i] == 0 ? 1 : 0;
-  return {static_cast<std::size_t>(mesh_.n_vertices()), sum(n_movable)};
+  std::array<std::uint64_t, 2> n = {0, 0};
+  for (VertexHandle v : own_vertices(mesh_)) {
+    ++n[0];
+    n[1] += mesh_.work().frozen[v.idx()] == 0 ? 1 : 0;
+  }
+  mesh_.comm().sum(n);
+  return {static_cast<std::size_t>(n[0]), static_cast<std::size_t>(n[1])};
 }
 
 /// Each rank's own n worst ones come together on all ranks.

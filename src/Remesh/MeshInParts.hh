@@ -21,7 +21,7 @@ namespace hfr {
 
 class SurfaceMesh;
 
-/// Vertices, deleted ones included, and those of them that may move.
+/// Vertices, and those of them that may move.
 struct VertexTally {
   std::size_t n = 0, n_movable = 0;
 };

@@ -36,11 +36,15 @@ void raise_throughout(const Run& run, const ThroughoutEffort& effort, double deg
 }  // namespace
 
 bool lacks_vertices(const Run& run) {
-  const auto& frozen = run.work.frozen;
-  const VertexTally vertices =
-      run.is_part()
-          ? run.parts()->vertices()
-          : VertexTally{frozen.size(), static_cast<std::size_t>(std::count(frozen.begin(), frozen.end(), 0))};
+  const auto here = [&] {
+    VertexTally tally;
+    for (VertexHandle v : run.mesh.vertices()) {
+      ++tally.n;
+      tally.n_movable += run.work.frozen[v.idx()] == 0 ? 1 : 0;
+    }
+    return tally;
+  };
+  const VertexTally vertices = run.is_part() ? run.parts()->vertices() : here();
   return static_cast<double>(vertices.n_movable) <=
          run.strategy.throughout.share * static_cast<double>(vertices.n);
 }
