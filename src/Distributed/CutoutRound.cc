@@ -9,6 +9,7 @@
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/PartRound.hh"
+#include "HalfFace/Errors.hh"
 #include "HalfFace/Writer.hh"
 #include "Scheduler/Select.hh"
 
@@ -76,8 +77,12 @@ void write_home(DistributedMesh& parts, const NearChange& change) {
 
 void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t> met,
             std::span<std::uint8_t> depth) {
-  for (std::uint64_t number : met)
-    depth[static_cast<std::size_t>(std::ranges::lower_bound(cells, number) - cells.begin())] += kDeeper;
+  for (std::uint64_t number : met) {
+    const auto at = std::ranges::lower_bound(cells, number);
+    if (at == cells.end() || *at != number)
+      throw InternalError("what has come to the rim of a cutout did not grow for a cell of its middle");
+    depth[static_cast<std::size_t>(at - cells.begin())] += kDeeper;
+  }
 }
 
 /// In rank order, a candidate wins when no cell of its scope is taken, it makes nothing twice, and the bounds

@@ -32,17 +32,18 @@ struct Confine {
   Vec3 axis;
 };
 
-/// Finds cavities for a new vertex. `is_cut` tells the outer half-faces that the vertex lies in: they get no
+/// Finds cavities for a new vertex, on behalf of cell `centre`, which is known to a rim. `is_cut` tells the outer half-faces that the vertex lies in: they get no
 /// cell.
 template <class Metric, class IsCut = NoneIsCut>
 class Digger {
  public:
   Digger(const TetMesh& mesh, const Metric& metric, std::span<const double> quality, std::size_t max_cells,
-         IsCut is_cut = {}, const CutRim* rim = nullptr)
+         CellHandle centre, IsCut is_cut = {}, const CutRim* rim = nullptr)
       : mesh_(mesh),
         metric_(metric),
         quality_(quality),
         max_cells_(std::min(max_cells, Growth::kMaxCells)),
+        centre_(centre),
         is_cut_(is_cut),
         rim_(rim) {}
 
@@ -53,7 +54,7 @@ class Digger {
     double old_worst = std::numeric_limits<double>::infinity();
     for (CellHandle c : cells.cells()) {
       old_worst = std::min(old_worst, quality_[c.idx()]);
-      if (rim_) rim_->look(cells, c);
+      if (rim_) rim_->look(centre_, c);
     }
     std::size_t n_valued = 0;
     for (std::size_t idle = 0; idle < kPatience; ++idle) {
@@ -68,7 +69,7 @@ class Digger {
       n_valued = cells.n_kept();
       const CellHandle taken = cells.cells()[cells.cells().size() - 1];
       old_worst = std::min(old_worst, quality_[taken.idx()]);
-      if (rim_) rim_->look(cells, taken);
+      if (rim_) rim_->look(centre_, taken);
     }
     return best;
   }
@@ -112,6 +113,7 @@ class Digger {
   const Metric& metric_;
   std::span<const double> quality_;
   std::size_t max_cells_;
+  CellHandle centre_;
   IsCut is_cut_;
   const CutRim* rim_;
 };

@@ -155,13 +155,16 @@ class GrownCells {
 /// until it takes one of these in; that it has is noted here.
 struct CutRim {
   std::vector<std::uint8_t> is_rim;  ///< by cell
-  /// By cell: 1 where something that grew from there has come to the rim. Written from several threads.
+  /// By cell: 1 where something that grew for it, or from it, has come to the rim. Written from several
+  /// threads.
   mutable std::vector<std::uint8_t> has_met;
 
   /// Whether the cell that was taken in lies there.
-  bool look(const GrownCells& cells, CellHandle taken) const {
+  bool look(const GrownCells& cells, CellHandle taken) const { return look(cells.growth().first, taken); }
+  /// Of what grows for that cell.
+  bool look(CellHandle centre, CellHandle taken) const {
     if (is_rim[taken.idx()] == 0) return false;
-    par::atomic(has_met[cells.growth().first.idx()]).store(1, std::memory_order_relaxed);
+    par::atomic(has_met[centre.idx()]).store(1, std::memory_order_relaxed);
     return true;
   }
 };

@@ -117,7 +117,7 @@ std::size_t VertexInsertion<Metric>::n_parts(Parts& parts, int step) const {
 template <class Metric>
 void VertexInsertion<Metric>::evaluate_part(const TetMesh& mesh, Parts& parts, int step,
                                             std::size_t part) const {
-  const detail::Digger<Metric> digger(mesh, metric, quality, max_cells, {}, rim);
+  const detail::Digger<Metric> digger(mesh, metric, quality, max_cells, parts.seed.cell, {}, rim);
   if (only_place) {
     detail::Site& site = parts.sites[0];
     site = digger.dig(GrownCells(mesh, parts.seed.cell), *only_place);

@@ -135,8 +135,11 @@ TEST(InParts, WhatIsNotThereIsNamed) {
                 o.metric = Metric::kMinSine;
               }),
               HasSubstr("another metric than volume-length"));
-  EXPECT_THAT(refusal([](auto& o) { o.surface.mode = SurfaceMode::kFlat; }),
-              HasSubstr("surfaces that may change"));
+  EXPECT_THAT(refusal([](auto& o) {
+                o.surface.mode = SurfaceMode::kFlat;
+                o.surface.periodic.push_back({1, 2});
+              }),
+              HasSubstr("periodic patches"));
   EXPECT_THAT(refusal([](auto& o) { o.maps = true; }), HasSubstr("maps"));
 }
 

@@ -124,6 +124,19 @@ inline std::size_t expect_bytes(mpi::Comm& comm, const SharedFolder& folder, con
   return comm.from_first(n_winners);
 }
 
+/// But for what regions have gained, which parts do not say.
+inline void expect_same_surface(const SurfaceReport& a, const SurfaceReport& b) {
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.bound, b.bound);
+  EXPECT_EQ(a.hausdorff, b.hausdorff);
+  EXPECT_EQ(a.diagonal, b.diagonal);
+  EXPECT_EQ(a.unfold_needs, b.unfold_needs);
+  EXPECT_EQ(a.volume_change, b.volume_change);
+  EXPECT_EQ(a.feature_edges, b.feature_edges);
+  EXPECT_EQ(a.triangles_before, b.triangles_before);
+  EXPECT_EQ(a.triangles_after, b.triangles_after);
+}
+
 /// The same for any run over any mesh: the same bytes, the same passes. Returns what shared memory says of
 /// it, on rank 0.
 inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const std::filesystem::path& in,
@@ -150,6 +163,7 @@ inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const
       EXPECT_EQ(a.n_inverted, b.n_inverted) << a.op << ", pass " << i;
       EXPECT_EQ(a.worst, b.worst) << a.op << ", pass " << i;
     }
+    expect_same_surface(shared.surface, result.surface);
     io::write(folder.path() / "whole.vtu", mesh);
     EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
   }

@@ -250,7 +250,7 @@ TEST(PartPatchSearch, PatchesThatShrinkAndGrowComeHome) {
     put(first, small);
     put(second, large);
   };
-  const auto done = mpi::search_patches_in_parts(parts, centres, 1, [&](PatchPlace& place) {
+  const auto done = mpi::search_patches_in_parts(parts, centres, 1, nullptr, [&](PatchPlace& place) {
     change(place.mesh(), place.worst(),
            [&](const Patch& patch, const TetMesh& changed) { place.put_back(patch, changed); });
     return PatchesDone{2, 2, 2, true, false, false};
@@ -280,7 +280,7 @@ TEST(PartPatchSearch, EachRankTriesOnSomeOfThePatchesAndAllLearnWhatCounts) {
   parts.scatter(&whole.mesh, &whole.work, owner);
   const std::vector<std::uint64_t> centres = {whole.mesh.n_cells() - 100, 100};
   bool was_here = false;
-  mpi::search_patches_in_parts(parts, centres, 1, [&](PatchPlace& place) {
+  mpi::search_patches_in_parts(parts, centres, 1, nullptr, [&](PatchPlace& place) {
     was_here = true;
     const auto n_cells = static_cast<double>(place.mesh().n_cells());
     EXPECT_EQ(comm.min(n_cells), -comm.min(-n_cells)) << "ranks have other surroundings";

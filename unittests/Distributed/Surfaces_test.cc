@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Meshes in parts whose surface may change, beside what shared memory makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "Distributed/LabelOrder.hh"
+#include "Distributed/Labelled.hh"
+#include "Distributed/Remesher.hh"
+#include "HalfFace/Generate.hh"
+#include "Remesh/Remesher.hh"
+
+namespace hfr::test {
+namespace {
+
+ImproveOptions on_surface(SurfaceMode mode, double goal = 0, bool polish_only = false) {
+  ImproveOptions options;
+  options.surface.mode = mode;
+  if (goal > 0) options.min_dihedral = goal;
+  options.polish_only = polish_only;
+  options.policy = {};
+  return options;
+}
+
+/// A box with dents, as scans have them, of which every vertex of the surface may give way.
+TetMesh dented(Index n, double jitter, std::uint64_t seed) {
+  TetMesh mesh = valid_box(n, jitter, seed);
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> by(-0.06, 0.06);
+  for (VertexHandle v : mesh.vertices()) {
+    const Vec3 p = mesh.point(v);
+    const double bulge = 0.15 * std::sin(3 * p.x) * std::sin(3 * p.y) * std::sin(3 * p.z);
+    const double step = by(engine) / n;
+    mesh.set_point(v, {p.x + bulge + step, p.y - bulge, p.z + 0.5 * bulge + step});
+  }
+  return mesh;
+}
+
+/// What the passes of runs have done, by operator.
+struct Winners {
+  std::map<std::string, std::size_t> of_op;
+
+  void add(const Result& result) {
+    for (const PassReport& pass : result.passes) of_op[pass.stage == "patches" ? "patches" : pass.op] += pass.winners;
+  }
+  bool has_all(std::initializer_list<const char*> ops) const {
+    return std::all_of(ops.begin(), ops.end(), [&](const char* op) {
+      const auto at = of_op.find(op);
+      EXPECT_TRUE(at != of_op.end() && at->second > 0) << "nothing is done by " << op;
+      return at != of_op.end() && at->second > 0;
+    });
+  }
+};
+
+class SurfacesInParts : public testing::Test {
+ protected:
+  void run(const TetMesh& mesh, const ImproveOptions& options) {
+    if (comm.rank() == 0) io::write(path, mesh);
+    comm.sum(0);
+    winners.add(expect_same_run(comm, folder, path, options));
+  }
+  void run(const io::MeshData& data, const ImproveOptions& options) {
+    if (comm.rank() == 0) io::write_mesh(path, data);
+    comm.sum(0);
+    winners.add(expect_same_run(comm, folder, path, options));
+  }
+
+  mpi::Comm comm{MPI_COMM_WORLD};
+  SharedFolder folder{comm};
+  std::filesystem::path path = folder.path() / "in.vtu";
+  Winners winners;
+};
+
+TEST_F(SurfacesInParts, APolishHasTheBytesOfSharedMemory) {
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
+    for (const double goal : {20.0, 32.0}) {
+      SCOPED_TRACE(goal);
+      ImproveOptions options = on_surface(mode, goal, /*polish_only=*/true);
+      options.policy.threads = goal > 30 ? 2 : 1;
+      run(valid_box(6, 0.36, 1), options);
+      run(dented(6, 0.3, 2), options);
+    }
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(winners.has_all({"surface swap", "surface node", "surface smooth", "surface split"}));
+  }
+}
+
+TEST_F(SurfacesInParts, WholeRunsHaveTheBytesOfSharedMemory) {
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
+    for (const double goal : {0.0, 28.0}) {
+      SCOPED_TRACE(goal);
+      run(dented(4, 0.3, 3), on_surface(mode, goal));
+      run(valid_box(4, 0.45, 4), on_surface(mode, goal));
+    }
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(winners.has_all({"surface swap", "surface node", "surface smooth", "patches"}));
+  }
+}
+
+/// Regions, whose interfaces may change as well, and labels, which go with the faces, in the same order.
+TEST_F(SurfacesInParts, LabelsAndInterfacesHaveTheBytesOfSharedMemory) {
+  Density faces;
+  faces.faces = faces.edges = faces.vertices = faces.fixed = 0;
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
+    for (const std::uint64_t seed : {1, 2}) {
+      SCOPED_TRACE(seed);
+      const TetMesh mesh = seed == 1 ? valid_box(5, 0.38, seed) : dented(5, 0.3, seed);
+      io::MeshData data = labelled(mesh, seed, faces);
+      for (std::size_t i = 0; i < data.triangle_labels.size(); ++i) data.triangle_labels[i] = i % 9 == 0 ? 12 : 11;
+      run(data, on_surface(mode, 25));
+      ImproveOptions options = on_surface(mode, 25, /*polish_only=*/true);
+      options.surface.fixed_patches.push_back(12);
+      run(data, options);
+      run(labelled(mesh, seed, density_of(seed)), on_surface(mode, 20));
+    }
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(winners.has_all({"surface interface", "surface swap", "surface smooth"}));
+  }
+}
+
+/// Inverted cells inside and at a surface that is folded over, which is spread first.
+TEST_F(SurfacesInParts, TangledMeshesHaveTheBytesOfSharedMemory) {
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    run(jittered(2, 0.8, 5), on_surface(mode, 12));
+    ImproveOptions options = on_surface(mode, 1, /*polish_only=*/true);
+    options.surface.hausdorff = 0.3;
+    run(built(generate::cylinder(3, 8, 1, 2, 0, 65)), options);
+  }
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(winners.has_all({"surface unfold"}));
+  }
+}
+
+TEST_F(SurfacesInParts, OptionsHaveTheBytesOfSharedMemory) {
+  const TetMesh mesh = dented(4, 0.33, 6);
+  std::vector<ImproveOptions> all(5, on_surface(SurfaceMode::kFree));
+  all[0].coarsen = true;
+  all[1].raise_min_dihedral = true, all[1].iterations = 2;
+  all[2].max_cells = 400, all[2].surface.hausdorff = 0.02;
+  all[3].surface.feature_angle = 15, all[3].rounds = Rounds::kByKind, all[3].bulk_nodes = true;
+  all[4].surface.hausdorff = 0, all[4].ops = without(Ops::kDefault, Ops::kInsert);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    SCOPED_TRACE(i);
+    if (i != 1) all[i].passes_only = true;
+    run(mesh, all[i]);
+  }
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(winners.has_all({"surface volume"}));
+  }
+}
+
+/// Vertices where two boxes touch, whose cells no walk finds all of.
+TEST_F(SurfacesInParts, PinchedVerticesHaveTheBytesOfSharedMemory) {
+  generate::Arrays arrays = generate::box({3, 3, 3});
+  const Index n = static_cast<Index>(arrays.points.size());
+  const std::vector<Corners> cells = arrays.cells;
+  for (Index i = 1; i < n; ++i) arrays.points.push_back(arrays.points[i] + Vec3{1, 1, 1});
+  for (Corners cell : cells) {
+    for (Index& v : cell) v += n - 1;  // the first one is the last of the other box
+    arrays.cells.push_back(cell);
+  }
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> by(-0.09, 0.09);
+  for (Vec3& p : arrays.points) p = p + Vec3{by(engine), by(engine), by(engine)};
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
+    run(build(arrays.points, arrays.cells), on_surface(mode, 25));
+}
+
+/// As TupleMap has it.
+TEST(LabelOrder, IsThatOfATupleMap) {
+  mpi::LabelOrder order;
+  TupleMap<3, int> map;
+  std::mt19937_64 engine(1);
+  for (int step = 0; step < 3000; ++step) {
+    const std::array<std::uint64_t, 3> v = {engine() % 6, 6 + engine() % 6, 12 + engine() % 6};
+    const std::array<VertexHandle, 3> h = {V(v[2]), V(v[0]), V(v[1])};
+    if (engine() % 2 == 0) {
+      order.set(v);
+      map.set(h, step);
+    } else {
+      order.erase(v);
+      map.erase_unordered(h);
+    }
+    ASSERT_EQ(order.size(), map.size());
+  }
+  EXPECT_GT(map.size(), 50U);
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const auto& v = map.entries()[i].vertices;
+    EXPECT_EQ(order.number({v[0].idx(), v[1].idx(), v[2].idx()}), i);
+  }
+}
+
+}  // namespace
+}  // namespace hfr::test
