@@ -62,8 +62,9 @@ struct PartsLine {
   bool improves() const { return !min_dihedral.empty() || goes_over_all(); }
   /// Options of a run, where there is none.
   bool has_idle_options() const {
-    return !improves() && (!ops.empty() || !rounds.empty() || no_insert || bulk_nodes || iterations > 0 ||
-                           min_cells > 0 || max_cells > 0 || time_limit > 0 || !surface.mode.empty() || !surface.fix.empty());
+    return !improves() &&
+           (!ops.empty() || !rounds.empty() || no_insert || bulk_nodes || iterations > 0 || min_cells > 0 ||
+            max_cells > 0 || time_limit > 0 || !surface.mode.empty() || !surface.fix.empty());
   }
 };
 

@@ -149,11 +149,12 @@ auto CutoutRound::select(const Candidates& candidates, std::size_t may_lose, std
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const PlanBase& plan = candidates.plan(i);
     const SeedAddress seed = candidates.seed(i);
-    to[0].put(Announcement{
-        candidates.key(i), candidates.name(i), seed.cell.is_valid() ? cutout_.number(seed.cell) : kNoNumber,
-        seed.place, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(plan.n_removed),
-        static_cast<std::uint32_t>(plan.n_created), plan.n_removed_first, plan.n_created_first, plan.removes_vertex ? std::uint8_t{1} : std::uint8_t{0},
-        plan.adds_vertex ? std::uint8_t{1} : std::uint8_t{0}});
+    to[0].put(Announcement{candidates.key(i), candidates.name(i),
+                           seed.cell.is_valid() ? cutout_.number(seed.cell) : kNoNumber, seed.place,
+                           static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(plan.n_removed),
+                           static_cast<std::uint32_t>(plan.n_created), plan.n_removed_first,
+                           plan.n_created_first, plan.removes_vertex ? std::uint8_t{1} : std::uint8_t{0},
+                           plan.adds_vertex ? std::uint8_t{1} : std::uint8_t{0}});
     std::vector<std::uint64_t> cells;
     for (CellHandle c : candidates.scope(i)) cells.push_back(cutout_.number(c));
     to[0].put_all(cells);

@@ -113,8 +113,8 @@ void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t>
 ///
 /// `make_op(cutout)`: the operator, with the qualities and the rim of the cutout. `cells`: numbers,
 /// ascending, the same on all ranks. `first_depth`: layers that are tried first, at least 1; the result does
-/// not depend on it. `make_seeds(cutout)`: those of its centres. `tell(cutout, round, order)`: before the parts
-/// know of what this rank's winners have changed, once; see CutoutRound::order(). All take part.
+/// not depend on it. `make_seeds(cutout)`: those of its centres. `tell(cutout, round, order)`: before the
+/// parts know of what this rank's winners have changed, once; see CutoutRound::order(). All take part.
 template <class MakeOp, class MakeSeeds, class Tell>
 RoundCounts round_on_cutout(DistributedMesh& parts, const Ranks::Look& look,
                             std::span<const std::uint64_t> cells, std::uint8_t first_depth, MakeOp&& make_op,

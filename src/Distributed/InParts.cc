@@ -90,8 +90,7 @@ class Residents : public Ranks, public MeshInParts {
   void mark_round(double degrees, int layers) override { passes_.mark_round(degrees, layers); }
   std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,
                                                std::span<const CellHandle> but) override;
-  PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers,
-                             const SurfaceMesh* surface,
+  PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers, const SurfaceMesh* surface,
                              const std::function<PatchesDone(PatchPlace&)>& search) override {
     return search_patches_in_parts(mesh_, cells, layers, surface ? surfaces_.at(surface) : nullptr, search);
   }

@@ -144,7 +144,8 @@ void DistributedMesh::follow_face_labels() {
       faces.push_back({labels_.face_number(i), {number(v[0]), number(v[1]), number(v[2])}});
   }
   faces = comm_.all_gather(std::span<const Numbered>(faces));
-  std::sort(faces.begin(), faces.end(), [](const Numbered& a, const Numbered& b) { return a.number < b.number; });
+  std::sort(faces.begin(), faces.end(),
+            [](const Numbered& a, const Numbered& b) { return a.number < b.number; });
   std::vector<LabelOrder::Face> order;
   for (const Numbered& one : faces) order.push_back(one.v);
   face_order_.assign(order);

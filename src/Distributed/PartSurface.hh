@@ -54,8 +54,8 @@ class PartSurface {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The surface of a run over a mesh in parts, as SurfaceRun: what it does before the first pass and says after
-/// the last one.
+/// The surface of a run over a mesh in parts, as SurfaceRun: what it does before the first pass and says
+/// after the last one.
 class PartSurfaceRun {
  public:
   /// With `unfold`, folds of the surface are spread first, which moves vertices of the mesh: `passes`, as

@@ -298,8 +298,8 @@ template <class Metric>
 RoundCounts PartSurface::Passes<Metric>::splits() {
   using Op = SurfaceSplit<Metric>;
   std::vector<SeedPlace> places;
-  for (EdgeHandle e : edges(/*inside=*/false,
-                            [&](VertexHandle a, VertexHandle b) { return surface_.may_split(a, b); }))
+  for (EdgeHandle e :
+       edges(/*inside=*/false, [&](VertexHandle a, VertexHandle b) { return surface_.may_split(a, b); }))
     places.push_back({parts_.number(CellHandle(e.idx() / 6)), e.idx() % 6});
   const std::vector<std::uint64_t> cells = cells_of(comm_.all_gather(std::span<const SeedPlace>(places)));
   if (cells.empty()) return {};

@@ -9,7 +9,8 @@ namespace {
 
 [[noreturn]] void refuse() {
   throw InvalidInput(
-      "this hfremesh was built without OpenMesh and can only leave the surface as it is: use --surface frozen, "
+      "this hfremesh was built without OpenMesh and can only leave the surface as it is: use --surface "
+      "frozen, "
       "or build with -DHFR_SURFACE=ON");
 }
 

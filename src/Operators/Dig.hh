@@ -32,8 +32,8 @@ struct Confine {
   Vec3 axis;
 };
 
-/// Finds cavities for a new vertex, on behalf of cell `centre`, which is known to a rim. `is_cut` tells the outer half-faces that the vertex lies in: they get no
-/// cell.
+/// Finds cavities for a new vertex, on behalf of cell `centre`, which is known to a rim. `is_cut` tells the
+/// outer half-faces that the vertex lies in: they get no cell.
 template <class Metric, class IsCut = NoneIsCut>
 class Digger {
  public:

@@ -2,8 +2,8 @@
 #ifndef HFR_REMESH_PATCH_HH
 #define HFR_REMESH_PATCH_HH
 
-#include <cstdint>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 

@@ -386,7 +386,8 @@ std::optional<PatchesDone> take_turn(const Run& run, double degrees, const Patch
     if (worst.size() > effort.few) return std::nullopt;
     worst.resize(std::min(n_centres, worst.size()));
     return run.parts()->search_patches(
-        worst, effort.layers, run.strategy.patch.has_surface ? run.surface : nullptr, [&](PatchPlace& place) { return search_at(run, place, degrees, effort); });
+        worst, effort.layers, run.strategy.patch.has_surface ? run.surface : nullptr,
+        [&](PatchPlace& place) { return search_at(run, place, degrees, effort); });
   }
   std::vector<CellHandle> worst = worst_cells_below(run.mesh, degrees, n, run.policy(), held, run.known());
   if (worst.size() > effort.few) return std::nullopt;

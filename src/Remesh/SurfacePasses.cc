@@ -139,8 +139,8 @@ std::size_t SurfacePasses<Metric>::split_in_parts(const Turn& turn) {
   const Run& run = state_.run();
   const double start = run.control.seconds();
   const std::uint32_t since = std::exchange(looked_[kSplits], run.work.clock);
-  const RoundCounts counts =
-      run.ranks->surface_pass(*run.surface, look_of(SurfacePass::kSplit, turn, since)).value_or(RoundCounts{});
+  const RoundCounts counts = run.ranks->surface_pass(*run.surface, look_of(SurfacePass::kSplit, turn, since))
+                                 .value_or(RoundCounts{});
   if (counts.held_back > 0) run.findings.note_cell_bound(run.bounds);
   state_.count(turn.focus);
   if (counts.winners > 0) look_for_folds(looked_[kSplits]);
@@ -381,7 +381,8 @@ void SurfacePasses<Metric>::restore_volume(const VolumeEffort& effort) {
   }
   const auto pass = [&](const Turn& turn) {
     if (run.is_part())
-      return run.ranks->surface_pass(*run.surface, look_of(SurfacePass::kOffset, turn, 0)).value_or(RoundCounts{});
+      return run.ranks->surface_pass(*run.surface, look_of(SurfacePass::kOffset, turn, 0))
+          .value_or(RoundCounts{});
     const RoundCounts counts = hfr::smooth_pass(run.mesh, run.work, SurfaceOffset{&surface, state_.worst()},
                                                 metric_, vertices, run.policy());
     surface.on_move(run.mesh, vertices);

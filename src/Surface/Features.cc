@@ -257,8 +257,8 @@ void add_fixed(Arrays& arrays, const SurfaceOptions& options) {
     if (v.idx() < arrays.points.size()) arrays.locked_vertices.push_back(v);
 }
 
-/// A labelled face inside a region is no part of the surface, but the vertices and edges it shares with it are
-/// locked.
+/// A labelled face inside a region is no part of the surface, but the vertices and edges it shares with it
+/// are locked.
 bool is_inside(const TetMesh& mesh, const std::array<VertexHandle, 3>& f) {
   const HalfFaceHandle h = mesh.find_halfface(f);
   return h.is_valid() && !mesh.is_boundary(h) &&
@@ -271,7 +271,8 @@ void lock_labelled_inside(const TetMesh& mesh, Arrays& arrays) {
     for (VertexHandle v : f) on_surface[v.idx()] = 1;
   for (const auto& entry : mesh.labels().faces.entries()) {
     const auto& v = entry.vertices;
-    const bool known = std::all_of(v.begin(), v.end(), [&](VertexHandle u) { return on_surface[u.idx()] != 0; });
+    const bool known =
+        std::all_of(v.begin(), v.end(), [&](VertexHandle u) { return on_surface[u.idx()] != 0; });
     if (known && !is_inside(mesh, v)) continue;
     arrays.locked_vertices.insert(arrays.locked_vertices.end(), v.begin(), v.end());
   }

@@ -31,8 +31,8 @@ struct Arrays {
   std::vector<VertexHandle> locked_vertices;
 };
 Arrays gather(const TetMesh& mesh, const SurfaceOptions& options, par::Policy policy);
-/// Of a part of a mesh what its own cells and vertices say, which no other part does; but for locks, which all
-/// may tell that know of them. Faces that have been locked by name are those of TetMesh::locks().
+/// Of a part of a mesh what its own cells and vertices say, which no other part does; but for locks, which
+/// all may tell that know of them. Faces that have been locked by name are those of TetMesh::locks().
 Arrays gather_own(const TetMesh& part, const SurfaceOptions& options,
                   const std::function<bool(CellHandle)>& is_own_cell,
                   const std::function<bool(VertexHandle)>& is_own_vertex);

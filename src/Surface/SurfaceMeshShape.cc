@@ -161,7 +161,8 @@ bool SurfaceMesh::keeps_shape(std::span<const std::array<VertexHandle, 3>> faces
   if (!have_area(created)) return false;
   if (impl_->flat()) return look_the_same_way(created, removed);
   if (!numbers_) return impl_->keeps_shape(faces_removed, removed, created);
-  thread_local std::vector<std::array<VertexHandle, 3>> faces;  // of this thread, so that it is allocated once
+  thread_local std::vector<std::array<VertexHandle, 3>>
+      faces;  // of this thread, so that it is allocated once
   faces.clear();
   for (const auto& f : faces_removed) faces.push_back({inner(f[0]), inner(f[1]), inner(f[2])});
   return impl_->keeps_shape(faces, removed, created);
@@ -211,8 +212,7 @@ bool SurfaceMesh::Impl::keeps_shape(std::span<const std::array<VertexHandle, 3>>
       beneath.push_back(of_face.beneath);
     if (!keep_their_distance(of_face.samples[0], i, h, /*unless_as_far=*/false)) return false;
   }
-  if (!are_near(created, removed, beneath, h) || !turn_little(created, removed, beneath, 2 * h))
-    return false;
+  if (!are_near(created, removed, beneath, h) || !turn_little(created, removed, beneath, 2 * h)) return false;
   const double close = kCloseBetween * hausdorff;
   for (std::size_t i = 0; i < faces_removed.size() && samples_between; ++i)
     if (!keep_their_distance(record(find(faces_removed[i])).samples[1], i, close,

@@ -62,8 +62,8 @@ auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const
   if (!(length > 0)) return std::nullopt;
   axis = {axis.x / length, axis.y / length, axis.z / length};
 
-  const detail::Digger<Metric, CutFaces> digger(mesh, metric, quality, max_cells, CellHandle(seed.edge.idx() / 6), is_cut,
-                                                  rim);
+  const detail::Digger<Metric, CutFaces> digger(mesh, metric, quality, max_cells,
+                                                CellHandle(seed.edge.idx() / 6), is_cut, rim);
   const detail::Site best =
       digger.follow_up(digger.dig(cells, 0.5 * (mesh.point(a) + mesh.point(b))), kMaxDigs,
                        {on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis});

@@ -377,7 +377,7 @@ std::optional<std::vector<Vec3>> unfold(const Arrays& arrays, const SurfaceOptio
 }
 
 SurfaceUnfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy,
-                         const std::function<bool()>& stopped) {
+                                const std::function<bool()>& stopped) {
   SurfaceUnfolding done;
   const auto points = unfold(surface::gather(mesh, options, policy), options, policy, stopped, done);
   if (!points) return done;

@@ -28,7 +28,7 @@ struct SurfaceUnfolding {
 /// become inverted by it: to be done before these are mended. Nothing is done in frozen mode. `stopped`,
 /// asked often: true ends it with what fits so far.
 SurfaceUnfolding unfold_surface(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {},
-                         const std::function<bool()>& stopped = {});
+                                const std::function<bool()>& stopped = {});
 /// The same of a surface as arrays: the points of all vertices, nothing where none moves.
 std::optional<std::vector<Vec3>> unfold(const surface::Arrays& arrays, const SurfaceOptions& options,
                                         par::Policy policy, const std::function<bool()>& stopped,
