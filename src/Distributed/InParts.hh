@@ -63,17 +63,19 @@ struct PartsResult {
 };
 /// What of these options is not there in parts, as in "meshes in parts do not have …"; empty where all is.
 std::string reason_against(const ImproveOptions& options);
-/// hfr::improve() with a frozen surface: the same bits, for each number of ranks and threads. Where cells of
-/// a run without a goal are scattered in memory, they are numbered anew first, as there.
+/// hfr::improve(): the same bits, for each number of ranks and threads. Where cells of a run without a goal
+/// are scattered in memory, they are numbered anew first, as there.
+///
+/// Where the surface may change, each rank holds all of it, and is told of all that happens to it.
 ///
 /// Candidates for new vertices and searched clusters come together on rank 0, some 300 bytes each, and on all
 /// ranks the surroundings of the last few cells, up to 32 patches. Unless it polishes a mesh of positive
 /// cells alone (options.polish_only) that touches itself nowhere, each rank keeps copies of its part to go
 /// back to; where the mesh has invalid cells, or a boundary that lies on itself, rank 0 selects the winners
 /// of rounds, and where it has pinched vertices, those of rounds with a candidate that has two of them.
-/// Throws InvalidInput for what reason_against() names: another metric than volume-length for all cells, a
-/// surface that may change, published pipelines, devices, maps, other smoothers; and where the mesh lacks
-/// what options.surface names as fixed, by the numbers of the whole.
+/// Throws InvalidInput for what reason_against() names: another metric than volume-length for all cells,
+/// periodic patches, published pipelines, devices, maps, other smoothers; and where the mesh lacks what
+/// options.surface names as fixed, by the numbers of the whole.
 ///
 /// Ranks may have other time limits and callbacks: all stop where one of them is to, and hear of the same
 /// progress. A limit costs a reduction for each round. A rank whose callback throws has to call Comm::fail(),
