@@ -126,6 +126,18 @@ TEST(PartRemesher, MovesThatInvertAreRefusedOrMended) {
   EXPECT_LT(n_refused, 4);
 }
 
+/// A body that is sheared, whose surface gives way.
+TEST(PartRemesher, RepairsOfASurfaceThatMayChangeAreThoseOfSharedMemory) {
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    RemesherOptions options = towards(18, 16);
+    options.improve.surface.mode = mode;
+    const auto move = [](int step, Vec3 p) {
+      return Vec3{0.07 * p.z * p.z + 0.01 * step * p.y, 0, 0.02 * p.x};
+    };
+    EXPECT_GE(expect_same_steps(valid_box(6, 0.15, 4), options, 5, move), 2);
+  }
+}
+
 /// A wedge of the surface that nothing mends calls for one repair, and for another one once it is worse.
 TEST(PartRemesher, WhatARepairHadToLeaveCallsForNoOther) {
   TetMesh mesh = valid_box(5, 0.1, 4);

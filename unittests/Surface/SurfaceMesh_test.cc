@@ -7,10 +7,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 
 #include "HalfFace/Check.hh"
 #include "HalfFace/Errors.hh"
 #include "Operators/Clusters.hh"
+#include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
 
 namespace hfr::test {
@@ -347,6 +349,113 @@ TEST(SurfaceMesh, VertexInWhichTwoPlanesTouchStays) {
     options.mode = SurfaceMode::kFlat;
     const SurfaceMesh surface(mesh, options);
     EXPECT_EQ(surface.motion_constraint(V(one)).kind, touch ? SurfaceKind::kFixed : SurfaceKind::kFacet);
+  }
+}
+
+/// A part of a mesh as it calls the vertices of the whole: backwards, and numbers have gaps.
+class Backwards : public VertexNumbers {
+ public:
+  explicit Backwards(std::size_t n) : n_(n) {}
+  std::uint64_t number(VertexHandle v) const override { return 7 * (n_ - 1 - v.idx()) + 3; }
+  VertexHandle vertex_at(std::uint64_t number) const override { return here(V((number - 3) / 7)); }
+  VertexHandle here(VertexHandle v) const { return v.is_valid() ? V(n_ - 1 - v.idx()) : v; }
+
+ private:
+  std::size_t n_;
+};
+
+/// The surface alone, with numbers of its vertices.
+std::unique_ptr<SurfaceMesh> numbered(const TetMesh& mesh, const SurfaceOptions& options,
+                                      const Backwards& numbers) {
+  surface::Arrays arrays = surface::gather(mesh, options, {});
+  std::vector<VertexHandle> used;
+  for (const auto& f : arrays.faces) used.insert(used.end(), f.begin(), f.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Vec3> points;
+  std::vector<std::uint64_t> in_whole;
+  for (VertexHandle v : used) {
+    points.push_back(mesh.point(v));
+    in_whole.push_back(numbers.number(numbers.here(v)));
+  }
+  for (auto& f : arrays.faces)
+    for (VertexHandle& v : f) v = V(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+  arrays.points = points;
+  return std::make_unique<SurfaceMesh>(arrays, in_whole, options);
+}
+
+/// Of all edges, and of all vertices.
+void expect_same_answers(SurfaceMesh& plain, SurfaceMesh& seen, const TetMesh& mesh, const Backwards& part) {
+  std::size_t n_swaps = 0, n_targets = 0;
+  for (VertexHandle v : mesh.vertices()) {
+    const MotionConstraint &a = plain.motion_constraint(v), &b = seen.motion_constraint(part.here(v));
+    EXPECT_EQ(a.kind, b.kind);
+    EXPECT_EQ(a.axis, b.axis);
+    if (a.kind == SurfaceKind::kInside) continue;
+    EXPECT_EQ(plain.point(v), seen.point(part.here(v)));
+    const Vec3 moved = mesh.point(v) + Vec3{0.01, 0.02, 0.03};
+    EXPECT_EQ(plain.project(v, moved), seen.project(part.here(v), moved));
+    std::vector<VertexHandle> targets, others;
+    plain.collapse_targets(v, targets);
+    seen.collapse_targets(part.here(v), others);
+    std::ranges::transform(targets, targets.begin(), [&](VertexHandle u) { return part.here(u); });
+    EXPECT_EQ(targets, others);
+    n_targets += targets.size();
+    std::vector<std::array<VertexHandle, 3>> star, other_star;
+    plain.star(v, star);
+    seen.star(part.here(v), other_star);
+    ASSERT_EQ(star.size(), other_star.size());
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      std::vector<Triangle> removed(1), created(1);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(part.here(star[i][k]), other_star[i][k]);
+        removed[0][k] = mesh.point(star[i][k]);
+        created[0][k] = star[i][k] == v ? moved : removed[0][k];
+      }
+      const std::array<VertexHandle, 3>&f = star[i], &g = other_star[i];
+      EXPECT_EQ(plain.keeps_shape({&f, 1}, removed, created), seen.keeps_shape({&g, 1}, removed, created));
+      const VertexHandle w = star[i][0] == v ? star[i][1] : star[i][0];
+      const VertexHandle p = part.here(v), q = part.here(w);
+      n_swaps += plain.may_swap(v, w) ? 1 : 0;
+      EXPECT_EQ(plain.may_swap(v, w), seen.may_swap(p, q));
+      EXPECT_EQ(plain.may_split(v, w), seen.may_split(p, q));
+      EXPECT_EQ(plain.is_inner(v, w), seen.is_inner(p, q));
+      EXPECT_EQ(plain.is_feature(v, w), seen.is_feature(p, q));
+      const auto apexes = plain.across(v, w), other_apexes = seen.across(p, q);
+      for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(part.here(apexes[k]), other_apexes[k]);
+    }
+  }
+  EXPECT_GT(n_swaps, 20U);
+  EXPECT_GT(n_targets, 20U);
+}
+
+TEST(SurfaceMesh, APartSeesTheSurfaceOfTheWhole) {
+  const TetMesh mesh = jittered(4, 0.2, 3);
+  const Backwards part(mesh.n_vertices());
+  for (const SurfaceOptions& options : {flat(), free_within(0.05)}) {
+    SurfaceMesh plain(mesh, options);
+    const auto whole = numbered(mesh, options, part);
+    const auto seen = whole->seen_from(part);
+    expect_same_answers(plain, *seen, mesh, part);
+    EXPECT_EQ(plain.hausdorff(), seen->hausdorff());
+    const auto before = seen->copy();
+    std::array<VertexHandle, 2> edge;  // what is told to the whole shows in the part
+    for (VertexHandle v : mesh.vertices()) {
+      std::vector<std::array<VertexHandle, 3>> star;
+      plain.star(v, star);
+      for (const auto& f : star)
+        if (plain.may_swap(f[0], f[1])) edge = {f[0], f[1]};
+    }
+    ASSERT_TRUE(edge[0].is_valid());
+    const auto told = [&](VertexHandle v) { return whole->handle_of(part.number(part.here(v))); };
+    plain.on_swap(edge[0], edge[1]);
+    whole->on_swap(told(edge[0]), told(edge[1]));
+    EXPECT_EQ(whole->number_of(told(edge[0])), part.number(part.here(edge[0])));
+    expect_same_answers(plain, *seen, mesh, part);
+    EXPECT_EQ(plain.volume_gain(), seen->volume_gain());
+    EXPECT_FALSE(seen->may_swap(part.here(edge[0]), part.here(edge[1])));
+    seen->take_back(*before);  // and the other way round
+    EXPECT_TRUE(whole->may_swap(told(edge[0]), told(edge[1])));
   }
 }
 

@@ -277,15 +277,19 @@ std::string info_of(const std::function<void()>& act) {
 TEST(PetscAdaptor, AMeshStaysInPartsWhereItCan) {
   const bool alone = n_ranks(PETSC_COMM_WORLD) == 1;
   const Plex before = cube(PETSC_COMM_WORLD, tangled());
-  Plex a, b, c;
+  Plex a, b, c, d;
   EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, a); }),
               HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
   EXPECT_THAT(info_of([&] { adapt(before.get(), corner, b); }),
               HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
   ASSERT_EQ(PetscOptionsSetValue(nullptr, "-dm_hfremesh_surface", "flat"), 0);
   EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, c); }),
-              HasSubstr(alone ? "put together: one rank" : "put together: surfaces that may change"));
+              HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
   ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_surface"), 0);
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-dm_hfremesh_smoother", "laplacian"), 0);
+  EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, d); }),
+              HasSubstr(alone ? "put together: one rank" : "put together: other smoothers than newton"));
+  ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_smoother"), 0);
 }
 
 TEST(PetscAdaptor, CellsThatAreOrderedAgainstTheirNeighboursStayInParts) {
