@@ -129,12 +129,12 @@ TEST(PartRemesher, MovesThatInvertAreRefusedOrMended) {
 /// A body that is sheared, whose surface gives way.
 TEST(PartRemesher, RepairsOfASurfaceThatMayChangeAreThoseOfSharedMemory) {
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
-    RemesherOptions options = towards(18, 16);
+    RemesherOptions options = towards(20, 17);
     options.improve.surface.mode = mode;
     const auto move = [](int step, Vec3 p) {
-      return Vec3{0.07 * p.z * p.z + 0.01 * step * p.y, 0, 0.02 * p.x};
+      return Vec3{0.3 * p.z * p.z + 0.02 * step * p.y, 0, 0.05 * p.x};
     };
-    EXPECT_GE(expect_same_steps(valid_box(6, 0.15, 4), options, 5, move), 2);
+    EXPECT_GE(expect_same_steps(valid_box(5, 0.15, 4), options, 3, move), 2);
   }
 }
 
