@@ -252,6 +252,23 @@ TEST(PetscAdaptor, AnyNumberOfRanksGivesTheMeshOfOne) {
   }
 }
 
+/// One rank has the whole, several have parts.
+TEST(PetscAdaptor, ASurfaceThatChangesIsTheSameOnAnyNumberOfRanks) {
+  const Plex alone = cube(PETSC_COMM_SELF, tangled()), together = cube(PETSC_COMM_WORLD, tangled());
+  Plex frozen;
+  ASSERT_EQ(adapt(alone.get(), nothing, frozen), 0);
+  for (const char* const mode : {"flat", "free"}) {
+    ASSERT_EQ(PetscOptionsSetValue(nullptr, "-dm_hfremesh_surface", mode), 0);
+    Plex one, many;
+    ASSERT_EQ(adapt(alone.get(), nothing, one), 0);
+    ASSERT_EQ(adapt(together.get(), nothing, many), 0);
+    EXPECT_NE(fingerprint(one.get(), 3, "halves"), fingerprint(frozen.get(), 3, "halves")) << mode;
+    EXPECT_EQ(fingerprint(one.get(), 3, "halves"), fingerprint(many.get(), 3, "halves")) << mode;
+    EXPECT_EQ(fingerprint(one.get(), 2, "sides"), fingerprint(many.get(), 2, "sides")) << mode;
+    ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_surface"), 0);
+  }
+}
+
 /// What is said with -info, by rank 0.
 std::string info_of(const std::function<void()>& act) {
   const ScratchFolder folder;
