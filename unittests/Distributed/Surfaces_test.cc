@@ -13,8 +13,10 @@
 
 #include "Distributed/LabelOrder.hh"
 #include "Distributed/Labelled.hh"
+#include "Distributed/PartPatchSearch.hh"
 #include "Distributed/Remesher.hh"
 #include "HalfFace/Generate.hh"
+#include "Remesh/Patch.hh"
 #include "Remesh/Remesher.hh"
 
 namespace hfr::test {
@@ -173,6 +175,80 @@ TEST_F(SurfacesInParts, PinchedVerticesHaveTheBytesOfSharedMemory) {
   for (Vec3& p : arrays.points) p = p + Vec3{by(engine), by(engine), by(engine)};
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
     run(build(arrays.points, arrays.cells), on_surface(mode, 25));
+}
+
+/// An edge of the patch between two labelled faces of its boundary: faces of the whole's boundary, where all
+/// of these have labels and no others.
+EdgeHandle labelled_edge(const TetMesh& patch) {
+  for (CellHandle c : patch.cells())
+    for (Index e = 0; e < 6; ++e) {
+      const auto ends = patch.edge_vertices(EdgeHandle(6 * c.idx() + e));
+      int n = 0, n_labelled = 0;
+      for (CellHandle d : patch.cells())
+        for (HalfFaceHandle h : patch.cell_halffaces(d)) {
+          const auto f = patch.halfface_vertices(h);
+          const bool has_both =
+              std::count(f.begin(), f.end(), ends[0]) + std::count(f.begin(), f.end(), ends[1]) == 2;
+          if (!patch.is_boundary(h) || !has_both) continue;
+          ++n;
+          n_labelled += patch.labels().faces.find(f) ? 1 : 0;
+        }
+      if (n == 2 && n_labelled == 2) return EdgeHandle(6 * c.idx() + e);
+    }
+  return {};
+}
+
+/// A patch that cuts labelled faces of the surface: the list of labels has the order of shared memory.
+TEST(PartPatchSearch, LabelsOfASurfaceThatChangesComeHome) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  TetMesh mesh = valid_box(6, 0.2, 5);
+  std::vector<std::uint64_t> at_surface;
+  int label = 0;
+  for (HalfFaceHandle h : mesh.boundary_halffaces()) {
+    mesh.labels().faces.set(mesh.halfface_vertices(h), 1 + label++ % 3);
+    at_surface.push_back(cell_of(h).idx());
+  }
+  Whole whole(mesh, MinSine2{});
+  Whole cut = whole;
+  const auto owner =
+      mpi::partition(comm, comm.rank() == 0 ? &cut.mesh : nullptr, mpi::Partition::kCoordinates);
+  mpi::DistributedMesh parts(comm);
+  parts.scatter(&cut.mesh, &cut.work, owner);
+  parts.follow_face_labels();
+  const std::vector<std::uint64_t> centres = {at_surface.front(), at_surface[at_surface.size() / 2]};
+  const auto split = [](const Patch& patch) {
+    TetMesh changed = patch.mesh();
+    const EdgeHandle e = labelled_edge(changed);
+    EXPECT_TRUE(e.is_valid());
+    changed.split_edge(e);
+    return changed;
+  };
+  mpi::search_patches_in_parts(parts, centres, 1, nullptr, [&](PatchPlace& place) {
+    for (CellHandle c : place.worst()) {
+      const Patch patch(place.mesh(), c, 1);
+      place.put_back(patch, split(patch));
+    }
+    return PatchesDone{2, 2, 2, true, false, false};
+  });
+  for (std::uint64_t c : centres) {
+    const Patch patch(whole.mesh, C(c), 1);
+    patch.put_back(whole.mesh, split(patch));
+  }
+  parts.leave_face_labels();
+  const auto expected = whole.mesh.labels().faces.entries();
+  const auto mine = parts.part().labels().faces.entries();
+  EXPECT_EQ(expected.size(), at_surface.size() + 4);
+  std::uint64_t n_own = 0;
+  for (std::size_t i = 0; i < mine.size(); ++i) {
+    std::array<VertexHandle, 3> v;
+    std::ranges::transform(mine[i].vertices, v.begin(), [&](VertexHandle u) { return V(parts.number(u)); });
+    const std::uint64_t number = parts.label_numbers().face_number(i);
+    ASSERT_LT(number, expected.size());
+    EXPECT_EQ(expected[number].vertices, v);
+    EXPECT_EQ(expected[number].value, mine[i].value);
+    n_own += parts.is_own(*std::ranges::min_element(mine[i].vertices)) ? 1 : 0;
+  }
+  EXPECT_EQ(comm.sum(n_own), expected.size()) << "a label is lost, or two ranks have it for theirs";
 }
 
 /// As TupleMap has it.
