@@ -60,6 +60,9 @@ struct PartsLine {
   bool prints() const { return !quiet && json != "-"; }
   bool goes_over_all() const { return all_stages || passes_only || coarsen || min_dihedral == "max"; }
   bool improves() const { return !min_dihedral.empty() || goes_over_all(); }
+  bool has_idle_surface_options() const {
+    return !surface.is_free() && (surface.hausdorff >= 0 || surface.feature_angle);
+  }
   /// Options of a run, where there is none.
   bool has_idle_options() const {
     return !improves() &&
@@ -265,6 +268,11 @@ class PartsRun {
     if (line_.has_idle_options()) {
       constexpr const char* kIdle =
           "nothing is improved: give --min-dihedral, --all-stages, --passes-only or --coarsen";
+      say("{}", kIdle);
+      report_["notes"].push_back(kIdle);
+    }
+    if (line_.has_idle_surface_options()) {
+      constexpr const char* kIdle = "--hausdorff and --feature-angle count only with --surface free";
       say("{}", kIdle);
       report_["notes"].push_back(kIdle);
     }

@@ -33,7 +33,8 @@ struct LabelRecord {
 };
 
 /// Labels and locks in a mesh that is a part of one, and what numbers they have in the whole. What hangs on
-/// edges and faces stays where cells go that have them: it is true of the whole all the same.
+/// edges and faces stays where cells go that have them: it is true of the whole all the same, until a surface
+/// that changes takes it away.
 class PartLabels {
  public:
   /// Into the mesh. `vertex_at`: number → vertex; those of a record are there, with a cell that has them.

@@ -74,7 +74,7 @@ class SurfaceMesh {
   SurfaceMesh& operator=(const SurfaceMesh&) = delete;
 
   /// The same surface as a part of the mesh sees it, whose vertices `numbers` tells: what it is asked is said
-  /// in handles of the part. What happens to it is told to this one, and shows in both. Neither may outlive
+  /// in handles of the part. What happens to it is told to this one, and shows in both. It must not outlive
   /// `numbers`.
   std::unique_ptr<SurfaceMesh> seen_from(const VertexNumbers& numbers) const;
   /// Of a mesh in parts: the handle by which the surface knows that vertex; invalid where it has none.
