@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Labels and locks of a mesh in parts: from where they are known to all ranks that hold a cell of theirs.
-// From then on they go with the cells. No pass removes what they hang on, so none of them ever changes, but for
-// the faces of a surface that may: of those all ranks are told.
+// From then on they go with the cells. No pass removes what they hang on, so none of them ever changes, but
+// for the faces of a surface that may: of those all ranks are told.
 #include <algorithm>
 #include <array>
 #include <string>
