@@ -170,8 +170,7 @@ void add_surface_mode_options(Command command, SurfaceLine& line) {
 }
 
 void set_surface(const SurfaceLine& line, const std::vector<std::string>& periodic, SurfaceOptions& options) {
-  if (line.mode == "flat") options.mode = SurfaceMode::kFlat;
-  if (line.mode == "free") options.mode = SurfaceMode::kFree;
+  options.mode = line.surface_mode();
   if (line.hausdorff >= 0) options.hausdorff = line.hausdorff;
   if (line.feature_angle) options.feature_angle = *line.feature_angle;
   add_locks(options, line.fix, periodic);
@@ -278,22 +277,32 @@ Json options_json(const ImproveLine& line, const ImproveOptions& options) {
   return json;
 }
 
-std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_tetrahedra) {
+std::vector<std::string> notes_on_idle_surface_options(const SurfaceLine& line, bool has_distance,
+                                                       const char* where, bool is_frozen) {
   std::vector<std::string> notes;
+  const auto idle = [&](bool given, const char* option, const char* without) {
+    if (given) notes.push_back(fmt::format("{} counts only with {}", option, without));
+  };
+  idle(!has_distance && line.hausdorff >= 0, "--hausdorff", where);
+  idle(!has_distance && line.feature_angle, "--feature-angle", where);
+  const auto is_patch = [](const std::string& what) { return what.starts_with("patch:"); };
+  idle(is_frozen && std::ranges::any_of(line.fix, is_patch), "--fix patch", "--surface flat or free");
+  return notes;
+}
+
+std::vector<std::string> notes_on_idle_options(const ImproveLine& line, bool on_tetrahedra) {
+  const SurfaceMode mode =
+      line.surface.surface_mode(on_tetrahedra ? SurfaceMode::kFrozen : SurfaceMode::kFree);
+  const bool frozen = on_tetrahedra && mode == SurfaceMode::kFrozen;
+  std::vector<std::string> notes =
+      notes_on_idle_surface_options(line.surface, mode == SurfaceMode::kFree || line.label_features,
+                                    "--surface free or --label-features", frozen);
   const auto idle = [&](bool given, const char* option, const char* without) {
     if (given) notes.push_back(fmt::format("{} counts only with {}", option, without));
   };
   const auto left_out = [&](bool given, const char* option, const char* by) {
     if (given) notes.push_back(fmt::format("{} does nothing with {}", option, by));
   };
-  const bool frozen = on_tetrahedra && (line.surface.mode.empty() || line.surface.mode == "frozen");
-  const bool free = line.surface.is_free() || (line.surface.mode.empty() && !on_tetrahedra);
-  idle(!free && !line.label_features && line.surface.hausdorff >= 0, "--hausdorff",
-       "--surface free or --label-features");
-  idle(!free && !line.label_features && line.surface.feature_angle, "--feature-angle",
-       "--surface free or --label-features");
-  const auto is_patch = [](const std::string& what) { return what.starts_with("patch:"); };
-  idle(frozen && std::ranges::any_of(line.surface.fix, is_patch), "--fix patch", "--surface flat or free");
   idle(frozen && !line.periodic.empty(), "--periodic", "--surface flat or free");
   const int usual_width = PresentationFiles{}.png_width;
   idle(line.presentation.png.empty() && line.presentation.png_width != usual_width, "--png-width", "--png");

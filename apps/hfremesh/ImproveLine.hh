@@ -22,7 +22,11 @@ struct SurfaceLine {
   std::optional<double> feature_angle;
   std::vector<std::string> fix;
 
-  bool is_free() const { return mode == "free"; }
+  /// `unless_given`: without one.
+  SurfaceMode surface_mode(SurfaceMode unless_given = SurfaceMode::kFrozen) const {
+    if (mode.empty()) return unless_given;
+    return mode == "free" ? SurfaceMode::kFree : mode == "flat" ? SurfaceMode::kFlat : SurfaceMode::kFrozen;
+  }
 };
 
 /// What of a command line counts for `improve`, as it was given; names are looked up before the input is
@@ -62,6 +66,10 @@ void add_fix_option(Command command, std::vector<std::string>& fix);
 void set_surface(const SurfaceLine& line, const std::vector<std::string>& periodic, SurfaceOptions& options);
 /// `line` and `common` must outlive the parser's run.
 void add_improve_options(Command command, ImproveLine& line, CommonOptions& common);
+/// Of these the ones that count for nothing. `has_distance`: whether --hausdorff and --feature-angle do,
+/// which they do with `where`; `is_frozen`: whether the surface is.
+std::vector<std::string> notes_on_idle_surface_options(const SurfaceLine& line, bool has_distance,
+                                                       const char* where, bool is_frozen);
 /// What the library is asked for. Throws for a name that there is not.
 ImproveOptions improve_options(const ImproveLine& line, const CommonOptions& common);
 /// The same for the report.

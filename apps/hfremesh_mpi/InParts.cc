@@ -60,9 +60,6 @@ struct PartsLine {
   bool prints() const { return !quiet && json != "-"; }
   bool goes_over_all() const { return all_stages || passes_only || coarsen || min_dihedral == "max"; }
   bool improves() const { return !min_dihedral.empty() || goes_over_all(); }
-  bool has_idle_surface_options() const {
-    return !surface.is_free() && (surface.hausdorff >= 0 || surface.feature_angle);
-  }
   /// Options of a run, where there is none.
   bool has_idle_options() const {
     return !improves() &&
@@ -271,10 +268,11 @@ class PartsRun {
       say("{}", kIdle);
       report_["notes"].push_back(kIdle);
     }
-    if (line_.has_idle_surface_options()) {
-      constexpr const char* kIdle = "--hausdorff and --feature-angle count only with --surface free";
-      say("{}", kIdle);
-      report_["notes"].push_back(kIdle);
+    const SurfaceMode mode = line_.surface.surface_mode();
+    for (const std::string& note : notes_on_idle_surface_options(
+             line_.surface, mode == SurfaceMode::kFree, "--surface free", mode == SurfaceMode::kFrozen)) {
+      say("{}", note);
+      report_["notes"].push_back(note);
     }
     if (line_.improves()) {
       const mpi::PartsResult result = improve();

@@ -172,7 +172,6 @@ void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::
   }
 }
 
-/// Of those that it was built with.
 VertexHandle Cutout::vertex_at(std::uint64_t number) const {
   const Index at = vertex_index_[number];
   return at == NumberIndex::kNone ? VertexHandle() : VertexHandle(at);

@@ -58,9 +58,7 @@ class Residents : public Ranks, public MeshInParts {
   /// For as long as this lives.
   void add_surface(PartSurface& surface) { surfaces_[surface.get()] = &surface; }
   std::optional<RoundCounts> surface_pass(SurfaceMesh& surface, const SurfaceLook& look) override {
-    Look listed = look.look;
-    listed.is_marked = false;  // the surface is looked at wherever it has changed
-    const auto counts = surfaces_.at(&surface)->pass(look, passes_.listed(listed));
+    const auto counts = surfaces_.at(&surface)->pass(look, [&] { return passes_.listed(look.look); });
     if (counts) n_rounds_ += counts->rounds;
     return counts;
   }
@@ -277,6 +275,8 @@ std::string reason_against(const ImproveOptions& options) {
   if (!options.polish_only && options.metric != Metric::kVolumeLength)
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;
+  if (surface.mode != SurfaceMode::kFrozen && !PartSurface::is_there())
+    return "surfaces that may change where they are built without OpenMesh";
   if (!surface.periodic.empty()) return "periodic patches";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";

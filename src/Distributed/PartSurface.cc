@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "Distributed/Cutout.hh"
 #include "Distributed/PartSurfaceImpl.hh"
@@ -31,31 +32,13 @@ struct PointRecord {
 template <class T, class Order>
 void sort_and_unite(std::vector<T>& items, Order&& order) {
   std::ranges::sort(items, {}, order);
-  const auto rest = std::ranges::unique(items, {}, order);
-  items.erase(rest.begin(), rest.end());
+  const auto is_alike = [&](const T& a, const T& b) { return order(a) == order(b); };
+  items.erase(std::unique(items.begin(), items.end(), is_alike), items.end());
 }
 
-/// The surface of the whole: its vertices alone, in the order of their numbers.
-struct WholeSurface {
-  std::vector<std::uint64_t> numbers;
-  std::vector<Vec3> points;
-  surface::Arrays arrays;  // of these points
+}  // namespace
 
-  VertexHandle handle(std::uint64_t number) const {
-    const auto at = std::ranges::lower_bound(numbers, number);
-    return at == numbers.end() || *at != number
-               ? VertexHandle()
-               : VertexHandle(static_cast<std::size_t>(at - numbers.begin()));
-  }
-  std::vector<Triangle> triangles(bool of_boundary) const {
-    std::vector<Triangle> all;
-    for (std::size_t i = 0; i < arrays.faces.size(); ++i)
-      if (!of_boundary || arrays.interface[i] == 0) all.push_back(surface::corners(points, arrays.faces[i]));
-    return all;
-  }
-};
-
-/// Faces of the boundary first, of each rank's own cells; then points, then what is locked.
+/// Faces first, of each rank's own cells; then points, then what is locked.
 WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options) {
   const TetMesh& part = parts.part();
   Comm& comm = parts.comm();
@@ -125,14 +108,16 @@ WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options) {
   return whole;
 }
 
-}  // namespace
+bool PartSurface::is_there() { return true; }
 
 PartSurface::PartSurface(DistributedMesh& parts, const SurfaceOptions& options, par::Policy policy)
+    : PartSurface(parts, gather(parts, options), options, policy) {}
+
+PartSurface::PartSurface(DistributedMesh& parts, const WholeSurface& now, const SurfaceOptions& options,
+                         par::Policy policy)
     : impl_(new Impl(parts)) {
-  HFR_REQUIRE(options.periodic.empty(), "meshes in parts do not have periodic patches yet");
   impl_->policy = policy;
   impl_->options = options;
-  const WholeSurface now = gather(parts, options);
   impl_->whole = std::make_unique<SurfaceMesh>(now.arrays, now.numbers, options);
   impl_->seen.emplace(*impl_->whole, parts);
 }
@@ -165,8 +150,8 @@ std::shared_ptr<const SurfaceMesh> PartSurface::seen_from(const Cutout& cutout) 
 
 std::vector<FeatureCeiling> PartSurface::ceilings(DistributedMesh& parts, std::span<const CellHandle> cells,
                                                   const SurfaceOptions& options) {
-  const WholeSurface now = gather(parts, options);
-  return feature_ceilings(parts.part(), cells, options, now.arrays,
+  WholeSurface now = gather(parts, options);
+  return feature_ceilings(parts.part(), cells, options, std::move(now.arrays),
                           [&](VertexHandle v) { return now.handle(parts.number(v)); });
 }
 
@@ -174,7 +159,7 @@ struct PartSurfaceRun::Impl {
   DistributedMesh& parts;
   par::Policy policy;
   SurfaceOptions options;
-  std::optional<PartSurface> surface;
+  std::unique_ptr<PartSurface> surface;
   std::vector<Triangle> before;  // where it is to be measured
   double volume = 0;             // enclosed before
   double bound = 0;              // largest distance allowed
@@ -185,7 +170,7 @@ PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& opt
                                bool unfold, par::Policy policy, std::vector<PassReport>& passes,
                                const std::function<bool()>& stopped)
     : impl_(new Impl{parts, policy, options, {}, {}, 0, 0, 0}) {
-  const WholeSurface now = gather(parts, options);
+  WholeSurface now = gather(parts, options);
   if (measure) {
     impl_->before = now.triangles(/*of_boundary=*/false);
     impl_->volume = enclosed_volume(now.triangles(/*of_boundary=*/true));
@@ -203,8 +188,9 @@ PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& opt
     // What is left of the distance; the surface is taken as it is now.
     if (done.n_moved > 0 && wanted.mode == SurfaceMode::kFree)
       wanted.hausdorff = impl_->bound - done.distance;
+    if (done.n_moved > 0) now = gather(parts, wanted);
   }
-  impl_->surface.emplace(parts, wanted, policy);
+  impl_->surface.reset(new PartSurface(parts, now, wanted, policy));
 }
 
 PartSurfaceRun::~PartSurfaceRun() = default;

@@ -22,14 +22,17 @@ class SurfaceMesh;
 namespace hfr::mpi {
 
 class Cutout;
+struct WholeSurface;
 
 /// The surface of a mesh in parts where it may change. Each rank holds all of it, which takes memory in
 /// proportion to the faces of the whole's boundary and interfaces, and is told of all changes, in the order
 /// in which the one of a mesh in shared memory hears of them. So what it answers is the same everywhere.
 class PartSurface {
  public:
-  /// Takes the surface as it is now as the shape to keep; labels of faces are followed. Throws InvalidInput
-  /// for a build without OpenMesh, and for periodic patches, which are not there yet. All take part.
+  /// Whether this build has it, which takes OpenMesh; else the constructor throws.
+  static bool is_there();
+  /// Takes the surface as it is now as the shape to keep; labels of faces have to be followed
+  /// (DistributedMesh::follow_face_labels()). Without periodic patches. All take part.
   PartSurface(DistributedMesh& parts, const SurfaceOptions& options, par::Policy policy);
   ~PartSurface();
   PartSurface(const PartSurface&) = delete;
@@ -37,8 +40,8 @@ class PartSurface {
 
   /// As the part sees it.
   SurfaceMesh* get() const;
-  /// `list`: cells of the part that the look is at. All take part.
-  std::optional<RoundCounts> pass(const Ranks::SurfaceLook& look, const Worklist& list);
+  /// `listed`: finds the cells of the part that the look is at, where the pass has no others. All take part.
+  std::optional<RoundCounts> pass(const Ranks::SurfaceLook& look, const std::function<Worklist()>& listed);
   /// After cells have been replaced that nobody told of: see SurfaceMesh::rebuild(). All take part.
   void rebuild();
   /// As a cutout sees it, for as long as the cutout lives.
@@ -51,6 +54,11 @@ class PartSurface {
   struct Impl;
   template <class Metric>
   class Passes;
+  friend class PartSurfaceRun;
+  /// `now`: what there is.
+  PartSurface(DistributedMesh& parts, const WholeSurface& now, const SurfaceOptions& options,
+              par::Policy policy);
+
   std::unique_ptr<Impl> impl_;
 };
 

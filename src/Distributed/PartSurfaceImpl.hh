@@ -3,15 +3,44 @@
 #ifndef HFR_DISTRIBUTED_PART_SURFACE_IMPL_HH
 #define HFR_DISTRIBUTED_PART_SURFACE_IMPL_HH
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "Distributed/PartSurface.hh"
+#include "Surface/Features.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::mpi {
+
+/// The surface of the whole: its vertices alone, in the order of their numbers.
+struct WholeSurface {
+  WholeSurface() = default;
+  WholeSurface(WholeSurface&&) = default;  // and no copy, whose arrays would be of other points
+  WholeSurface& operator=(WholeSurface&&) = default;
+
+  std::vector<std::uint64_t> numbers;
+  std::vector<Vec3> points;
+  surface::Arrays arrays;  // of these points
+
+  VertexHandle handle(std::uint64_t number) const {
+    const auto at = std::ranges::lower_bound(numbers, number);
+    return at == numbers.end() || *at != number
+               ? VertexHandle()
+               : VertexHandle(static_cast<std::size_t>(at - numbers.begin()));
+  }
+  std::vector<Triangle> triangles(bool of_boundary) const {
+    std::vector<Triangle> all;
+    for (std::size_t i = 0; i < arrays.faces.size(); ++i)
+      if (!of_boundary || arrays.interface[i] == 0) all.push_back(surface::corners(points, arrays.faces[i]));
+    return all;
+  }
+};
+
+/// All take part.
+WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options);
 
 /// Of the vertices of a part or of a cutout.
 template <class Mesh>

@@ -16,6 +16,7 @@
 #include "Distributed/PartRound.hh"
 #include "Distributed/PartSmoothing.hh"
 #include "Distributed/PartSurfaceImpl.hh"
+#include "Remesh/SurfaceSeeds.hh"
 #include "Surface/InterfaceSwap.hh"
 #include "Surface/SurfaceCollapse.hh"
 #include "Surface/SurfaceSmooth.hh"
@@ -92,7 +93,7 @@ class PartSurface::Passes {
     std::vector<std::uint64_t> cells;
     for (const SeedPlace& p : places) cells.push_back(p.cell);
     std::ranges::sort(cells);
-    cells.erase(std::ranges::unique(cells).begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     return cells;
   }
   std::vector<Changed> in_order(const std::vector<Changed>& mine) {
@@ -103,7 +104,10 @@ class PartSurface::Passes {
   std::uint64_t sum(std::size_t mine) { return comm_.sum(static_cast<std::uint64_t>(mine)); }
   template <class Allow>
   std::vector<EdgeHandle> edges(bool inside, Allow&& allow) const;
-  std::vector<VertexHandle> free_vertices() const;
+  /// Of all listed cells of the part.
+  std::vector<VertexHandle> free_vertices() const {
+    return free_surface_vertices(mesh_, surface_, work_, list_);
+  }
   template <class Search>
   RoundCounts smooth(const Search& search, std::span<const VertexHandle> vertices);
   /// The round's winners of all ranks, in rank order. `ends(plan)`: the two vertices that matter.
@@ -122,46 +126,12 @@ class PartSurface::Passes {
   const Metric& metric_;
 };
 
-/// As SurfacePasses has them: each edge from the smallest listed cell, which is an own one.
 template <class Metric>
 template <class Allow>
 std::vector<EdgeHandle> PartSurface::Passes<Metric>::edges(bool inside, Allow&& allow) const {
-  std::vector<EdgeHandle> seeds;
-  for (Index i : list_.cells()) {
-    const CellHandle c(i);
-    if (!parts_.is_own(c)) continue;
-    const auto& v = mesh_.cell(c).v;
-    for (Index e = 0; e < 6; ++e) {
-      const VertexHandle a = v[kEdgeCorners[e][0]];
-      const VertexHandle b = v[kEdgeCorners[e][1]];
-      if (!work_.frozen[a.idx()] || !work_.frozen[b.idx()]) continue;
-      bool smallest = true;
-      const auto look = [&](CellHandle other, VertexHandle, VertexHandle) {
-        smallest = smallest && (!list_.has(other) || !parts_.is_before(other, c));
-        return smallest;
-      };
-      const bool closed = mesh_.walk_ring(c, static_cast<int>(e), look);
-      if (!smallest || closed != inside) continue;
-      if (!closed) mesh_.walk_ring_back(c, static_cast<int>(e), look);
-      if (smallest && allow(a, b)) seeds.push_back(EdgeHandle(6 * i + e));
-    }
-  }
-  return seeds;
-}
-
-/// Of all listed cells of the part, ascending.
-template <class Metric>
-std::vector<VertexHandle> PartSurface::Passes<Metric>::free_vertices() const {
-  std::vector<VertexHandle> vertices;
-  std::vector<std::uint8_t> seen(mesh_.n_vertices(), 0);
-  for (Index c : list_.cells())
-    for (VertexHandle v : mesh_.cell(CellHandle(c)).v) {
-      if (!work_.frozen[v.idx()] || std::exchange(seen[v.idx()], 1) != 0) continue;
-      const SurfaceKind kind = surface_.motion_constraint(v).kind;
-      if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
-    }
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
+  return surface_edges(
+      mesh_, work_, list_, inside, allow, [&](CellHandle c) { return parts_.is_own(c); },
+      [&](CellHandle x, CellHandle y) { return parts_.is_before(x, y); });
 }
 
 template <class Metric>
@@ -207,8 +177,10 @@ RoundCounts PartSurface::Passes<Metric>::collapses() {
   std::erase_if(all, [&](VertexHandle v) { return !parts_.is_own(v); });
   std::vector<VertexHandle> gaining, targets;
   const Op asked{metric_, work_.quality, &surface_, {}};
-  std::copy_if(all.begin(), all.end(), std::back_inserter(gaining),
-               [&](VertexHandle v) { return asked.may_gain(mesh_, v); });
+  for (std::size_t i :
+       par::compact<std::size_t>(policy().for_items_of(kMayGainNanoseconds), all.size(),
+                                 [&](std::size_t k) { return asked.may_gain(mesh_, all[k]); }))
+    gaining.push_back(all[i]);
   const auto keep_with_target = [&](std::vector<VertexHandle>& vertices) {
     drop_pinched(mesh_, work_, vertices);
     std::erase_if(vertices, [&](VertexHandle v) {
@@ -232,7 +204,7 @@ RoundCounts PartSurface::Passes<Metric>::collapses() {
     return !c.is_valid() || mesh_.is_deleted(c) || !parts_.is_own(c);
   });
   std::vector<typename Op::Seed> seeds;
-  std::optional<SurfaceOf<Cutout>> seen;
+  std::optional<SurfaceOf<Cutout>> seen;  // by the cutout, for as long as that lives
   std::vector<Changed> changed;
   const RoundCounts counts = round_on_cutout(
       parts_, of_round(), cells, kCollapseDepth,
@@ -255,6 +227,7 @@ RoundCounts PartSurface::Passes<Metric>::collapses() {
               {order[changed.size()], {cutout.number(plan.seed.vertex), cutout.number(plan.onto)}, {}});
         });
       });
+  seen.reset();
   SurfaceMesh& whole = *impl_.whole;
   for (const Changed& one : in_order(changed))
     whole.on_collapse(whole.handle_of(one.v[0]), whole.handle_of(one.v[1]));
@@ -303,7 +276,7 @@ RoundCounts PartSurface::Passes<Metric>::splits() {
     places.push_back({parts_.number(CellHandle(e.idx() / 6)), e.idx() % 6});
   const std::vector<std::uint64_t> cells = cells_of(comm_.all_gather(std::span<const SeedPlace>(places)));
   if (cells.empty()) return {};
-  std::optional<SurfaceOf<Cutout>> seen;
+  std::optional<SurfaceOf<Cutout>> seen;               // by the cutout, for as long as that lives
   std::map<Index, std::array<std::uint64_t, 2>> ends;  // asked for before the cells that name them are gone
   std::vector<Changed> changed;
   const RoundCounts counts = round_on_cutout(
@@ -331,6 +304,7 @@ RoundCounts PartSurface::Passes<Metric>::splits() {
           changed.push_back({order[changed.size()], {v[0], v[1], cutout.number(middle)}, plan.place});
         });
       });
+  seen.reset();
   SurfaceMesh& whole = *impl_.whole;
   for (const Changed& one : in_order(changed))
     whole.on_split(whole.handle_of(one.v[0]), whole.handle_of(one.v[1]), whole.announce(one.v[2]), one.place);
@@ -338,7 +312,8 @@ RoundCounts PartSurface::Passes<Metric>::splits() {
   return counts;
 }
 
-std::optional<RoundCounts> PartSurface::pass(const Ranks::SurfaceLook& look, const Worklist& list) {
+std::optional<RoundCounts> PartSurface::pass(const Ranks::SurfaceLook& look,
+                                             const std::function<Worklist()>& listed) {
   DistributedMesh& parts = impl_->parts;
   const TetMesh& part = parts.part();
   const auto use = [&](const Worklist& cells) {
@@ -372,6 +347,7 @@ std::optional<RoundCounts> PartSurface::pass(const Ranks::SurfaceLook& look, con
     default:
       break;
   }
+  const Worklist list = listed();
   if (look.pass == SurfacePass::kSwap) {
     impl_->looked_at.clear();
     if (impl_->whole->has_interfaces())

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands in for PartSurface in a build without OpenMesh, where every surface is frozen.
+// What stands in for PartSurface in a build without OpenMesh: reason_against() names surfaces that may
+// change, so nobody comes here.
 #include "Distributed/PartSurface.hh"
 #include "HalfFace/Errors.hh"
 
@@ -7,20 +8,16 @@ namespace hfr::mpi {
 
 namespace {
 
-[[noreturn]] void refuse() {
-  throw InvalidInput(
-      "this hfremesh was built without OpenMesh and can only leave the surface as it is: use --surface "
-      "frozen, "
-      "or build with -DHFR_SURFACE=ON");
-}
+[[noreturn]] void refuse() { throw InternalError("a surface that may change in a build without OpenMesh"); }
 
 }  // namespace
 
 struct PartSurface::Impl {};
+bool PartSurface::is_there() { return false; }
 PartSurface::PartSurface(DistributedMesh&, const SurfaceOptions&, par::Policy) { refuse(); }
 PartSurface::~PartSurface() = default;
 SurfaceMesh* PartSurface::get() const { return nullptr; }
-std::optional<RoundCounts> PartSurface::pass(const Ranks::SurfaceLook&, const Worklist&) {
+std::optional<RoundCounts> PartSurface::pass(const Ranks::SurfaceLook&, const std::function<Worklist()>&) {
   return std::nullopt;
 }
 void PartSurface::rebuild() {}

@@ -87,8 +87,8 @@ class Ranks {
     double gain = 1;  ///< this and the others: of ClusterSearch
     std::uint64_t max_points = 0, max_nodes = 0;
   };
-  /// One pass over the surface of the run; the look's kind, its number of cells that may go and whether links
-  /// are checked have no meaning.
+  /// One pass over the surface of the run; of the look its kind, how many cells may go, whether links are
+  /// checked and whether cells are marked have no meaning.
   struct SurfaceLook {
     SurfacePass pass{};
     Look look;

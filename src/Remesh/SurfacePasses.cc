@@ -12,6 +12,7 @@
 #include "Operators/Metrics.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/PassState.hh"
+#include "Remesh/SurfaceSeeds.hh"
 #include "Scheduler/Round.hh"
 #include "Scheduler/SmoothPass.hh"
 #include "Surface/InterfaceSwap.hh"
@@ -24,26 +25,6 @@
 
 namespace hfr {
 namespace {
-
-/// About how long SurfaceCollapse::may_gain() takes.
-constexpr double kMayGainNanoseconds = 1'000;
-
-/// Vertices of the surface in the listed cells that are of one of two kinds, ascending.
-std::vector<VertexHandle> free_vertices(const TetMesh& mesh, const SurfaceMesh& surface,
-                                        const Workspace& work, const Worklist& list) {
-  std::vector<VertexHandle> vertices;
-  std::vector<std::uint8_t> seen(mesh.n_vertices(), 0);
-  for (Index c : list.cells()) {
-    for (VertexHandle v : mesh.cell(CellHandle(c)).v) {
-      if (!work.frozen[v.idx()] || seen[v.idx()]) continue;  // the surface is frozen for what works inside
-      seen[v.idx()] = 1;
-      const SurfaceKind kind = surface.motion_constraint(v).kind;
-      if (kind == SurfaceKind::kFacet || kind == SurfaceKind::kCurve) vertices.push_back(v);
-    }
-  }
-  std::sort(vertices.begin(), vertices.end());
-  return vertices;
-}
 
 /// Takes the vertices that periodic patches bind out of the list; returns the first vertex of each orbit.
 std::vector<VertexHandle> take_bound(const SurfaceMesh& surface, std::vector<VertexHandle>& vertices) {
@@ -64,25 +45,7 @@ template <class Metric>
 template <class Allow>
 std::vector<EdgeHandle> SurfacePasses<Metric>::edges(const Worklist& list, bool inside, Allow&& allow) const {
   const Run& run = state_.run();
-  std::vector<EdgeHandle> seeds;
-  for (Index c : list.cells()) {
-    const auto& v = run.mesh.cell(CellHandle(c)).v;
-    for (Index e = 0; e < 6; ++e) {
-      const VertexHandle a = v[kEdgeCorners[e][0]];
-      const VertexHandle b = v[kEdgeCorners[e][1]];
-      if (!run.work.frozen[a.idx()] || !run.work.frozen[b.idx()]) continue;  // not of the surface
-      bool smallest = true;  // of the listed cells round the edge
-      const auto look = [&](CellHandle other, VertexHandle, VertexHandle) {
-        smallest = smallest && (!list.has(other) || other.idx() >= c);
-        return smallest;
-      };
-      const bool closed = run.mesh.walk_ring(CellHandle(c), static_cast<int>(e), look);
-      if (!smallest || closed != inside) continue;
-      if (!closed) run.mesh.walk_ring_back(CellHandle(c), static_cast<int>(e), look);
-      if (smallest && allow(a, b)) seeds.push_back(EdgeHandle(6 * c + e));
-    }
-  }
-  return seeds;
+  return surface_edges(run.mesh, run.work, list, inside, allow, [](CellHandle) { return true; });
 }
 
 template <class Metric>
@@ -101,7 +64,6 @@ Ranks::SurfaceLook SurfacePasses<Metric>::look_of(SurfacePass pass, const Turn& 
   look.look.seed = effort.seed;
   look.look.may_gain = run.bounds.may_gain(run.n_cells());
   look.look.threads = run.policy().threads;
-  look.look.is_marked = turn.focus.is_marked;
   look.gain_of_many = effort.move_gain;
   look.many = effort.many_moves;
   look.many_share = effort.many_moves_share;
@@ -224,7 +186,7 @@ std::size_t SurfacePasses<Metric>::collapses(const Turn& turn, const Worklist& l
   const Run& run = state_.run();
   SurfaceMesh& surface = *run.surface;
   const double start = run.control.seconds();
-  const std::vector<VertexHandle> all = free_vertices(run.mesh, surface, run.work, list);
+  const std::vector<VertexHandle> all = free_surface_vertices(run.mesh, surface, run.work, list);
   std::vector<VertexHandle> targets;
   const Op op{metric_, run.work.quality, &surface, {}};
   std::vector<VertexHandle> vertices;
@@ -264,7 +226,7 @@ std::size_t SurfacePasses<Metric>::moves(const Turn& turn, const Worklist& list)
   const Run& run = state_.run();
   SurfaceMesh& surface = *run.surface;
   const double start = run.control.seconds();
-  std::vector<VertexHandle> vertices = free_vertices(run.mesh, surface, run.work, list);
+  std::vector<VertexHandle> vertices = free_surface_vertices(run.mesh, surface, run.work, list);
   const std::vector<VertexHandle> bound = take_bound(surface, vertices);
   RoundCounts counts;
   if (!bound.empty()) counts = periodic_moves(bound);
@@ -376,7 +338,7 @@ void SurfacePasses<Metric>::restore_volume(const VolumeEffort& effort) {
   std::vector<VertexHandle> vertices;
   if (!run.is_part()) {
     const Worklist all(run.mesh, run.policy(), [](CellHandle) { return true; });
-    vertices = free_vertices(run.mesh, surface, run.work, all);
+    vertices = free_surface_vertices(run.mesh, surface, run.work, all);
     take_bound(surface, vertices);  // those of periodic patches stay
   }
   const auto pass = [&](const Turn& turn) {

@@ -52,8 +52,7 @@ class SurfacePasses {
   std::size_t moves(const Turn& turn, const Worklist& list);
   /// Moves the vertices of periodic patches, orbit by orbit: few, so one after the other.
   RoundCounts periodic_moves(std::span<const VertexHandle> first_of_orbits);
-  /// Edges of the boundary in the listed cells, each from its smallest listed cell, that allow(a, b) lets by;
-  /// with `inside` those between vertices of the surface that the boundary does not have.
+  /// See surface_edges().
   template <class Allow>
   std::vector<EdgeHandle> edges(const Worklist& list, bool inside, Allow&& allow) const;
 

@@ -68,7 +68,8 @@ SeedAddress address_of(const Seed& seed) {
   return address_of(seed.edge);
 }
 
-/// Seeds at a vertex, as those of SurfaceCollapse: evaluated again, they are without what else a seed says.
+/// Seeds at a vertex, as those of SurfaceCollapse. What else such a seed says does not go with the address,
+/// so they can be told of, but not evaluated again: for rounds that commit their own winners alone.
 template <class Seed>
 concept IsAtVertex = requires(const Seed& seed) {
   { seed.vertex } -> std::convertible_to<VertexHandle>;

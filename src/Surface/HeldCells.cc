@@ -141,11 +141,11 @@ std::vector<FeatureCeiling> feature_ceilings(const TetMesh& mesh, std::span<cons
 }
 
 std::vector<FeatureCeiling> feature_ceilings(const TetMesh& part, std::span<const CellHandle> cells,
-                                             const SurfaceOptions& options, const surface::Arrays& arrays,
+                                             const SurfaceOptions& options, surface::Arrays arrays,
                                              const std::function<VertexHandle(VertexHandle)>& named) {
   std::vector<FeatureCeiling> ceilings(cells.size());
   if (cells.empty()) return ceilings;
-  const View view(arrays, options, options.mode, named);
+  const View view(std::move(arrays), options, options.mode, named);
   for (std::size_t i = 0; i < cells.size(); ++i) ceilings[i] = {view.ceiling(part, cells[i]).degrees, {}, {}};
   return ceilings;
 }

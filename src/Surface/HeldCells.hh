@@ -43,7 +43,7 @@ std::vector<FeatureCeiling> feature_ceilings(const TetMesh& mesh, std::span<cons
 /// The same of cells of a mesh in parts, by the surface of the whole; without the ends of edges. `named`:
 /// what the arrays call a vertex of the part, invalid where they have none.
 std::vector<FeatureCeiling> feature_ceilings(const TetMesh& part, std::span<const CellHandle> cells,
-                                             const SurfaceOptions& options, const surface::Arrays& arrays,
+                                             const SurfaceOptions& options, surface::Arrays arrays,
                                              const std::function<VertexHandle(VertexHandle)>& named);
 
 }  // namespace hfr

@@ -216,6 +216,7 @@ SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par
 
 void SurfaceMesh::rebuild(const TetMesh& mesh, par::Policy policy) {
   HFR_ASSERT(!impl_->alone && impl_->gone.empty() && impl_->fresh.empty());
+  HFR_ASSERT(impl_.use_count() == 1);  // nobody sees it from a part
   const SurfaceOptions options = impl_->options;
   SurfaceMesh again(mesh, options, policy);
   impl_.swap(again.impl_);

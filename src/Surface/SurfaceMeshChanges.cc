@@ -88,6 +88,7 @@ void SurfaceMesh::on_move(const TetMesh& mesh, std::span<const VertexHandle> ver
 }
 
 void SurfaceMesh::on_move(VertexHandle v, Vec3 x) {
+  HFR_ASSERT(!numbers_);
   const Eigen::Vector3d place = eigen(x);
   impl_->for_sheets(v, [&](OmVertex w) {
     if (impl_->om.point(w) == place) return;
@@ -100,6 +101,7 @@ void SurfaceMesh::on_move(VertexHandle v, Vec3 x) {
 }
 
 void SurfaceMesh::on_swap(VertexHandle a, VertexHandle b) {
+  HFR_ASSERT(!numbers_);
   Om& om = impl_->om;
   const OmHalfedge h = impl_->find(a, b);
   HFR_ASSERT(h.is_valid() && om.is_flip_ok(om.edge_handle(h)));
@@ -113,6 +115,7 @@ void SurfaceMesh::on_swap(VertexHandle a, VertexHandle b) {
 }
 
 void SurfaceMesh::on_collapse(VertexHandle v, VertexHandle onto) {
+  HFR_ASSERT(!numbers_);
   Om& om = impl_->om;
   const OmHalfedge h = impl_->find(v, onto);
   HFR_ASSERT(h.is_valid() && om.is_collapse_ok(h));
@@ -151,6 +154,7 @@ void SurfaceMesh::on_collapse(VertexHandle v, VertexHandle onto) {
 }
 
 void SurfaceMesh::on_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place) {
+  HFR_ASSERT(!numbers_);
   Om& om = impl_->om;
   OmHalfedge h = impl_->find(a, b);
   HFR_ASSERT(h.is_valid());
@@ -203,6 +207,7 @@ void SurfaceMesh::on_split(VertexHandle a, VertexHandle b, VertexHandle middle, 
 }
 
 auto SurfaceMesh::take_label_changes() -> LabelChanges {
+  HFR_ASSERT(!numbers_);
   LabelChanges changes;
   changes.gone = std::exchange(impl_->gone, {});
   for (int i : std::exchange(impl_->fresh, {})) {
@@ -223,6 +228,7 @@ void SurfaceMesh::write_labels(TetMesh& mesh) {
 }
 
 bool SurfaceMesh::in_step(const TetMesh& mesh) const {
+  HFR_ASSERT(!numbers_);
   const Arrays arrays = surface::gather(mesh, impl_->options, {});
   std::size_t n_live = 0;
   for (OmFace f : impl_->om.all_faces())

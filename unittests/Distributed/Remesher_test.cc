@@ -126,6 +126,7 @@ TEST(PartRemesher, MovesThatInvertAreRefusedOrMended) {
   EXPECT_LT(n_refused, 4);
 }
 
+#ifdef HFR_HAS_SURFACE
 /// A body that is sheared, whose surface gives way.
 TEST(PartRemesher, RepairsOfASurfaceThatMayChangeAreThoseOfSharedMemory) {
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
@@ -137,6 +138,7 @@ TEST(PartRemesher, RepairsOfASurfaceThatMayChangeAreThoseOfSharedMemory) {
     EXPECT_GE(expect_same_steps(valid_box(5, 0.15, 4), options, 3, move), 2);
   }
 }
+#endif
 
 /// A wedge of the surface that nothing mends calls for one repair, and for another one once it is worse.
 TEST(PartRemesher, WhatARepairHadToLeaveCallsForNoOther) {

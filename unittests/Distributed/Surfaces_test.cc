@@ -125,7 +125,8 @@ TEST_F(SurfacesInParts, LabelsAndInterfacesHaveTheBytesOfSharedMemory) {
       run(labelled(mesh, seed, density_of(seed)), on_surface(mode, 20));
     }
   if (comm.rank() == 0) {
-    EXPECT_TRUE(winners.has_all({"surface interface", "surface swap", "surface smooth", "patches"}));
+    EXPECT_TRUE(winners.has_all(
+        {"surface interface", "surface swap", "surface node", "surface smooth", "surface split", "patches"}));
   }
 }
 
@@ -175,6 +176,36 @@ TEST_F(SurfacesInParts, PinchedVerticesHaveTheBytesOfSharedMemory) {
   for (Vec3& p : arrays.points) p = p + Vec3{by(engine), by(engine), by(engine)};
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
     run(build(arrays.points, arrays.cells), on_surface(mode, 25));
+  if (comm.rank() == 0) {
+    EXPECT_TRUE(winners.has_all({"surface swap", "surface node", "surface smooth"}));
+  }
+}
+
+/// A run that is cancelled at some question, while folds are spread or between passes, ends where shared
+/// memory does.
+TEST_F(SurfacesInParts, CancelledRunsHaveTheBytesOfSharedMemory) {
+  const TetMesh folded = built(generate::cylinder(3, 8, 1, 2, 0, 65));
+  for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree})
+    for (const int at : {1, 2, 30, 90, 150}) {
+      SCOPED_TRACE(at);
+      ImproveOptions options = on_surface(mode, 20, /*polish_only=*/true);
+      options.surface.hausdorff = 0.1;
+      int n_asked = 0;
+      options.cancel = [&] { return ++n_asked >= at; };
+      mpi::DistributedMesh parts(comm);
+      if (comm.rank() == 0) io::write(path, folded);
+      comm.sum(0);
+      mpi::read_ranges(parts, path, 300);
+      mpi::improve(parts, options);
+      mpi::write_vtu(parts, folder.path() / "parts.vtu");
+      if (comm.rank() != 0) continue;
+      n_asked = 0;
+      TetMesh mesh = io::read(path);
+      const Result shared = hfr::improve(mesh, options);
+      EXPECT_EQ(shared.stop, Stop::kCancelled);
+      io::write(folder.path() / "whole.vtu", mesh);
+      EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
+    }
 }
 
 /// An edge of the patch between two labelled faces of its boundary: faces of the whole's boundary, where all

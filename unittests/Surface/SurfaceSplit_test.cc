@@ -42,5 +42,28 @@ TEST(SurfaceSplitProperty, NewVerticesLieWhereTheEdgeWasAndRaiseTheWorst) {
   EXPECT_GT(n_curve, 2) << "no feature edge is worth a vertex any more";
 }
 
+/// Whatever cell of the ring is the seed, and whichever the cavity begins with.
+TEST(SurfaceSplit, ARimIsToldOfTheSeedThatHasComeThere) {
+  const TetMesh mesh = jittered_skin(4, 0.3, 2);
+  const SurfaceMesh surface(mesh, mode(SurfaceMode::kFlat));
+  const auto quality = values(mesh);
+  SurfaceSplit<VolumeLength> op{{}, quality, &surface};
+  CutRim rim;
+  rim.is_rim.assign(mesh.n_cells(), 1);
+  op.rim = &rim;
+  std::size_t n_seeds = 0;
+  for (CellHandle c : mesh.cells())
+    for (Index k = 0; k < 6; ++k) {
+      const EdgeHandle e(6 * c.idx() + k);
+      const auto [a, b] = mesh.edge_vertices(e);
+      if (!mesh.is_boundary(e) || !surface.may_split(a, b)) continue;
+      rim.has_met.assign(mesh.n_cells(), 0);
+      op.evaluate(mesh, SurfaceSplit<VolumeLength>::Seed(e));
+      for (CellHandle other : mesh.cells()) EXPECT_EQ(rim.has_met[other.idx()], other == c ? 1 : 0);
+      ++n_seeds;
+    }
+  EXPECT_GT(n_seeds, 200U);
+}
+
 }  // namespace
 }  // namespace hfr::test

@@ -252,6 +252,7 @@ TEST(PetscAdaptor, AnyNumberOfRanksGivesTheMeshOfOne) {
   }
 }
 
+#ifdef HFR_HAS_SURFACE
 /// One rank has the whole, several have parts.
 TEST(PetscAdaptor, ASurfaceThatChangesIsTheSameOnAnyNumberOfRanks) {
   const Plex alone = cube(PETSC_COMM_SELF, tangled()), together = cube(PETSC_COMM_WORLD, tangled());
@@ -268,6 +269,7 @@ TEST(PetscAdaptor, ASurfaceThatChangesIsTheSameOnAnyNumberOfRanks) {
     ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_surface"), 0);
   }
 }
+#endif
 
 /// What is said with -info, by rank 0.
 std::string info_of(const std::function<void()>& act) {
@@ -299,10 +301,12 @@ TEST(PetscAdaptor, AMeshStaysInPartsWhereItCan) {
               HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
   EXPECT_THAT(info_of([&] { adapt(before.get(), corner, b); }),
               HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
+#ifdef HFR_HAS_SURFACE
   ASSERT_EQ(PetscOptionsSetValue(nullptr, "-dm_hfremesh_surface", "flat"), 0);
   EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, c); }),
               HasSubstr(alone ? "put together: one rank" : "0 of them inverted or flat; in parts"));
   ASSERT_EQ(PetscOptionsClearValue(nullptr, "-dm_hfremesh_surface"), 0);
+#endif
   ASSERT_EQ(PetscOptionsSetValue(nullptr, "-dm_hfremesh_smoother", "laplacian"), 0);
   EXPECT_THAT(info_of([&] { adapt(before.get(), nothing, d); }),
               HasSubstr(alone ? "put together: one rank" : "put together: other smoothers than newton"));
