@@ -275,9 +275,9 @@ std::string reason_against(const ImproveOptions& options) {
   if (!options.polish_only && options.metric != Metric::kVolumeLength)
     return "bulk passes in another metric than volume-length";
   const SurfaceOptions& surface = options.surface;
-  if (surface.mode != SurfaceMode::kFrozen && !PartSurface::is_there())
-    return "surfaces that may change where they are built without OpenMesh";
   if (!surface.periodic.empty()) return "periodic patches";
+  if (surface.mode != SurfaceMode::kFrozen && !PartSurface::is_there())
+    return "surfaces that may change in a build without OpenMesh";
   if (options.compat != Compat::kNone) return "published pipelines";
   if (options.smoother != Smoother::kNewton) return "other smoothers than newton";
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) return "devices";
