@@ -92,8 +92,8 @@ class Ranks {
   struct SurfaceLook {
     SurfacePass pass{};
     Look look;
-    /// Of moves: SurfaceSearch::gain where more vertices are looked at than both bounds, that and one in so
-    /// many of the mesh.
+    /// Of moves: SurfaceSearch::gain where more vertices are looked at than `many`, or than one in
+    /// `many_share` of the mesh.
     double gain_of_many = 1;
     std::uint64_t many = 0, many_share = 1;
     double worst = 0;  ///< SurfaceOffset::worst
