@@ -7,6 +7,7 @@
 #   - every header in kernels/ is listed in kernels/CMakeLists.txt, every source and header in its folder's
 #     CMakeLists.txt;
 #   - nor does anything in bindings/;
+#   - git tracks no file of more than a mebibyte: outputs of runs come in by mistake;
 #   - public headers, apps/, bindings/ and examples/ include public headers only, by the names that users have for
 #     them: hfremesh/LAYER/NAME.hh.
 # Usage: scripts/check-layers.sh [ROOT]     prints one line for each fault; exit 1 when there is one.
@@ -97,6 +98,11 @@ for file in $(sources apps bindings examples); do only_public "$file"; done
 while read -r header; do
   if [ -e "src/$header" ]; then only_public "src/$header"; fi
 done < "$public"
+
+if [ -e .git ]; then
+  { git ls-files -z | xargs -0 stat -c '%s %n' -- 2> /dev/null || true; } |
+    awk '$1 > 1048576 { size = $1; sub(/^[0-9]+ /, ""); print $0 ": no file of " size " bytes is tracked" }' >> "$faults"
+fi
 
 cat "$faults"
 if [ -s "$faults" ]; then

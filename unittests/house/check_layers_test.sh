@@ -70,5 +70,12 @@ echo '#include "IO/Inner.hh"' >> "$tree/src/IO/Read.hh"
 expect_fault 'src/IO/Read.hh:2: IO/Inner.hh is not a public header'
 echo '#include "HalfFace/Mesh.hh"' >> "$tree/src/IO/Read.hh"
 expect_fault 'src/IO/Read.hh:2: users know HalfFace/Mesh.hh as hfremesh/HalfFace/Mesh.hh'
+if command -v git > /dev/null; then
+  git -C "$tree" init -q
+  head -c 1100000 /dev/zero > "$tree/out put.vtu"
+  git -C "$tree" add .
+  expect_fault 'out put.vtu: no file of 1100000 bytes is tracked'
+  rm -rf "$tree/.git" "$tree/out put.vtu"
+fi
 "$check" "$tree" > /dev/null
 exit "$failed"
