@@ -3,9 +3,11 @@
 """Whole runs in parts on N ranks beside hfremesh on N threads, in turn: seconds, memory, and whether the bytes are
 the same.
 
-Usage: bench/parts_beside_threads.py BUILD [--cubes 70 120] [--ranks 2] [--runs 3] [--args ARGS] [MESH ...]
+Usage: bench/parts_beside_threads.py BUILD [--cubes 70 120] [--corners 50:0.45:0.3] [--ranks 2] [--runs 3]
+                                     [--args ARGS] [MESH ...]
   BUILD   has hfremesh and hfremesh-mpi
   --cubes grids of so many cubes a side, jitter 0.2 (70: 2,058,000 cells; 120: 10,368,000)
+  --corners  grids of so many cubes a side that are regular but for one corner: its jitter, and its share of each side
   --args  of both programs; in parts also --all-stages
   MESH    files to take, too; what is not .vtu is converted first
 Prints a Markdown table of medians: seconds of the whole process (of mpirun in parts) and of improve, statistics
@@ -50,11 +52,28 @@ def both(build, mesh, ranks, args, folder):
     return rows, filecmp.cmp(shared, parts, shallow=False)
 
 
+def poor_corner(tool, n, jitter, share, path, folder):
+    """The vertices of a jittered grid in one corner, and those of the regular grid elsewhere."""
+    lines = []
+    for amount in ("0", jitter):
+        file = folder / "grid.mesh"
+        run([tool, "generate", "cavity", "--n", n, n, n, "--amplitude", "0", "--jitter", amount, "-q", "-o", file])
+        lines.append(file.read_text().split("\n"))
+    regular, poor = lines
+    first = regular.index("Vertices") + 2
+    for i in range(first, first + int(regular[first - 1])):
+        if all(float(x) < share for x in regular[i].split()[:3]):
+            regular[i] = poor[i]
+    file.write_text("\n".join(regular))
+    run([tool, "convert", file, "-q", "-o", path])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("mesh", nargs="*", type=pathlib.Path)
     parser.add_argument("--cubes", type=int, nargs="*", default=[])
+    parser.add_argument("--corners", nargs="*", default=[])
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--args", type=shlex.split, default=[])
@@ -64,12 +83,20 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         tool = line.build / "apps/hfremesh/hfremesh"
-        jobs = [(f"grid of {n}³ cubes", [tool, "generate", "cavity", "--n", *3 * [str(n)], "--amplitude", "0",
-                                        "--jitter", "0.2", "-q", "-o"]) for n in sorted(line.cubes)]
-        jobs += [(path.stem, [tool, "convert", path, "-q", "-o"]) for path in line.mesh]
+
+        def with_command(*command):
+            return lambda path: run([*command, path])
+
+        def with_corner(n, jitter, share):
+            return lambda path: poor_corner(tool, n, jitter, float(share), path, folder)
+
+        jobs = [(f"grid of {n}³ cubes", with_command(tool, "generate", "cavity", "--n", *3 * [str(n)], "--amplitude", "0",
+                                                     "--jitter", "0.2", "-q", "-o")) for n in sorted(line.cubes)]
+        jobs += [(f"poor corner {corner}", with_corner(*corner.split(":"))) for corner in line.corners]
+        jobs += [(path.stem, with_command(tool, "convert", path, "-q", "-o")) for path in line.mesh]
         for title, make in jobs:
             mesh = folder / "in.vtu"
-            run([*make, mesh])
+            make(mesh)
             rounds = [both(line.build, mesh, line.ranks, line.args, folder) for _ in range(line.runs)]
             median = [[statistics.median(r[0][side][k] for r in rounds) for k in range(3)] for side in (0, 1)]
             ratios = [median[1][k] / median[0][k] for k in range(3)]

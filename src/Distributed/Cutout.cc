@@ -30,42 +30,28 @@ void sort_by_number(std::vector<Record>& records) {
                 records.end());
 }
 
-/// Each once, ascending; of a part that has n of them.
-template <class Handle>
-void sort_and_unite(std::vector<Handle>& handles, std::size_t n) {
-  constexpr std::size_t kFew = 64;  // one in so many is quicker sorted than looked for among all
-  if (handles.size() < n / kFew) {
-    std::sort(handles.begin(), handles.end());
-    handles.erase(std::unique(handles.begin(), handles.end()), handles.end());
-    return;
-  }
-  std::vector<std::uint8_t> is_in(n, 0);
-  for (Handle h : handles) is_in[h.idx()] = 1;
-  handles.clear();
-  for (std::size_t i = 0; i < n; ++i)
-    if (is_in[i] != 0) handles.push_back(Handle(i));
-}
-
 /// What lies round these vertices: their numbers, the records of all cells that have one and of the corners
 /// of these, and labels.
 void pack_round(const DistributedMesh& parts, std::span<const VertexHandle> vertices, Packer& out) {
   const TetMesh& part = parts.part();
   std::vector<std::uint64_t> taken;
-  std::vector<CellHandle> cells;
+  taken.reserve(vertices.size());
+  Marks &cell_marks = parts.cell_marks(), &vertex_marks = parts.vertex_marks();
   WholeStars stars(part, parts.work());
   for (VertexHandle v : vertices) {
     taken.push_back(parts.number(v));
-    stars.for_cells(v, [&](CellHandle c) { cells.push_back(c); });
+    stars.for_cells(v, [&](CellHandle c) {
+      if (!cell_marks.add(c.idx())) return;
+      for (VertexHandle u : part.cell(c).v) vertex_marks.add(u.idx());
+    });
   }
-  sort_and_unite(cells, part.n_cells());
+  const auto cells = cell_marks.take<CellHandle>();
+  const auto corners = vertex_marks.take<VertexHandle>();
   std::vector<CellRecord> cell_records;
-  std::vector<VertexHandle> corners;
-  for (CellHandle c : cells) {
-    cell_records.push_back(parts.record(c));
-    corners.insert(corners.end(), part.cell(c).v.begin(), part.cell(c).v.end());
-  }
-  sort_and_unite(corners, part.n_vertices());
+  cell_records.reserve(cells.size());
+  for (CellHandle c : cells) cell_records.push_back(parts.record(c));
   std::vector<VertexRecord> vertex_records;
+  vertex_records.reserve(corners.size());
   for (VertexHandle v : corners) vertex_records.push_back(parts.record(v));
   out.put_all(taken);
   out.put_all(vertex_records);
@@ -79,17 +65,17 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
                std::span<const std::uint8_t> depth, Where where) {
   const TetMesh& part = parts.part();
   Comm& comm = parts.comm();
-  Spread spread(parts, Spread::Stars::kWhole);
+  Spread spread(parts, Spread::Stars::kWhole, where == Where::kOnAll ? 0 : comm.rank());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const CellHandle c = parts.cell_at(cells[i]);
     if (!c.is_valid() || part.is_deleted(c) || !parts.is_own(c)) continue;
-    spread.begin(c, depth[i], where == Where::kOnAll ? 0 : comm.rank());
+    spread.begin(c, depth[i]);
     if (where == Where::kOnOwners) centres_.push_back(cells[i]);
   }
   if (where == Where::kOnAll) centres_.assign(cells.begin(), cells.end());
   spread.run();
   std::vector<Packer> to(comm.n_ranks());
-  const auto asked_for = spread.own();
+  const auto asked_for = spread.take_own();
   for (std::size_t r = 0; r < asked_for.size(); ++r)
     if (!asked_for[r].empty()) pack_round(parts, asked_for[r], to[r]);
   std::vector<std::uint64_t> taken;
@@ -97,14 +83,10 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   std::vector<LabelRecord> labels;
   for (const Comm::Message& message : comm.exchange(to)) {
     Unpacker in(message.bytes);
-    const auto append = [&]<class T>(std::vector<T>& list) {
-      const std::vector<T> theirs = in.get_all<T>();
-      list.insert(list.end(), theirs.begin(), theirs.end());
-    };
-    append(taken);
-    append(vertices_);
-    append(cell_records);
-    append(labels);
+    in.append_to(taken);
+    in.append_to(vertices_);
+    in.append_to(cell_records);
+    in.append_to(labels);
   }
   std::sort(taken.begin(), taken.end());
   sort_by_number(vertices_);

@@ -57,7 +57,7 @@ class Cutout {
   bool erase_face_label(const std::array<VertexHandle, 3>& face) { return labels_.erase_face(mesh_, face); }
   std::vector<LabelRecord> labels_of(std::span<const CellHandle> cells,
                                      std::span<const VertexHandle> vertices) const {
-    return labels_.of(mesh_, cells, vertices, [this](VertexHandle v) { return number(v); });
+    return labels_.of(mesh_, work_.frozen, cells, vertices, [this](VertexHandle v) { return number(v); });
   }
 
  private:

@@ -68,7 +68,7 @@ bool NearChange::remove(const DistributedMesh& parts, std::span<const std::uint6
 
 void write_home(DistributedMesh& parts, const NearChange& change) {
   for (CellHandle c : change.gone) parts.detach(c);
-  if (!change.gone.empty()) parts.apply(change.vertices, change.created, change.labels);
+  if (!change.gone.empty()) parts.apply(change.come);
   for (std::uint64_t number : change.deleted)
     if (const VertexHandle v = parts.vertex_at(number); v.is_valid())
       TetMesh::Writer(parts.part()).mark_deleted(v);
@@ -279,10 +279,10 @@ void CutoutRound::bring_home() {
     if (!near.remove(parts_, removed)) continue;
     near.deleted.insert(near.deleted.end(), deleted.begin(), deleted.end());
     for (const Touched& one : v) vertices.push_back({one, rank});
-    near.created.insert(near.created.end(), c.begin(), c.end());
-    near.labels.insert(near.labels.end(), l.begin(), l.end());
+    near.come.cells.insert(near.come.cells.end(), c.begin(), c.end());
+    near.come.labels.insert(near.come.labels.end(), l.begin(), l.end());
   }
-  near.vertices = merged(std::move(vertices));
+  near.come.vertices = merged(std::move(vertices));
   write_home(parts_, near);
 }
 

@@ -31,9 +31,7 @@ void change_slots(DistributedMesh& parts, const SlotChange& slots, std::span<con
 struct NearChange {
   std::vector<CellHandle> gone;
   std::vector<std::uint64_t> deleted;  ///< vertices
-  std::vector<DistributedMesh::VertexRecord> vertices;
-  std::vector<DistributedMesh::CellRecord> created;
-  std::vector<LabelRecord> labels;
+  DistributedMesh::Records come;
 
   /// The cells of these numbers go that the part has; false where it has none: whose vertices have one of the
   /// cells that stand for them has one of these.

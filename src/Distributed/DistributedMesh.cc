@@ -258,8 +258,31 @@ auto DistributedMesh::record(CellHandle c) const -> CellRecord {
   return r;
 }
 
-void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells,
-                            std::span<const LabelRecord> labels) {
+void DistributedMesh::Records::append(Unpacker& in) {
+  in.append_to(vertices);
+  in.append_to(cells);
+  if (!in.at_end()) in.append_to(labels);
+}
+
+void DistributedMesh::pack(std::span<const CellHandle> cells, std::span<const VertexHandle> vertices,
+                           Packer& to, bool as_owner) const {
+  std::vector<VertexRecord> vertex_records;
+  vertex_records.reserve(vertices.size());
+  for (VertexHandle v : vertices) {
+    vertex_records.push_back(record(v));
+    if (as_owner) vertex_records.back().of_owner = 1;
+  }
+  std::vector<CellRecord> cell_records;
+  cell_records.reserve(cells.size());
+  for (CellHandle c : cells) cell_records.push_back(record(c));
+  to.put_all(vertex_records);
+  to.put_all(cell_records);
+  const std::vector<LabelRecord> labels = labels_of(cells, vertices);
+  if (!labels.empty()) to.put_all(labels);
+}
+
+void DistributedMesh::apply(const Records& records) {
+  const auto& [vertices, cells, labels] = records;
   std::vector<VertexRecord> fresh;
   for (const VertexRecord& r : vertices)
     if (!vertex_at(r.number).is_valid()) fresh.push_back(r);
@@ -271,7 +294,8 @@ void DistributedMesh::apply(std::span<const VertexRecord> vertices, std::span<co
   TetMesh::Writer writer(mesh_);
   for (const VertexRecord& r : vertices) {
     const VertexHandle v = vertex_at(r.number);
-    mesh_.set_point(v, r.point);  // whoever holds a vertex has its point
+    mesh_.set_point(v, r.point);  // whoever holds a vertex has its point, and knows whose it is
+    owner_[v.idx()] = r.owner;
     if (!r.of_owner) continue;
     work_.star_size[v.idx()] = r.star_size;
     work_.changed[v.idx()] = r.changed;

@@ -12,6 +12,7 @@
 
 #include "hfremesh/Distributed/Comm.hh"
 #include "hfremesh/Distributed/LabelOrder.hh"
+#include "hfremesh/Distributed/Marks.hh"
 #include "hfremesh/Distributed/PartLabels.hh"
 #include "hfremesh/Distributed/Partition.hh"
 #include "hfremesh/Distributed/RankSets.hh"
@@ -44,10 +45,10 @@ struct Turned {
   std::uint64_t n_alone = 0;  ///< cells that were turned and not with the whole, or the other way round
 };
 
-/// A mesh that is cut among the ranks. Each vertex has an owner, for good; a cell belongs to the owner of its
-/// vertex with the smallest number. A rank holds the cells with a vertex of its own and two layers of cells
-/// round them: all that have a vertex within two edges of its own ones. That is what it takes to evaluate
-/// any seed of its own cells, and to commit what others have decided next to them.
+/// A mesh that is cut among the ranks. Each vertex has an owner, the same in all passes; a cell belongs to
+/// the owner of its vertex with the smallest number. A rank holds the cells with a vertex of its own and two
+/// layers of cells round them: all that have a vertex within two edges of its own ones. That is what it takes
+/// to evaluate any seed of its own cells, and to commit what others have decided next to them.
 ///
 /// Numbers, of 64 bits, are those of the whole mesh: its vertices, and its cell slots. In a part, vertices
 /// stand in the order of their numbers; cells in any order, each slot for one number as long as the part
@@ -193,6 +194,13 @@ class DistributedMesh : private detail::PartState {
   void prune();
   /// Takes a cell out of this part; what was behind its faces has nothing there.
   void detach(CellHandle c);
+  /// Own vertices that other ranks hold, by rank: those of which it has a cell.
+  std::vector<std::vector<VertexHandle>> held_by_others() const;
+  /// Gives own vertices other owners: `to`, by vertex, of which those of own ones count. Those that are
+  /// deleted or have no cell keep theirs. What ranks hold follows. The mesh stays what it is, and so do
+  /// handles of cells; handles of vertices may change. Between passes, and not while labels of faces are
+  /// followed. All take part.
+  void change_owners(std::span<const int> to);
 
   /// What one rank tells another of a vertex, and of a cell.
   struct VertexRecord {
@@ -211,20 +219,34 @@ class DistributedMesh : private detail::PartState {
   };
   VertexRecord record(VertexHandle v) const;
   CellRecord record(CellHandle c) const;
+  /// What one rank tells another of some of either, and of what hangs on them.
+  struct Records {
+    std::vector<VertexRecord> vertices;
+    std::vector<CellRecord> cells;
+    std::vector<LabelRecord> labels;
+
+    /// What pack() has put there, up to the end.
+    void append(Unpacker& in);
+  };
+  /// At the end of a message. `as_owner`: of the vertices this rank is, or was until now, the owner.
+  void pack(std::span<const CellHandle> cells, std::span<const VertexHandle> vertices, Packer& to,
+            bool as_owner = false) const;
   /// Of these vertices, and of the edges and faces of these cells.
   std::vector<LabelRecord> labels_of(std::span<const CellHandle> cells,
                                      std::span<const VertexHandle> vertices) const {
-    return labels_.of(mesh_, cells, vertices, [this](VertexHandle v) { return number(v); });
+    return labels_.of(mesh_, work_.frozen, cells, vertices, [this](VertexHandle v) { return number(v); });
   }
   const PartLabels& label_numbers() const { return labels_; }
+  /// For whoever looks at a few vertices or cells of the part, one at a time.
+  Marks& vertex_marks() const { return vertex_marks_.for_all_of(mesh_.n_vertices()); }
+  Marks& cell_marks() const { return cell_marks_.for_all_of(mesh_.n_cells()); }
   /// Of each edge and face, whose vertices are all here: whether a cell of this part has it.
   std::vector<std::uint8_t> has_cell(std::span<const LabelRecord> records) const;
   /// Writes what came. Records of owners count where there are several of a vertex; of a cell all are equal,
   /// but for mates, which a rank may have as they were before. So what they do not tell is found by vertices:
   /// faces of the cells that are written, and those that detach() has opened since the last call. `labels`:
   /// of these vertices and cells.
-  void apply(std::span<const VertexRecord> vertices, std::span<const CellRecord> cells,
-             std::span<const LabelRecord> labels);
+  void apply(const Records& records);
 
  private:
   void build_part(Block& block, par::Policy policy);
@@ -240,6 +262,12 @@ class DistributedMesh : private detail::PartState {
   void match_open_faces();
   bool see_each_other(HalfFaceHandle h, HalfFaceHandle g) const;
   void start_zone();
+  void tell_owners(std::span<const int> to);
+  struct Push {
+    std::vector<CellHandle> cells;
+    std::vector<VertexHandle> vertices;
+  };
+  std::vector<Push> fresh_near(std::span<const int> before, const RankSets& held) const;
   void put_into_zone(CellHandle c);
   template <class Fill>
   std::vector<VertexHandle> renew(RankSets& sets, std::span<const VertexHandle> vertices,
@@ -257,6 +285,7 @@ class DistributedMesh : private detail::PartState {
   std::vector<HalfFaceHandle> open_;  // faces behind which something may come
   std::vector<Index> zone_, rim_;     // rim: of the cells without an own vertex, all, and some that have gone
   std::vector<std::uint8_t> in_zone_, marks_;  // by slot; by vertex, all 0 between calls
+  mutable Marks vertex_marks_, cell_marks_;
   std::vector<VertexHandle> dirty_, renewed_;  // of noted cells; own ones with another within_two()
   std::size_t n_changed_in_zone_ = 0;          // vertices, since zone_ was looked through
   std::uint32_t clock_at_scatter_ = 0;

@@ -23,6 +23,7 @@
 #include "Distributed/PartPatchSearch.hh"
 #include "Distributed/PartSurface.hh"
 #include "Distributed/PartUnfolding.hh"
+#include "Distributed/WorkBalance.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Checkpoint.hh"
@@ -357,6 +358,8 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   std::optional<std::vector<std::uint64_t>> order;
   if (!options.min_dihedral && is_dense(mesh) && is_scattered(mesh))
     order = mesh.renumber(numbers_along_curve(mesh));
+  std::optional<WorkBalance> balance;
+  if (options.min_dihedral) balance.emplace(mesh, goal, policy);
   begin(mesh);
   const Survey found{result.before.worst, static_cast<std::size_t>(result.before.n_invalid)};
   const Strategy strategy = resolve(options, found, static_cast<std::size_t>(result.before.n_cells));
@@ -393,6 +396,10 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   if (surface) {
     mesh.leave_face_labels();
     result.surface = surface->report();
+  }
+  if (balance) {
+    balance->give_back();
+    result.mine.n_borrowed = balance->n_borrowed();
   }
   if (order && !result.changed) mesh.renumber(*order);
   result.after = survey(mesh, goal, policy);

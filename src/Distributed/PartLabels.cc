@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Distributed/PartLabels.hh"
 
+#include <algorithm>
+
 #include "HalfFace/Errors.hh"
 
 namespace hfr::mpi {
@@ -88,7 +90,8 @@ void PartLabels::set_face(TetMesh& mesh, const std::array<VertexHandle, 3>& v, s
   face_number_.resize(mesh.labels().faces.size(), kNoNumber);
 }
 
-std::vector<LabelRecord> PartLabels::found_at(const TetMesh& mesh, std::span<const CellHandle> cells,
+std::vector<LabelRecord> PartLabels::found_at(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
+                                              std::span<const CellHandle> cells,
                                               std::span<const VertexHandle> vertices) const {
   using Kind = LabelRecord::Kind;
   std::vector<LabelRecord> records;
@@ -108,6 +111,7 @@ std::vector<LabelRecord> PartLabels::found_at(const TetMesh& mesh, std::span<con
   if (!of_faces && !of_edges) return records;
   for (CellHandle c : cells) {
     const auto& v = mesh.cell(c).v;
+    if (std::count_if(v.begin(), v.end(), [&](VertexHandle u) { return frozen[u.idx()] != 0; }) < 2) continue;
     for (const auto& f : kFaceCorners) {
       if (!of_faces) break;
       const std::array<VertexHandle, 3> face = {v[f[0]], v[f[1]], v[f[2]]};

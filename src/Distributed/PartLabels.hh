@@ -49,12 +49,13 @@ class PartLabels {
     }
     fix(mesh, locks);
   }
-  /// Of these vertices, and of the edges and faces of these cells; some of them twice. `number`: vertex →
-  /// number.
+  /// Of these vertices, and of the edges and faces of these cells; some of them twice. `frozen`: by vertex, 0
+  /// for those that are on no edge or face with a label or that is fixed. `number`: vertex → number.
   template <class Number>
-  std::vector<LabelRecord> of(const TetMesh& mesh, std::span<const CellHandle> cells,
-                              std::span<const VertexHandle> vertices, Number&& number) const {
-    std::vector<LabelRecord> records = found_at(mesh, cells, vertices);
+  std::vector<LabelRecord> of(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
+                              std::span<const CellHandle> cells, std::span<const VertexHandle> vertices,
+                              Number&& number) const {
+    std::vector<LabelRecord> records = found_at(mesh, frozen, cells, vertices);
     for (LabelRecord& r : records)
       for (std::uint64_t& v : r.v)
         if (v != kNoNumber) v = number(VertexHandle(v));
@@ -79,7 +80,8 @@ class PartLabels {
   /// Fixes these edges and faces where a cell has them.
   static void fix(TetMesh& mesh, const Locks& locks);
   /// With handles in place of numbers.
-  std::vector<LabelRecord> found_at(const TetMesh& mesh, std::span<const CellHandle> cells,
+  std::vector<LabelRecord> found_at(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
+                                    std::span<const CellHandle> cells,
                                     std::span<const VertexHandle> vertices) const;
 
   std::vector<std::uint64_t> face_number_, edge_number_;  // by entry

@@ -35,26 +35,33 @@ bool PartPasses::can_do(PassKind kind, const RankMetric& metric) {
 
 Ranks::Tally PartPasses::tally(double below) {
   const Comm::InPhase phase(parts_.comm(), Phase::kTally);
-  std::array<std::uint64_t, 2> sums = {0, 0};
-  double worst = std::numeric_limits<double>::infinity();
+  struct Found {
+    std::array<std::uint64_t, 2> sums{};  // invalid, below
+    double worst = std::numeric_limits<double>::infinity();
+  };
   const TetMesh& part = parts_.part();
   const std::vector<double>& quality = parts_.work().quality;
-  const auto look = [&](std::size_t i) {
+  const auto look = [&](std::size_t i, Found& found) {
     const double q = quality[i];
     // Deleted ones and most others are nowhere near.
-    if (q > 0 && !(q < below) && !(q < worst)) return;
+    if (q > 0 && !(q < below) && !(q < found.worst)) return;
     const CellHandle c(i);
     if (part.is_deleted(c) || !parts_.is_own(c)) return;
-    sums[0] += q > 0 ? 0 : 1;
-    sums[1] += q < below ? 1 : 0;
-    worst = std::min(worst, q);
+    found.sums[0] += q > 0 ? 0 : 1;
+    found.sums[1] += q < below ? 1 : 0;
+    found.worst = std::min(found.worst, q);
   };
-  if (below > 0)
-    for (Index i : poor_.below(below, parts_.work(), {})) look(i);
-  if (sums[1] == 0)  // else the worst and all that are invalid are among those
-    for (std::size_t i = 0; i < quality.size(); ++i) look(i);
-  worst = parts_.comm().sum_and_min(sums, worst);
-  return {static_cast<std::size_t>(sums[0]), static_cast<std::size_t>(sums[1]), worst};
+  Found all;
+  if (below > 0) {
+    for (Index i : poor_.below(below, parts_.work(), {})) look(i, all);
+    all.worst = parts_.comm().sum_and_min(all.sums, all.worst);
+  }
+  if (all.sums[1] == 0) {  // else the worst and all that are invalid are among those
+    all = {};
+    for (std::size_t i = 0; i < quality.size(); ++i) look(i, all);
+    all.worst = parts_.comm().sum_and_min(all.sums, all.worst);
+  }
+  return {static_cast<std::size_t>(all.sums[0]), static_cast<std::size_t>(all.sums[1]), all.worst};
 }
 
 RoundCounts PartPasses::run(const Ranks::Look& look) {
@@ -94,12 +101,12 @@ bool PartPasses::is_marked(VertexHandle v) const {
 }
 
 void PartPasses::mark_round(double degrees, int layers) {
-  Spread spread(parts_, Spread::Stars::kWalked);  // as vertices_within()
+  Spread spread(parts_, Spread::Stars::kWalked, 0);  // as vertices_within()
   for (CellHandle c : cells_below(parts_.part(), degrees, {}, known_values(parts_.work())))
     if (parts_.is_own(c)) spread.begin(c, static_cast<std::uint32_t>(layers));
   spread.run();
   marked_.clear();
-  const std::vector<VertexHandle> own = std::move(spread.own().front());
+  const std::vector<VertexHandle> own = std::move(spread.take_own().front());
   for (VertexHandle v : own) marked_.push_back(parts_.number(v));
   marked_ = parts_.comm().all_gather(std::span<const std::uint64_t>(marked_));
   std::sort(marked_.begin(), marked_.end());

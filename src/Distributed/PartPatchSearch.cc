@@ -249,9 +249,9 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
   while (!in.at_end()) {
     const bool is_near = near.remove(parts, in.get_all<std::uint64_t>());
     append(near.deleted, is_near);
-    append(near.vertices, is_near);
-    append(near.created, is_near);
-    append(near.labels, is_near);
+    append(near.come.vertices, is_near);
+    append(near.come.cells, is_near);
+    append(near.come.labels, is_near);
     LabelChanges& changes = labels.emplace_back();
     changes.set = in.get_all<DistributedMesh::LabelledFace>();
     changes.gone = in.get_all<LabelOrder::Face>();

@@ -497,8 +497,6 @@ auto PartRound::new_cells() const -> std::vector<Push> {
 /// Sends these and writes what comes.
 auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> commits, bool is_touched)
     -> Outcome {
-  using VertexRecord = DistributedMesh::VertexRecord;
-  using CellRecord = DistributedMesh::CellRecord;
   std::vector<Packer> to(comm_.n_ranks());
   for (std::size_t r = 0; r < pushes.size(); ++r) {
     Push& push = pushes[r];
@@ -507,15 +505,8 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
       for (VertexHandle v : mesh_.part().cell(c).v) push.vertices.push_back(v);
     sort_and_unite(push.vertices);
     if (push.removed.empty() && push.vertices.empty()) continue;
-    std::vector<VertexRecord> vertices;
-    for (VertexHandle v : push.vertices) vertices.push_back(mesh_.record(v));
-    std::vector<CellRecord> cells;
-    for (CellHandle c : push.cells) cells.push_back(mesh_.record(c));
     to[r].put_all(push.removed);
-    to[r].put_all(vertices);
-    to[r].put_all(cells);
-    const std::vector<LabelRecord> labels = mesh_.labels_of(push.cells, push.vertices);
-    if (!labels.empty()) to[r].put_all(labels);
+    mesh_.pack(push.cells, push.vertices, to[r]);
   }
   const auto [came, n_touched, n_messages] = comm_.exchange(to, is_touched ? 1 : 0);
   const bool is_any_touched = n_touched + n_messages > 0;
@@ -524,9 +515,7 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
   if (!commits.empty())
     for (const Pending& one : pending_)
       for (CellHandle c : commits[one.winner].removed) done.insert(mesh_.number(c));
-  std::vector<VertexRecord> vertices;
-  std::vector<CellRecord> cells;
-  std::vector<LabelRecord> labels;
+  DistributedMesh::Records records;
   for (const Comm::Message& message : came) {
     Unpacker in(message.bytes);
     for (std::uint64_t number : in.get_all<std::uint64_t>()) {
@@ -534,15 +523,9 @@ auto PartRound::exchange(std::vector<Push>&& pushes, std::span<const Commit> com
       const CellHandle c = mesh_.cell_at(number);
       if (c.is_valid() && !mesh_.part().is_deleted(c)) mesh_.detach(c);
     }
-    const auto v = in.get_all<VertexRecord>();
-    vertices.insert(vertices.end(), v.begin(), v.end());
-    const auto c = in.get_all<CellRecord>();
-    cells.insert(cells.end(), c.begin(), c.end());
-    if (in.at_end()) continue;
-    const auto l = in.get_all<LabelRecord>();
-    labels.insert(labels.end(), l.begin(), l.end());
+    records.append(in);
   }
-  mesh_.apply(vertices, cells, labels);
+  mesh_.apply(records);
   return {true, is_any_touched};
 }
 

@@ -44,10 +44,10 @@ std::size_t PartUnfolding::look() {
 }
 
 std::vector<VertexHandle> PartUnfolding::own_within(int layers, Spread::Stars kind) const {
-  Spread spread(parts_, kind);
+  Spread spread(parts_, kind, 0);
   for (CellHandle c : invalid_) spread.begin(c, static_cast<std::uint32_t>(layers));
   spread.run();
-  return std::move(spread.own().front());
+  return std::move(spread.take_own().front());
 }
 
 std::size_t PartUnfolding::n_within(int layers) {

@@ -20,6 +20,8 @@ struct RankFigures {
   /// Of its part, when it was looked at last: own cells, slots of all cells that it holds, and of those with
   /// a vertex within two edges of another's.
   std::uint64_t n_own = 0, n_held = 0, n_border = 0;
+  /// Vertices of other ranks that it had for the last run towards a goal, with the cells below that.
+  std::uint64_t n_borrowed = 0;
 };
 
 /// Fills in what there is to say of a part. O(part).

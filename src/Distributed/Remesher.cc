@@ -153,29 +153,7 @@ void Remesher::rebuild(const RankArrays& arrays) {
   mesh_->part().labels().names = std::move(names);
   points_.clear();
   for (std::uint64_t number : own_arrays(*mesh_).vertex_number) points_.push_back(mesh_->vertex_at(number));
-  find_holders();
-}
-
-/// Ranks that hold a cell of a vertex are within two edges of a vertex of that cell.
-void Remesher::find_holders() {
-  const TetMesh& part = mesh_->part();
-  RankSets holders(part.n_vertices(), comm_.size());
-  std::vector<std::uint8_t> is_near(part.n_vertices(), 0);
-  for (Index i : mesh_->zone()) {
-    const CellHandle c(i);
-    if (part.is_deleted(c)) continue;
-    for (VertexHandle v : part.cell(c).v) {
-      if (!mesh_->is_own(v)) continue;
-      is_near[v.idx()] = 1;
-      for (VertexHandle u : part.cell(c).v) holders.add(v.idx(), mesh_->within_two(u));
-    }
-  }
-  held_by_.assign(comm_.n_ranks(), {});
-  for (std::size_t v = 0; v < is_near.size(); ++v)
-    if (is_near[v] != 0)
-      for_ranks(holders[v], [&](int rank) {
-        if (rank != comm_.rank()) held_by_[static_cast<std::size_t>(rank)].emplace_back(v);
-      });
+  held_by_ = mesh_->held_by_others();
 }
 
 /// Where own vertices are, to the ranks that hold them.
@@ -248,9 +226,16 @@ PartsStep Remesher::step(std::span<const Vec3> displacement) {
       result.cause = RepairCause::kSteps;
   }
   if (result.cause != RepairCause::kNone) {
+    std::vector<std::uint64_t> numbers;
+    for (VertexHandle v : points_) numbers.push_back(mesh_->number(v));
     result.repair = improve(*mesh_, options_.improve);
     result.changed = result.repair->changed;
-    if (result.changed) rebuild(own_arrays(*mesh_));
+    if (result.changed) {
+      rebuild(own_arrays(*mesh_));
+    } else {  // but vertices may have gone to other ranks and back
+      std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
+      held_by_ = mesh_->held_by_others();
+    }
     watch_->excuse(*mesh_);
     steps_ = 0;
   }

@@ -65,7 +65,6 @@ class Remesher {
   class Watch;
 
   void rebuild(const RankArrays& arrays);
-  void find_holders();
   void move_points(std::span<const Vec3> displacement);
   void put_points_back();
   void tell_points();

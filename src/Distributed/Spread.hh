@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "Distributed/Buffer.hh"
 #include "Distributed/DistributedMesh.hh"
 #include "Distributed/WholeStars.hh"
+#include "HalfFace/Errors.hh"
 
 namespace hfr::mpi {
 
@@ -22,11 +24,18 @@ class Spread {
   /// its incident cell, or all of them.
   enum class Stars : std::uint8_t { kWalked, kWhole };
 
-  Spread(const DistributedMesh& parts, Stars kind)
-      : parts_(parts), kind_(kind), stars_(parts.part(), parts.work()), to_(parts.comm().n_ranks()) {}
+  /// `whom`: the rank that begin() marks for on this one; its own, or the same on all.
+  Spread(const DistributedMesh& parts, Stars kind, int whom)
+      : parts_(parts),
+        kind_(kind),
+        whom_(whom),
+        stars_(parts.part(), parts.work()),
+        mine_(parts.vertex_marks()),
+        to_(parts.comm().n_ranks()) {}
 
-  void begin(CellHandle c, std::uint32_t depth, int for_whom = 0) {
-    for (VertexHandle v : parts_.part().cell(c).v) reach({v, for_whom}, depth);
+  void begin(CellHandle c, std::uint32_t depth) {
+    if (depth >= std::numeric_limits<std::uint8_t>::max()) throw InternalError("a spread of too many layers");
+    for (VertexHandle v : parts_.part().cell(c).v) reach({v, whom_}, depth);
   }
   /// Each rank goes as far as it comes by itself before it asks others.
   void run() {
@@ -43,13 +52,16 @@ class Spread {
       is_done = came.n_messages == 0;
     }
   }
-  /// By the rank that they are marked for, ascending.
-  std::vector<std::vector<VertexHandle>> own() const {
+  /// By the rank that they are marked for, ascending; the marks go.
+  std::vector<std::vector<VertexHandle>> take_own() {
     std::vector<std::vector<VertexHandle>> vertices(parts_.comm().n_ranks());
-    for (const auto& [key, left] : left_)
+    for (const auto& [key, left] : of_others_)
       if (const Mark mark = mark_of(key); parts_.is_own(mark.v))
         vertices[static_cast<std::size_t>(mark.for_whom)].push_back(mark.v);
     for (auto& of_rank : vertices) std::sort(of_rank.begin(), of_rank.end());
+    auto& mine = vertices[static_cast<std::size_t>(whom_)];
+    mine = mine_.take<VertexHandle>();
+    std::erase_if(mine, [&](VertexHandle v) { return !parts_.is_own(v); });
     return vertices;
   }
 
@@ -70,10 +82,18 @@ class Spread {
     return {VertexHandle(static_cast<Index>(key / to_.size())), static_cast<int>(key % to_.size())};
   }
 
+  /// Edges to go, and one more; 0 where it was not reached.
+  std::uint32_t more_than_left(const Mark& mark) const {
+    if (mark.for_whom == whom_) return mine_[mark.v.idx()];
+    const auto at = of_others_.find(key_of(mark));
+    return at == of_others_.end() ? 0 : at->second;
+  }
   void reach(const Mark& mark, std::uint32_t left) {
-    const auto [at, is_first] = left_.emplace(key_of(mark), left);
-    if (!is_first && at->second >= left) return;
-    at->second = left;
+    if (more_than_left(mark) > left) return;
+    if (mark.for_whom == whom_)
+      mine_.set(mark.v.idx(), static_cast<std::uint8_t>(left + 1));
+    else
+      of_others_[key_of(mark)] = left + 1;
     if (parts_.is_own(mark.v))
       next_.push_back(mark);
     else
@@ -81,7 +101,7 @@ class Spread {
           Told{parts_.number(mark.v), left, mark.for_whom});
   }
   void go_on_from(const Mark& mark) {
-    const std::uint32_t left = left_.at(key_of(mark));
+    const std::uint32_t left = more_than_left(mark) - 1;
     if (left == 0) return;
     const auto go_through = [&](CellHandle c) {
       for (VertexHandle u : parts_.part().cell(c).v) reach({u, mark.for_whom}, left - 1);
@@ -94,9 +114,11 @@ class Spread {
 
   const DistributedMesh& parts_;
   Stars kind_;
+  int whom_;
   WholeStars stars_;
-  std::unordered_map<std::uint64_t, std::uint32_t> left_;  // edges to go, by vertex and rank
-  std::vector<Mark> next_;                                 // own ones to go on from
+  Marks& mine_;  // for whom_, by vertex: edges to go, and one more
+  std::unordered_map<std::uint64_t, std::uint32_t> of_others_;  // the same, by vertex and rank
+  std::vector<Mark> next_;                                      // own ones to go on from
   std::vector<Packer> to_;
 };
 

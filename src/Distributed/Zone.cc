@@ -11,6 +11,8 @@ namespace hfr::mpi {
 namespace {
 
 constexpr std::size_t kPurgeShare = 16;  // of the zone: so many changes, and it is looked through
+// Of the zone: where vertices are fewer, their cells are found by walks, each of which sees some 24 of them.
+constexpr std::size_t kWalkShare = 64;
 
 }  // namespace
 
@@ -67,8 +69,27 @@ void DistributedMesh::note_created(CellHandle c) {
   if (std::none_of(v.begin(), v.end(), [&](VertexHandle u) { return is_own(u); })) rim_.push_back(c.idx());
 }
 
-/// Those of the zone that have one of these vertices. O(zone).
+/// Those of the zone that have one of these vertices, each of which is there once; of a vertex that is
+/// further than two edges from own ones maybe not all. O(zone), or less where vertices are few.
 std::vector<Index> DistributedMesh::zone_round(std::span<const VertexHandle> vertices) {
+  const auto has_incident = [&](VertexHandle v) {
+    const CellHandle c = mesh_.incident_cell(v);
+    return c.is_valid() && !mesh_.is_deleted(c) && mesh_.cell(c).has(v);
+  };
+  const auto is_found_by_walk = [&](VertexHandle v) {
+    if (!work_.pinched.empty() && work_.pinched[v.idx()] != 0) return false;
+    return has_incident(v) || mesh_.is_deleted(v) || !near2_.has(v.idx(), comm_.rank());
+  };
+  if (vertices.size() < zone_.size() / kWalkShare &&
+      std::all_of(vertices.begin(), vertices.end(), is_found_by_walk)) {
+    Marks& marks = cell_marks();
+    for (VertexHandle v : vertices) {
+      if (!has_incident(v)) continue;
+      for (CellHandle c : mesh_.vertex_cells(v))
+        if (is_in_zone(c)) marks.add(c.idx());
+    }
+    return marks.take<Index>();
+  }
   for (VertexHandle v : vertices) marks_[v.idx()] = 1;
   std::vector<Index> cells;
   for (Index c : zone_) {

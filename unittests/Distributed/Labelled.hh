@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <random>
 #include <set>
 #include <string>
@@ -138,13 +139,16 @@ inline void expect_same_surface(const SurfaceReport& a, const SurfaceReport& b) 
 }
 
 /// The same for any run over any mesh: the same bytes, the same passes. Returns what shared memory says of
-/// it, on rank 0.
+/// it, on rank 0. `around`: what is done to the parts before the run, and after it.
 inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const std::filesystem::path& in,
-                              const ImproveOptions& options) {
+                              const ImproveOptions& options,
+                              const std::function<void(mpi::DistributedMesh&)>& around = {}) {
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, in, 300);
+  if (around) around(parts);
   const mpi::Pinches pinched = mpi::pinches(parts);
   const mpi::PartsResult result = mpi::improve(parts, options);
+  if (around) around(parts);
   const mpi::PartsCheck checked = mpi::check(parts, pinched);
   EXPECT_TRUE(checked.is_good) << checked.message;
   mpi::write_vtu(parts, folder.path() / "parts.vtu");
