@@ -100,8 +100,9 @@ while read -r header; do
 done < "$public"
 
 if [ -e .git ]; then
-  { git ls-files -z | xargs -0 stat -c '%s %n' -- 2> /dev/null || true; } |
-    awk '$1 > 1048576 { size = $1; sub(/^[0-9]+ /, ""); print $0 ": no file of " size " bytes is tracked" }' >> "$faults"
+  { git ls-files -z | xargs -0 wc -c -- 2> /dev/null || true; } |
+    awk '$1 > 1048576 && $2 != "total" { size = $1; sub(/^ *[0-9]+ /, ""); print $0 ": no file of " size " bytes is tracked" }' \
+      >> "$faults"
 fi
 
 cat "$faults"

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Builds the part that decides with several compilers, levels of optimisation and thread libraries, and compares
 # what each makes of the same meshes, bit for bit. Exit 1 at the first difference.
-# Usage: scripts/same-bits.sh      build trees go to build/same-bits
+# Usage: scripts/same-bits.sh      build trees go to build/same-bits; what is in build/test, or $HFR_BUILD, of
+#   scripts/test.sh is brought up to date and compared with (g++ -O2 with OpenMP), where it is there
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/scripts/install-deps.sh" --same-bits
@@ -12,8 +13,29 @@ pch=ON
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || pch=OFF
 
 expected=
+# compare VARIANT PROGRAM: exit 1 where it gives something else than the first program with its first number of threads.
+compare() {
+  local n found
+  for n in 1 2 3 7 16; do
+    found=$("$2" $n)
+    : "${expected:=$found}"
+    if [ "$found" != "$expected" ]; then
+      printf 'same-bits: %s with %s threads gives\n%s\ninstead of\n%s\n' "$1" $n "$found" "$expected" >&2
+      exit 1
+    fi
+  done
+  echo "same-bits: $1: 1, 2, 3, 7 and 16 threads agree"
+}
+
+tests=${HFR_BUILD:-$root/build/test}
+variants=("g++ -O1 OPENMP" "g++ -O3 TBB" "clang++ -O2 OPENMP")
+if [ -e "$tests/unittests/house/same_bits" ]; then
+  cmake --build "$tests" --parallel "$jobs" --target same_bits > /dev/null
+  compare "scripts/test.sh" "$tests/unittests/house/same_bits"
+  variants=("g++ -O1 TBB" "clang++ -O3 OPENMP")
+fi
 mkdir -p "$root/build/same-bits"
-for variant in "g++ -O1 OPENMP" "g++ -O3 TBB" "clang++ -O2 OPENMP"; do
+for variant in "${variants[@]}"; do
   read -r compiler level threads <<< "$variant"
   build=$root/build/same-bits/${compiler}${level}-$threads
   cmake -S "$root" -B "$build" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
@@ -22,13 +44,5 @@ for variant in "g++ -O1 OPENMP" "g++ -O3 TBB" "clang++ -O2 OPENMP"; do
     > "$build.log" 2>&1 || { cat "$build.log" >&2; exit 1; }
   cmake --build "$build" --parallel "$jobs" --target same_bits >> "$build.log" 2>&1 \
     || { cat "$build.log" >&2; exit 1; }
-  for n in 1 2 3 7 16; do
-    found=$("$build/unittests/house/same_bits" $n)
-    : "${expected:=$found}"
-    if [ "$found" != "$expected" ]; then
-      printf 'same-bits: %s with %s threads gives\n%s\ninstead of\n%s\n' "$variant" $n "$found" "$expected" >&2
-      exit 1
-    fi
-  done
-  echo "same-bits: $variant: 1, 2, 3, 7 and 16 threads agree"
+  compare "$variant" "$build/unittests/house/same_bits"
 done

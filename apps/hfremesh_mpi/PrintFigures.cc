@@ -13,11 +13,11 @@ void hfr::app::print_figures(std::span<const hfr::mpi::RankFigures> ranks) {
     std::fprintf(
         stderr,
         "hfremesh-mpi: rank %zu: sent %llu messages of %llu bytes in %llu exchanges, %llu collectives of "
-        "%llu bytes; %llu rounds; part: %llu own cells, %llu held, %llu near others; "
-        "%llu vertices borrowed for the run; peak memory %llu bytes\n",
+        "%llu bytes; %llu rounds; part: %llu own cells, %llu held, %llu near others; peak memory %llu "
+        "bytes; %llu vertices borrowed for the run\n",
         r, n(sum.messages), n(sum.bytes), n(sum.exchanges), n(sum.collectives), n(sum.collective_bytes),
         n(ranks[r].n_rounds), n(ranks[r].n_own), n(ranks[r].n_held), n(ranks[r].n_border),
-        n(ranks[r].n_borrowed), n(ranks[r].peak_bytes));
+        n(ranks[r].peak_bytes), n(ranks[r].n_borrowed));
   }
   for (std::size_t p = 0; p < hfr::mpi::kPhaseNames.size(); ++p) {
     double slowest = 0;

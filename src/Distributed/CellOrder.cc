@@ -63,8 +63,6 @@ bool is_dense(DistributedMesh& mesh) {
   std::uint64_t n_deleted = 0;
   for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i)
     n_deleted += mesh.is_own(VertexHandle(i)) && mesh.part().is_deleted(VertexHandle(i)) ? 1 : 0;
-  for (std::size_t i = 0; i < mesh.part().n_cells(); ++i)
-    n_deleted += mesh.part().is_deleted(CellHandle(i)) ? 1 : 0;
   return mesh.comm().sum(n_deleted) == 0 && mesh.free_slots().empty();
 }
 

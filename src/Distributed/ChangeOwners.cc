@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "Distributed/DistributedMesh.hh"
+#include "HalfFace/Writer.hh"
 
 namespace hfr::mpi {
 
@@ -52,9 +53,50 @@ void DistributedMesh::change_owners(std::span<const int> to) {
     return come;
   };
   apply(records());
-  work_.all_touched = true;
   start_zone();
   prune();
+  drop_dead_slots();
+}
+
+void DistributedMesh::drop_dead_slots() {
+  std::vector<CellHandle> order;
+  for (CellHandle c : mesh_.cells()) order.push_back(c);
+  const auto is_in_order = [&](CellHandle a, CellHandle b) { return number(a) < number(b); };
+  if (!std::is_sorted(order.begin(), order.end(), is_in_order))
+    std::sort(order.begin(), order.end(), is_in_order);
+  std::vector<CellHandle> to(mesh_.n_cells());
+  for (std::size_t i = 0; i < order.size(); ++i) to[order[i].idx()] = CellHandle(i);
+  const auto in_order = [&]<class T>(std::vector<T>& values) {
+    std::vector<T> moved;
+    moved.reserve(order.size());
+    for (CellHandle c : order) moved.push_back(values[c.idx()]);
+    values = std::move(moved);
+  };
+  TetMesh::Writer writer(mesh_);
+  std::vector<Cell> cells;
+  std::vector<int> regions;
+  cells.reserve(order.size());
+  for (CellHandle c : order) {
+    Cell& cell = cells.emplace_back(mesh_.cell(c));
+    for (HalfFaceHandle& m : cell.mate)
+      if (m.is_valid()) m = halfface_of(to[cell_of(m).idx()], corner_of(m));
+    if (mesh_.has_regions()) regions.push_back(mesh_.region(c));
+  }
+  for (std::size_t v = 0; v < mesh_.n_vertices(); ++v) {
+    CellHandle& incident = writer.incident_cell(VertexHandle(v));
+    if (incident.is_valid()) incident = to[incident.idx()];
+  }
+  writer.resize_cells(order.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) writer.cell(CellHandle(i)) = cells[i];
+  for (std::size_t i = 0; i < regions.size(); ++i) mesh_.set_region(CellHandle(i), regions[i]);
+  in_order(work_.quality);
+  in_order(work_.pending);
+  work_.claim.assign(order.size(), kUnclaimed);
+  work_.all_touched = true;
+  in_order(cell_number_);
+  n_sorted_ = cell_number_.size();
+  later_.clear();
+  start_zone();
 }
 
 /// Those of own vertices, to whoever holds them.

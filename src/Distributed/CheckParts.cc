@@ -309,7 +309,9 @@ struct HeldVertex {
 
 std::uint64_t hash_of_labels(const DistributedMesh& mesh, CellHandle c) {
   std::uint64_t sum = 0;
-  for (const LabelRecord& r : mesh.labels_of({&c, 1}, mesh.part().cell(c).v)) {
+  const auto number = [&](VertexHandle v) { return mesh.number(v); };
+  for (const LabelRecord& r :
+       mesh.label_numbers().of(mesh.part(), {}, {&c, 1}, mesh.part().cell(c).v, number)) {
     std::uint64_t h = mix64(r.number ^ static_cast<std::uint64_t>(r.kind) << 56);
     // Of what is fixed, the order of vertices says nothing.
     const bool is_lock = r.kind == LabelRecord::Kind::kFixedEdge || r.kind == LabelRecord::Kind::kFixedFace;

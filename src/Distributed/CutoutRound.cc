@@ -9,6 +9,7 @@
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/PartRound.hh"
+#include "Distributed/Spread.hh"
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Writer.hh"
 #include "Scheduler/Select.hh"
@@ -81,7 +82,9 @@ void deepen(std::span<const std::uint64_t> cells, std::span<const std::uint64_t>
     const auto at = std::ranges::lower_bound(cells, number);
     if (at == cells.end() || *at != number)
       throw InternalError("what has come to the rim of a cutout did not grow for a cell of its middle");
-    depth[static_cast<std::size_t>(at - cells.begin())] += kDeeper;
+    std::uint8_t& layers = depth[static_cast<std::size_t>(at - cells.begin())];
+    if (layers + kDeeper > Spread::kDeepest) throw InternalError("a cutout of too many layers");
+    layers += kDeeper;
   }
 }
 

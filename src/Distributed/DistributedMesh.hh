@@ -197,10 +197,12 @@ class DistributedMesh : private detail::PartState {
   /// Own vertices that other ranks hold, by rank: those of which it has a cell.
   std::vector<std::vector<VertexHandle>> held_by_others() const;
   /// Gives own vertices other owners: `to`, by vertex, of which those of own ones count. Those that are
-  /// deleted or have no cell keep theirs. What ranks hold follows. The mesh stays what it is, and so do
-  /// handles of cells; handles of vertices may change. Between passes, and not while labels of faces are
-  /// followed. All take part.
+  /// deleted or have no cell keep theirs. What ranks hold follows. The mesh stays what it is; handles may be
+  /// others. Between passes, and not while labels of faces are followed. All take part.
   void change_owners(std::span<const int> to);
+  /// Slots of cells that this part does not hold any more go, and the others come to stand in the order of
+  /// numbers. Between passes. No other rank is asked.
+  void drop_dead_slots();
 
   /// What one rank tells another of a vertex, and of a cell.
   struct VertexRecord {
@@ -255,6 +257,10 @@ class DistributedMesh : private detail::PartState {
   void insert_vertices(std::span<const VertexRecord> fresh);
   void add_labels(std::span<const LabelRecord> records) {
     labels_.add(mesh_, records, [this](std::uint64_t n) { return vertex_at(n); });
+    for (const LabelRecord& r : records)
+      if (r.kind != LabelRecord::Kind::kVertex)
+        for (std::uint64_t n : r.v)
+          if (n != kNoNumber) work_.frozen[vertex_at(n).idx()] = 1;
   }
   void refuse_loose(std::span<const LabelRecord> records) const;
   void write_cells(std::span<const CellRecord> cells);

@@ -356,14 +356,16 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   }
   // As in shared memory: where the run goes over everything.
   std::optional<std::vector<std::uint64_t>> order;
-  if (!options.min_dihedral && is_dense(mesh) && is_scattered(mesh))
+  if (!options.min_dihedral && is_dense(mesh) && is_scattered(mesh)) {
+    mesh.drop_dead_slots();
     order = mesh.renumber(numbers_along_curve(mesh));
+  }
+  RunControl control = control_of(mesh.comm(), options);
   std::optional<WorkBalance> balance;
   if (options.min_dihedral) balance.emplace(mesh, goal, policy);
   begin(mesh);
   const Survey found{result.before.worst, static_cast<std::size_t>(result.before.n_invalid)};
   const Strategy strategy = resolve(options, found, static_cast<std::size_t>(result.before.n_cells));
-  RunControl control = control_of(mesh.comm(), options);
   Findings findings;
   DeviceSession device;
   Residents residents(mesh, policy);

@@ -77,6 +77,9 @@ std::string reason_against(const ImproveOptions& options);
 /// periodic patches, published pipelines, devices, maps, other smoothers; and where the mesh lacks what
 /// options.surface names as fixed, by the numbers of the whole.
 ///
+/// Towards a goal, ranks may own vertices of others while it runs (docs/distributed.md, "Damage in one
+/// place"); whose they were is as before afterwards, but handles of a part's vertices may be others.
+///
 /// Ranks may have other time limits and callbacks: all stop where one of them is to, and hear of the same
 /// progress. A limit costs a reduction for each round. A rank whose callback throws has to call Comm::fail(),
 /// as for any other failure; the mesh is of no further use then.

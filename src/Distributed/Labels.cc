@@ -120,16 +120,9 @@ void DistributedMesh::hand_out_labels(std::span<const LabelRecord> records) {
   std::vector<Packer> packed(comm_.n_ranks());
   for (std::size_t r = 0; r < to.size(); ++r)
     if (!to[r].empty()) packed[r].put_all(to[r]);
-  const auto take = [&](std::span<const LabelRecord> some) {
-    add_labels(some);
-    for (const LabelRecord& r : some)
-      if (r.kind != Kind::kVertex)
-        for (std::uint64_t n : r.v)
-          if (n != kNoNumber) work_.frozen[vertex_at(n).idx()] = 1;
-  };
-  take(records);
+  add_labels(records);
   for (const Comm::Message& message : comm_.exchange(packed))
-    take(Unpacker(message.bytes).get_all<LabelRecord>());
+    add_labels(Unpacker(message.bytes).get_all<LabelRecord>());
 }
 
 void DistributedMesh::follow_face_labels() {

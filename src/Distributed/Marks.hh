@@ -32,17 +32,19 @@ class Marks {
     set(i, 1);
     return true;
   }
+  bool is_empty() const { return set_.empty(); }
+  void clear() {
+    for (Index i : set_) bytes_[i] = 0;
+    set_.clear();
+  }
   /// What is set, ascending; nothing is, from then on.
   template <class Handle>
   std::vector<Handle> take() {
     std::sort(set_.begin(), set_.end());
     std::vector<Handle> handles;
     handles.reserve(set_.size());
-    for (Index i : set_) {
-      bytes_[i] = 0;
-      handles.push_back(Handle(i));
-    }
-    set_.clear();
+    for (Index i : set_) handles.push_back(Handle(i));
+    clear();
     return handles;
   }
 

@@ -111,7 +111,8 @@ std::vector<LabelRecord> PartLabels::found_at(const TetMesh& mesh, std::span<con
   if (!of_faces && !of_edges) return records;
   for (CellHandle c : cells) {
     const auto& v = mesh.cell(c).v;
-    if (std::count_if(v.begin(), v.end(), [&](VertexHandle u) { return frozen[u.idx()] != 0; }) < 2) continue;
+    const auto may_have = [&](VertexHandle u) { return frozen.empty() || frozen[u.idx()] != 0; };
+    if (std::count_if(v.begin(), v.end(), may_have) < 2) continue;
     for (const auto& f : kFaceCorners) {
       if (!of_faces) break;
       const std::array<VertexHandle, 3> face = {v[f[0]], v[f[1]], v[f[2]]};

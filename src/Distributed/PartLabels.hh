@@ -50,7 +50,8 @@ class PartLabels {
     fix(mesh, locks);
   }
   /// Of these vertices, and of the edges and faces of these cells; some of them twice. `frozen`: by vertex, 0
-  /// for those that are on no edge or face with a label or that is fixed. `number`: vertex → number.
+  /// for those that are on no edge or face with a label or that is fixed; empty where that is not known.
+  /// `number`: vertex → number.
   template <class Number>
   std::vector<LabelRecord> of(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
                               std::span<const CellHandle> cells, std::span<const VertexHandle> vertices,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -24,6 +23,8 @@ class Spread {
   /// its incident cell, or all of them.
   enum class Stars : std::uint8_t { kWalked, kWhole };
 
+  static constexpr int kDeepest = 254;
+
   /// `whom`: the rank that begin() marks for on this one; its own, or the same on all.
   Spread(const DistributedMesh& parts, Stars kind, int whom)
       : parts_(parts),
@@ -31,10 +32,15 @@ class Spread {
         whom_(whom),
         stars_(parts.part(), parts.work()),
         mine_(parts.vertex_marks()),
-        to_(parts.comm().n_ranks()) {}
+        to_(parts.comm().n_ranks()) {
+    if (!mine_.is_empty()) throw InternalError("two spread over one part at the same time");
+  }
+  ~Spread() { mine_.clear(); }
+  Spread(const Spread&) = delete;
+  Spread& operator=(const Spread&) = delete;
 
+  /// kDeepest at most.
   void begin(CellHandle c, std::uint32_t depth) {
-    if (depth >= std::numeric_limits<std::uint8_t>::max()) throw InternalError("a spread of too many layers");
     for (VertexHandle v : parts_.part().cell(c).v) reach({v, whom_}, depth);
   }
   /// Each rank goes as far as it comes by itself before it asks others.

@@ -20,6 +20,8 @@ namespace {
 constexpr std::uint64_t kCellsForOne = 8, kHeldForOne = 200;
 // What it takes to ask all ranks, in poor cells.
 constexpr std::uint64_t kLeast = 100;
+// Cells that a rank hands over: one message holds them.
+constexpr std::uint64_t kMostMoved = 10'000'000;
 
 VertexHandle smallest_vertex(const Cell& cell) { return *std::min_element(cell.v.begin(), cell.v.end()); }
 
@@ -95,6 +97,8 @@ std::vector<std::uint64_t> gifts(std::span<const std::uint64_t> counts, int from
 WorkBalance::WorkBalance(DistributedMesh& parts, double goal, par::Policy policy)
     : parts_(parts), n_vertices_before_(parts.n_vertices()) {
   Comm& comm = parts.comm();
+  if (comm.size() == 1) return;
+  const Comm::InPhase phase(comm, Phase::kHandOut);
   const std::vector<std::uint32_t> n_poor = poor_cells_of(parts, goal, policy);
   const std::uint64_t mine = std::accumulate(n_poor.begin(), n_poor.end(), std::uint64_t{0});
   const std::vector<std::uint64_t> counts = comm.all_gather(std::span<const std::uint64_t>(&mine, 1));
@@ -104,10 +108,10 @@ WorkBalance::WorkBalance(DistributedMesh& parts, double goal, par::Policy policy
   if (saved < kLeast + most_held / kHeldForOne) return;
   const std::vector<int> to = shared_out(parts, n_poor, gifts(counts, comm.rank()));
   std::uint64_t n_moved = 0;
-  for (CellHandle c : own_cells(parts))
-    n_moved += to[smallest_vertex(parts.part().cell(c)).idx()] != comm.rank() ? 1 : 0;
+  for (CellHandle c : parts.part().cells())
+    if (parts.is_own(c) && to[smallest_vertex(parts.part().cell(c)).idx()] != comm.rank()) ++n_moved;
   const auto most_moved = static_cast<std::uint64_t>(-comm.min(-static_cast<double>(n_moved)));
-  if (most_moved == 0 || saved * kCellsForOne < most_moved) return;
+  if (most_moved == 0 || saved * kCellsForOne < most_moved || most_moved > kMostMoved) return;
   is_lent_ = true;
   hand_over(to);
 }
@@ -129,6 +133,7 @@ void WorkBalance::hand_over(std::span<const int> to) {
 
 void WorkBalance::give_back() {
   if (!std::exchange(is_lent_, false)) return;
+  const Comm::InPhase phase(parts_.comm(), Phase::kHandOut);
   const TetMesh& part = parts_.part();
   const auto lender = [&](VertexHandle v) {
     const auto at = std::ranges::lower_bound(borrowed_, parts_.number(v), {}, &Borrowed::number);

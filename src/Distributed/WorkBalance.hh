@@ -16,8 +16,8 @@ namespace hfr::mpi {
 std::vector<std::uint64_t> gifts(std::span<const std::uint64_t> counts, int from);
 
 /// While a run goes on towards a goal, ranks that have few of the cells below it own some vertices of ranks
-/// that have many, and so do part of their work. Whose they were is as before once they are given back. The
-/// mesh that comes out does not depend on it.
+/// that have many, and so do part of their work. Once they are given back, whose they were is as before, but
+/// of those that were deleted meanwhile. The mesh that comes out does not depend on it.
 class WorkBalance {
  public:
   /// Counts the cells below `goal` degrees, and hands vertices over where that takes less than it saves. All

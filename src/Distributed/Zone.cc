@@ -76,9 +76,12 @@ std::vector<Index> DistributedMesh::zone_round(std::span<const VertexHandle> ver
     const CellHandle c = mesh_.incident_cell(v);
     return c.is_valid() && !mesh_.is_deleted(c) && mesh_.cell(c).has(v);
   };
+  // Whether a vertex is pinched, and where it has cells, is known of those within two edges, as far as that
+  // was known before.
   const auto is_found_by_walk = [&](VertexHandle v) {
-    if (!work_.pinched.empty() && work_.pinched[v.idx()] != 0) return false;
-    return has_incident(v) || mesh_.is_deleted(v) || !near2_.has(v.idx(), comm_.rank());
+    const bool is_near = near2_.has(v.idx(), comm_.rank());
+    if (!work_.pinched.empty() && (!is_near || work_.pinched[v.idx()] != 0)) return false;
+    return has_incident(v) || mesh_.is_deleted(v) || !is_near;
   };
   if (vertices.size() < zone_.size() / kWalkShare &&
       std::all_of(vertices.begin(), vertices.end(), is_found_by_walk)) {

@@ -3,10 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
+#include <algorithm>
+#include <random>
 
+#include "Distributed/CellOrder.hh"
 #include "Distributed/Labelled.hh"
-#include "Distributed/PartRound.hh"
 #include "HalfFace/TupleMap.hh"
 
 namespace hfr::test {
@@ -48,21 +49,49 @@ TEST(ChangeOwners, RunsHaveTheBytesOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
   const auto path = folder.path() / "in.vtu";
-  int n_changed = 0;
+  std::uint64_t n_changed = 0, n_pinched = 0, n_invalid = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const bool is_valid = seed % 3 != 0;
     if (comm.rank() == 0)
-      io::write_mesh(path, labelled(is_valid ? valid_box(5, 0.4, seed) : jittered(4, 0.3, seed), seed,
+      io::write_mesh(path, labelled(is_valid ? valid_box(5, 0.4, seed) : torn(4, 0.45, 0.8, seed), seed,
                                     density_of(seed)));
     comm.sum(0);
     ImproveOptions options = polish_towards(seed % 2 == 0 ? 14 : 22);
     options.polish_only = is_valid && seed < 5;
     const Result shared = expect_same_run(comm, folder, path, options, [&](mpi::DistributedMesh& parts) {
+      n_pinched += mpi::pinches(parts).vertices.size();
+      n_invalid += mpi::survey(parts).n_invalid;
       change_owners(parts, seed, seed % 2 == 0 ? 1 : 40);
     });
     n_changed += shared.changed ? 1 : 0;
   }
-  EXPECT_GE(comm.from_first(n_changed), 4);
+  EXPECT_GE(comm.from_first(n_changed), 4U);
+  EXPECT_GT(comm.sum(n_pinched), 0U);
+  EXPECT_GT(n_invalid, 0U);
+}
+
+/// Parts that have given cells away have no gaps from it: a run without a goal gives the same cells the same
+/// new numbers, whatever was there before.
+TEST(ChangeOwners, ARunWithoutAGoalReordersAsIfNothingHadBeen) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  if (comm.rank() == 0) {
+    generate::Arrays box = generate::jittered_box({17, 17, 17}, 0.1, 3);
+    std::mt19937_64 engine(7);
+    std::shuffle(box.cells.begin(), box.cells.end(), engine);
+    io::write(path, build(box.points, box.cells));
+  }
+  comm.sum(0);
+  ImproveOptions options;
+  options.policy = {};
+  options.iterations = 1;
+  options.passes_only = true;
+  mpi::DistributedMesh parts(comm);
+  mpi::read_ranges(parts, path);
+  EXPECT_TRUE(mpi::is_scattered(parts)) << "the test shows nothing";
+  expect_same_run(comm, folder, path, options,
+                  [](mpi::DistributedMesh& some) { change_owners(some, 1, 200); });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "Distributed/Near.hh"
 #include "Distributed/Partition.hh"
 #include "HalfFace/Check.hh"
+#include "HalfFace/Generate.hh"
 #include "HalfFace/Writer.hh"
 #include "Operators/Clusters.hh"
 #include "Scheduler/Workspace.hh"
@@ -64,6 +65,15 @@ inline TetMesh valid_box(Index n, double jitter, std::uint64_t seed) {
     }
   }
   return mesh;
+}
+
+/// A jittered box without some of its cells.
+inline TetMesh torn(Index n, double jitter, double keep, std::uint64_t seed) {
+  const generate::Arrays box = generate::jittered_box({n, n, n}, jitter, seed);
+  std::vector<Corners> kept;
+  for (std::size_t i = 0; i < box.cells.size(); ++i)
+    if (generate::random_unit(seed, i) < keep) kept.push_back(box.cells[i]);
+  return build(box.points, kept);
 }
 
 /// The whole as the parts have it, from `whole` as it was cut, with all that gather() has to bring spoilt.

@@ -44,15 +44,6 @@ generate::Arrays chain(Index n, Index cubes, double jitter) {
   return all;
 }
 
-/// A jittered box without some of its cells.
-TetMesh torn(Index n, double jitter, double keep, std::uint64_t seed) {
-  const generate::Arrays box = generate::jittered_box({n, n, n}, jitter, seed);
-  std::vector<Corners> kept;
-  for (std::size_t i = 0; i < box.cells.size(); ++i)
-    if (generate::random_unit(seed, i) < keep) kept.push_back(box.cells[i]);
-  return build(box.points, kept);
-}
-
 class PinchedParts : public testing::Test {
  protected:
   /// Returns stages and operators that have changed something, on rank 0.

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "Distributed/Labelled.hh"
+#include "Distributed/OwnItems.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr::test {
@@ -92,11 +93,12 @@ TEST(WorkBalance, RunsHaveTheBytesOfSharedMemoryAndEachRankWhatItHad) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
   const auto path = folder.path() / "in.vtu";
+  std::uint64_t n_new = 0;
   for (std::uint64_t seed : {4, 6}) {
     if (comm.rank() == 0)
       io::write_mesh(path, labelled(box_with_a_poor_corner(12, 0.5), seed, {1, 200, 300, 9, 0, 0, true}));
     comm.sum(0);
-    const ImproveOptions options = polish_towards(30);
+    const ImproveOptions options = polish_towards(seed == 4 ? 30 : 35);
     const Result shared = expect_same_run(comm, folder, path, options);
     if (comm.rank() == 0) {
       EXPECT_TRUE(shared.changed);
@@ -120,6 +122,55 @@ TEST(WorkBalance, RunsHaveTheBytesOfSharedMemoryAndEachRankWhatItHad) {
     std::erase_if(before, is_gone);
     std::erase_if(after, is_gone);
     EXPECT_EQ(after, before);
+    // What has come is where its neighbours are.
+    for (VertexHandle v : mpi::own_vertices(parts)) {
+      const auto is_old_and_own = [&](VertexHandle u) {
+        return parts.is_own(u) && parts.number(u) < n_before;
+      };
+      if (parts.number(v) < n_before) continue;
+      ++n_new;
+      std::size_t n_near = 0;
+      for (CellHandle c : parts.part().vertex_cells(v))
+        for (VertexHandle u : parts.part().cell(c).v) n_near += is_old_and_own(u) ? 1 : 0;
+      EXPECT_GT(n_near, 0U);
+    }
+  }
+  EXPECT_GT(comm.sum(n_new), 0U);
+}
+
+/// Inverted cells, pinched vertices, what is fixed, copies that are put back, and a surface that may change.
+TEST(WorkBalance, RunsOfAllStagesHaveTheBytesOfSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  std::vector<SurfaceMode> modes = {SurfaceMode::kFrozen};
+#ifdef HFR_HAS_SURFACE
+  modes.push_back(SurfaceMode::kFree);
+#endif
+  for (const SurfaceMode mode : modes) {
+    if (comm.rank() == 0) {
+      const TetMesh poor = torn(7, 0.42, 0.97, 3);
+      TetMesh mesh = torn(7, 0, 0.97, 3);
+      for (VertexHandle v : mesh.vertices())
+        if (mesh.point(v).x < 0.5) mesh.set_point(v, poor.point(v));
+      io::write(path, mesh);
+    }
+    comm.sum(0);
+    ImproveOptions options;
+    options.policy = {};
+    options.min_dihedral = 30;
+    options.iterations = 1;
+    options.passes_only = true;
+    options.surface.mode = mode;
+    options.surface.fixed_vertices = {V(40), V(41)};
+    bool is_before = true;
+    expect_same_run(comm, folder, path, options, [&](mpi::DistributedMesh& parts) {
+      if (!std::exchange(is_before, false)) return;
+      EXPECT_GT(mpi::survey(parts).n_invalid, 0U);
+      mpi::WorkBalance balance(parts, 30, {});  // as the run will have it
+      EXPECT_EQ(comm.sum(balance.n_borrowed()) > 0, comm.size() > 1);
+      balance.give_back();
+    });
   }
 }
 
