@@ -97,6 +97,7 @@ void DistributedMesh::drop_dead_slots() {
   n_sorted_ = cell_number_.size();
   later_.clear();
   start_zone();
+  complete_rim();
 }
 
 /// Those of own vertices, to whoever holds them.

@@ -91,7 +91,13 @@ void DistributedMesh::build_part(Block& block, par::Policy policy) {
   });
   for (std::size_t c = 0; c < in.region.size(); ++c) mesh_.set_region(CellHandle(c), in.region[c]);
   start_zone();
-  for (Index c : rim_)  // at the edge of the part the incident cell may be one that is not here
+  complete_rim();
+}
+
+/// At the edge of the part the incident cell may be one that is not here.
+void DistributedMesh::complete_rim() {
+  TetMesh::Writer writer(mesh_);
+  for (Index c : rim_)
     for (VertexHandle v : mesh_.cell(CellHandle(c)).v)
       if (!mesh_.incident_cell(v).is_valid()) writer.set_incident_cell(v, CellHandle(c));
 }

@@ -268,6 +268,7 @@ class DistributedMesh : private detail::PartState {
   void match_open_faces();
   bool see_each_other(HalfFaceHandle h, HalfFaceHandle g) const;
   void start_zone();
+  void complete_rim();
   void tell_owners(std::span<const int> to);
   struct Push {
     std::vector<CellHandle> cells;
