@@ -61,6 +61,7 @@ void DistributedMesh::change_owners(std::span<const int> to) {
 void DistributedMesh::drop_dead_slots() {
   std::vector<CellHandle> order;
   for (CellHandle c : mesh_.cells()) order.push_back(c);
+  if (order.size() == mesh_.n_cells() && n_sorted_ == order.size()) return;
   const auto is_in_order = [&](CellHandle a, CellHandle b) { return number(a) < number(b); };
   if (!std::is_sorted(order.begin(), order.end(), is_in_order))
     std::sort(order.begin(), order.end(), is_in_order);
