@@ -90,10 +90,10 @@ TEST(WorkBalance, WhereItSavesLessThanItTakesNothingIsHandedOver) {
 /// As many poor cells with many good ones between them are not worth it.
 TEST(WorkBalance, WherePoorCellsLieFarApartNothingIsHandedOver) {
   mpi::Comm comm(MPI_COMM_WORLD);
-  const TetMesh poor = jittered(14, 0.35, 5);
-  TetMesh mesh = jittered(14, 0, 5);
+  const TetMesh poor = jittered(22, 0.35, 5);
+  TetMesh mesh = jittered(22, 0, 5);
   for (VertexHandle v : mesh.vertices())
-    if (mesh.point(v).z < 0.5 && mix64(v.idx()) % 16 == 0) mesh.set_point(v, poor.point(v));
+    if (mesh.point(v).z < 0.5 && mix64(v.idx()) % 8 == 0) mesh.set_point(v, poor.point(v));
   Whole whole(std::move(mesh), MinSine2{});
   const auto owner = mpi::partition(comm, comm.rank() == 0 ? &whole.mesh : nullptr, mpi::Partition::kNumbers);
   mpi::DistributedMesh parts(comm);
@@ -103,12 +103,13 @@ TEST(WorkBalance, WherePoorCellsLieFarApartNothingIsHandedOver) {
   const double all = static_cast<double>(n_below(whole.mesh, 30, {})),
                saved = -comm.min(-mine) - all / comm.size();
   if (comm.size() > 1) {
-    EXPECT_GT(saved, 190) << "the first look refuses already, and the test shows nothing";
+    const double most_held = -comm.min(-static_cast<double>(parts.part().n_cells()));
+    EXPECT_GT(saved, 100 + most_held / 200) << "the first look refuses already, and the test shows nothing";
   }
   EXPECT_EQ(comm.sum(mpi::WorkBalance(parts, 30, {}).n_borrowed()), 0U);
 }
 
-/// Whole runs, in which vertices come and go, with labels: the bytes are the same, and afterwards each rank
+/// Runs in which vertices come and go, with labels: the bytes are the same, and afterwards each rank
 /// has what it had.
 TEST(WorkBalance, RunsHaveTheBytesOfSharedMemoryAndEachRankWhatItHad) {
   mpi::Comm comm(MPI_COMM_WORLD);
