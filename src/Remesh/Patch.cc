@@ -2,6 +2,7 @@
 #include "Remesh/Patch.hh"
 
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -9,6 +10,7 @@
 #include "HalfFace/TupleMap.hh"
 #include "HalfFace/Writer.hh"
 #include "Operators/Cavity.hh"
+#include "Quality/Metrics.hh"
 
 namespace hfr {
 
@@ -183,25 +185,81 @@ std::vector<CellHandle> Patch::slots_for(TetMesh& whole, TetMesh::Writer& writer
   return slots;
 }
 
-void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
-  class OfMesh : public FaceLabels {
-   public:
-    explicit OfMesh(TetMesh& mesh) : mesh_(mesh) {}
-    void set(const std::array<VertexHandle, 3>& face, int label) override {
-      mesh_.labels().faces.set(face, label);
-    }
-    void erase(const std::array<VertexHandle, 3>& face) override {
-      mesh_.labels().faces.erase_unordered(face);
-    }
+namespace {
 
-   private:
-    TetMesh& mesh_;
+class LabelsOfMesh : public FaceLabels {
+ public:
+  explicit LabelsOfMesh(TetMesh& mesh) : mesh_(mesh) {}
+  void set(const std::array<VertexHandle, 3>& face, int label) override {
+    mesh_.labels().faces.set(face, label);
+  }
+  void erase(const std::array<VertexHandle, 3>& face) override { mesh_.labels().faces.erase_unordered(face); }
+
+ private:
+  TetMesh& mesh_;
+};
+
+/// Brings what the workspace has of these cells up to date, in the metric of its qualities.
+void measure(const TetMesh& mesh, std::span<const CellHandle> cells, Workspace& work) {
+  const auto in = [&](const auto& metric) {
+    for (CellHandle c : cells) {
+      const auto& v = mesh.cell(c).v;
+      work.quality[c.idx()] =
+          mesh.is_deleted(c) ? std::numeric_limits<double>::infinity()
+                             : metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
+    }
   };
-  OfMesh labels(whole);
-  put_back(whole, changed, labels);
+  if (work.has_qualities_of<MinSine2>()) in(MinSine2{});
+  if (work.has_qualities_of<MinDihedral>()) in(MinDihedral{});
+}
+
+/// The same of these vertices, whose star sizes are right.
+void look_for_pinched(const TetMesh& mesh, std::span<const VertexHandle> vertices, Workspace& work) {
+  Star scratch;
+  for (VertexHandle v : vertices) {
+    const std::uint32_t size = work.star_size[v.idx()];
+    const bool is_one = size > 0 && is_pinched(mesh, v, size, scratch);
+    if (is_one && work.pinched.empty()) work.pinched.assign(mesh.n_vertices(), 0);
+    if (!work.pinched.empty()) work.pinched[v.idx()] = is_one ? 1 : 0;
+  }
+  if (std::count(work.pinched.begin(), work.pinched.end(), 1) == 0) work.pinched.clear();
+}
+
+}  // namespace
+
+void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
+  LabelsOfMesh labels(whole);
+  write(whole, changed, labels);
 }
 
 void Patch::put_back(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const {
+  write(whole, changed, labels);
+}
+
+void Patch::put_back(TetMesh& whole, const TetMesh& changed, Workspace& work) const {
+  for (CellHandle c : cells_)
+    for (VertexHandle v : whole.cell(c).v) --work.star_size[v.idx()];
+  LabelsOfMesh labels(whole);
+  std::vector<CellHandle> cells = write(whole, changed, labels);
+  work.grow(whole);
+  std::vector<VertexHandle> vertices = vertices_;
+  std::erase_if(cells, [](CellHandle c) { return !c.is_valid(); });
+  for (CellHandle c : cells)
+    for (VertexHandle v : whole.cell(c).v) {
+      ++work.star_size[v.idx()];
+      vertices.push_back(v);
+    }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (VertexHandle v : vertices) work.changed[v.idx()] = work.clock;
+  cells.insert(cells.end(), cells_.begin(), cells_.end());  // some of which are none now
+  for (CellHandle c : cells) work.pending[c.idx()] = 0xff;
+  work.all_touched = true;
+  measure(whole, cells, work);
+  look_for_pinched(whole, vertices, work);
+}
+
+std::vector<CellHandle> Patch::write(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const {
   const Rim rim = this->rim(whole);
   TetMesh::Writer writer(whole);
   const std::vector<VertexHandle> vertices = put_vertices(whole, writer, changed);
@@ -241,6 +299,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed, FaceLabels& labels)
   }
   for (const auto& face : rim.boundary)
     if (!kept.contains(face)) labels.erase(face);
+  return slots;
 }
 
 }  // namespace hfr

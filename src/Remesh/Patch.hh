@@ -43,8 +43,11 @@ class Patch {
   bool fits(const TetMesh& whole, const TetMesh& changed) const;
 
   /// Writes `changed`, which became of mesh() without collection of garbage, in place of the cells. The whole
-  /// must not have changed there meanwhile; `work` must be attached again before it is used.
+  /// must not have changed there meanwhile; its workspace must be attached again before it is used.
   void put_back(TetMesh& whole, const TetMesh& changed) const;
+  /// The same, and the workspace follows: it has what it would have after attach(), and the qualities that it
+  /// had are right for all cells. For patches whose boundary stays.
+  void put_back(TetMesh& whole, const TetMesh& changed, Workspace& work) const;
   /// The same where somebody keeps account of the whole's labels of faces, and writes them.
   void put_back(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const;
 
@@ -60,6 +63,8 @@ class Patch {
   /// Where in the whole each cell of `changed` goes: into the slots of the cells that go, then into free
   /// ones, then into new ones. Slots that are left over become free.
   std::vector<CellHandle> slots_for(TetMesh& whole, TetMesh::Writer& writer, const TetMesh& changed) const;
+  /// put_back(); returns where in the whole each cell of `changed` is, invalid for what was deleted there.
+  std::vector<CellHandle> write(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const;
 
   std::vector<CellHandle> cells_;
   std::vector<VertexHandle> vertices_;

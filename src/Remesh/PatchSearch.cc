@@ -368,11 +368,13 @@ class WholeMesh : public PatchPlace {
   std::span<const CellHandle> worst() const override { return worst_; }
   std::span<const std::uint8_t> pinched() const override { return work_.pinched; }
   std::size_t n_cells() const override { return mesh_.n_logical_cells(); }
-  void put_back(const Patch& patch, const TetMesh& changed) override { patch.put_back(mesh_, changed); }
+  void put_back(const Patch& patch, const TetMesh& changed) override {
+    patch.put_back(mesh_, changed, work_);
+  }
 
  private:
   TetMesh& mesh_;
-  const Workspace& work_;
+  Workspace& work_;
   std::span<const CellHandle> worst_;
 };
 
@@ -417,7 +419,7 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     if (done->n_changed > 0) {
       if (run.is_part())
         run.work.forget_qualities();
-      else
+      else if (run.surface)  // whose vertices may have come or gone
         run.work.attach(run.mesh, run.policy());
       if (run.strategy.patch.has_surface) rebuild_surface(run);
     }

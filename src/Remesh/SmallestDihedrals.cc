@@ -51,7 +51,7 @@ double SmallestDihedrals::smallest(std::size_t rank) {
 }
 
 double degrees_with_few_below(const Run& run, double degrees, std::size_t n) {
-  if (!run.is_part()) return degrees_with_few_below(run.mesh, degrees, n, run.policy());
+  if (!run.is_part()) return degrees_with_few_below(run.mesh, degrees, n, run.policy(), run.known());
   SmallestDihedrals angles(run);
   if (angles.n_below(dihedral_decision(degrees)) <= n) return degrees;
   return report_value(Metric::kMinDihedral, angles.smallest(n + 1));

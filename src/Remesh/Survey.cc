@@ -184,8 +184,9 @@ std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, s
   return cells;
 }
 
-double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy) {
-  const auto worst = worst_cells_below(mesh, degrees, n + 1, policy);
+double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy,
+                              const KnownValues& known) {
+  const auto worst = worst_cells_below(mesh, degrees, n + 1, policy, {}, known);
   if (worst.size() <= n) return degrees;
   return report_value(Metric::kMinDihedral, min_dihedral_of(mesh, worst.back()));
 }

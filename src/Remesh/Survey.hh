@@ -60,7 +60,8 @@ std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, s
                                           par::Policy policy, std::span<const CellHandle> but = {},
                                           const KnownValues& known = {});
 /// At most `degrees`, such that no more than n cells are below.
-double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy);
+double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy,
+                              const KnownValues& known = {});
 /// Cells whose volume is not positive beyond rounding, ascending.
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy);
 

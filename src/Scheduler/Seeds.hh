@@ -7,46 +7,53 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Scheduler/ByteTable.hh"
 #include "hfremesh/Scheduler/Workspace.hh"
 
 namespace hfr {
 
-/// Cells to be looked at, ascending, and a flag per cell slot that says the same.
+/// Cells to be looked at, ascending, and which cells these are.
 class Worklist {
  public:
   /// Cells c with keep(c), deleted ones left out.
   template <class Keep>
-  Worklist(const TetMesh& mesh, par::Policy policy, Keep&& keep) : listed_(mesh.n_cells(), 0) {
-    cells_ = par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
-      if (mesh.is_deleted(CellHandle(i)) || !keep(CellHandle(i))) return false;
-      listed_[i] = 1;
-      return true;
-    });
-  }
+  Worklist(const TetMesh& mesh, par::Policy policy, Keep&& keep)
+      : Worklist(mesh, policy, par::compact<Index>(policy, mesh.n_cells(), [&](std::size_t i) {
+                   return !mesh.is_deleted(CellHandle(i)) && keep(CellHandle(i));
+                 })) {}
 
   /// The same for the cells of an ascending list.
   template <class Keep>
   Worklist(const TetMesh& mesh, par::Policy policy, std::span<const Index> list, Keep&& keep)
-      : listed_(mesh.n_cells(), 0) {
-    cells_ = par::compact<Index>(policy, list.size(), [&](std::size_t i) {
-      const CellHandle c(list[i]);
-      if (mesh.is_deleted(c) || !keep(c)) return false;
-      listed_[c.idx()] = 1;
-      return true;
-    });
-    for (Index& c : cells_) c = list[c];
-  }
+      : Worklist(mesh, policy, of_list(policy, list, [&](Index c) {
+                   return !mesh.is_deleted(CellHandle(c)) && keep(CellHandle(c));
+                 })) {}
 
   std::span<const Index> cells() const { return cells_; }
   bool has(CellHandle c) const { return listed_[c.idx()] != 0; }
 
  private:
+  Worklist(const TetMesh& mesh, par::Policy policy, std::vector<Index>&& cells)
+      : cells_(std::move(cells)), listed_(mesh.n_cells(), cells_.size(), 0) {
+    if (!listed_.is_for_threads()) policy = {};
+    par::for_each(policy, cells_.size(), [&](std::size_t i) { listed_.set(cells_[i], 1); });
+  }
+
+  template <class Keep>
+  static std::vector<Index> of_list(par::Policy policy, std::span<const Index> list, Keep&& keep) {
+    std::vector<Index> cells =
+        par::compact<Index>(policy, list.size(), [&](std::size_t i) { return keep(list[i]); });
+    for (Index& c : cells) c = list[c];
+    return cells;
+  }
+
   std::vector<Index> cells_;
-  std::vector<std::uint8_t> listed_;
+  ByteTable listed_;
 };
 
 /// Whether the edge of listed cell c, an inner one, is c's to name: c is the smallest listed cell of the

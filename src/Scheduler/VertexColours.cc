@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 
+#include "Scheduler/ByteTable.hh"
+
 namespace hfr {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr double kVertexNanoseconds = 400;
 class FirstFit {
  public:
   FirstFit(const TetMesh& mesh, std::span<const VertexHandle> vertices, const StarTable& stars)
-      : mesh_(mesh), vertices_(vertices), stars_(stars), colour_(mesh.n_vertices(), kNone) {}
+      : mesh_(mesh), vertices_(vertices), stars_(stars), colour_(mesh.n_vertices(), vertices.size(), kNone) {}
 
   std::uint8_t colour(std::size_t i) const { return colour_[vertices_[i].idx()]; }
 
@@ -25,7 +27,7 @@ class FirstFit {
       std::uint64_t used = 0;
       for (HalfFaceHandle h : stars_.link(i))
         for (VertexHandle u : mesh_.cell(cell_of(h)).v) used |= std::uint64_t{1} << colour_[u.idx()];
-      colour_[vertices_[i].idx()] = first_free(used);
+      colour_.set(vertices_[i].idx(), first_free(used));
     }
   }
 
@@ -45,7 +47,7 @@ class FirstFit {
       for (std::size_t i = begin_of(piece), k = 0; i < begin_of(piece + 1); ++i, ++k) {
         std::uint64_t used = 0;
         for (std::uint32_t n = mine.sizes[k]; n > 0; --n) used |= std::uint64_t{1} << colour_[*next++];
-        if (!stars_.link(i).empty()) colour_[vertices_[i].idx()] = first_free(used);
+        if (!stars_.link(i).empty()) colour_.set(vertices_[i].idx(), first_free(used));
       }
     }
   }
@@ -81,7 +83,7 @@ class FirstFit {
   const TetMesh& mesh_;
   std::span<const VertexHandle> vertices_;
   const StarTable& stars_;
-  std::vector<std::uint8_t> colour_;  // by vertex of the mesh; a byte each stays in the cache
+  ByteTable colour_;  // by vertex of the mesh; a byte each stays in the cache
 };
 
 }  // namespace

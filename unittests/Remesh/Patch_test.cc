@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "HalfFace/Writer.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/Metrics.hh"
 #include "Operators/Replace.hh"
@@ -59,6 +60,37 @@ TEST(Patch, HoldsTheCellsAroundAndTheirPoints) {
       EXPECT_EQ(patch.vertices()[patch.mesh().cell(C(i)).v[k].idx()], mesh.cell(patch.cells()[i]).v[k]);
 }
 
+/// Expects of the workspace what one that is attached anew has; what is frozen, where the boundary stays.
+template <class Metric>
+void put_back_with_workspace(const Patch& patch, TetMesh& mesh, const TetMesh& changed,
+                             const Metric& metric) {
+  Workspace work, anew;
+  work.clock = anew.clock = 7;
+  work.attach(mesh, {});
+  work.set_qualities(mesh, metric, {});
+  std::fill(work.changed.begin(), work.changed.end(), 3U);
+  patch.put_back(mesh, changed, work);
+  anew.attach(mesh, {});
+  anew.set_qualities(mesh, metric, {});
+  EXPECT_TRUE(work.has_qualities_of<Metric>());
+  EXPECT_EQ(work.quality, anew.quality);
+  EXPECT_EQ(work.star_size, anew.star_size);
+  if (boundary_of(changed) == boundary_of(patch.mesh())) {
+    EXPECT_EQ(work.frozen, anew.frozen);
+  }
+  EXPECT_EQ(work.pinched, anew.pinched);
+  EXPECT_EQ(work.claim, anew.claim);
+  EXPECT_TRUE(work.all_touched);
+  // Cells that are there now wait to be looked at, and their vertices count as changed.
+  for (CellHandle c : patch.cells()) {
+    EXPECT_EQ(work.pending[c.idx()], 0xff);
+    if (mesh.is_deleted(c)) continue;
+    for (VertexHandle v : mesh.cell(c).v) EXPECT_EQ(work.changed[v.idx()], 7U);
+  }
+  for (std::size_t i = 0; i < mesh.n_vertices(); ++i)
+    EXPECT_TRUE(work.changed[i] == 7U || std::ranges::find(patch.vertices(), V(i)) == patch.vertices().end());
+}
+
 TEST(Patch, PutBackUnchangedIsTheSameMesh) {
   TetMesh mesh = jittered(5, 0.2, 3);
   const auto before = cells_by_place(mesh);
@@ -91,6 +123,19 @@ TetMesh inner_vertex_with_a_cell_apart() {
                                     {0, 4, 2, 6},
                                     {0, 1, 4, 6},
                                     {0, 7, 8, 9}});
+}
+
+/// A vertex is pinched after a patch was put back where it was so before, and where the patch makes it so.
+TEST(Patch, WorkspaceSaysWhichVerticesArePinched) {
+  TetMesh mesh = inner_vertex_with_a_cell_apart();
+  const Patch same(mesh, C(0), 2, pinched_vertices(mesh, star_sizes(mesh)));
+  put_back_with_workspace(same, mesh, same.mesh(), MinSine2{});
+  const Patch patch(mesh, C(8), 0);
+  ASSERT_EQ(patch.cells().size(), 1U);
+  TetMesh empty = patch.mesh();
+  TetMesh::Writer writer(empty);
+  writer.mark_deleted(C(0));
+  put_back_with_workspace(patch, mesh, empty, MinSine2{});
 }
 
 TEST(Patch, VertexWithCellsThatThePatchDoesNotSeeStays) {
@@ -169,7 +214,10 @@ TEST(Patch, WhatCameWentAndMovedArrives) {
       }
       const std::size_t n_vertices = mesh.n_logical_vertices();
       const std::size_t n_cells = mesh.n_logical_cells();
-      patch.put_back(mesh, changed);
+      if (turn % 2 == 0)
+        put_back_with_workspace(patch, mesh, changed, MinSine2{});
+      else
+        put_back_with_workspace(patch, mesh, changed, MinDihedral{});
       EXPECT_EQ(mesh.n_logical_vertices() - n_vertices,
                 changed.n_logical_vertices() - patch.mesh().n_logical_vertices());
       EXPECT_EQ(mesh.n_logical_cells() - n_cells, changed.n_logical_cells() - patch.cells().size());
