@@ -274,7 +274,7 @@ void DeviceMesh::upload(const TetMesh& mesh, const Workspace& work) {
   m.queue.fill(m.claim, kNone, 0, m.claim.room);
 }
 
-void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
+void DeviceMesh::download(TetMesh& mesh, Workspace& work, par::Policy policy) {
   Impl& m = *impl_;
   // All of it before the first write to the mesh: should the device fail now, the mesh is still whole.
   std::vector<cl_uint> cells(8 * m.n_cells);
@@ -294,8 +294,8 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
   m.queue.read(m.changed, changed.data(), changed.size());
 
   std::vector<std::pair<std::size_t, std::size_t>> inherits;  // a slot, and whose data it takes
-  for (std::size_t c = 0; c < origin.size(); ++c)
-    if (origin[c] != c) inherits.emplace_back(c, origin[c]);
+  for (Index c : par::compact<Index>(policy, origin.size(), [&](std::size_t i) { return origin[i] != i; }))
+    inherits.emplace_back(c, origin[c]);
   TetMesh::Writer writer(mesh);
   // By way of spare slots: a slot may give its data away and take another's.
   writer.resize_cells(m.n_cells + inherits.size());
@@ -304,20 +304,23 @@ void DeviceMesh::download(TetMesh& mesh, Workspace& work) {
   for (std::size_t i = 0; i < inherits.size(); ++i)
     mesh.copy_cell_data(CellHandle(m.n_cells + i), CellHandle(inherits[i].first));
   writer.resize_cells(m.n_cells);
-  for (std::size_t c = 0; c < m.n_cells; ++c) {
+  par::for_each(policy, m.n_cells, [&](std::size_t c) {
     Cell& cell = writer.cell(CellHandle(c));
     for (std::size_t k = 0; k < 4; ++k) {
       cell.v[k] = VertexHandle(cells[8 * c + k]);
       cell.mate[k] = HalfFaceHandle(cells[8 * c + 4 + k]);
     }
-  }
+  });
   std::copy(points.begin(), points.end(), mesh.point_data());
-  for (std::size_t v = 0; v < m.n_vertices; ++v) {
-    if (incident_cells[v] == kNone && mesh.incident_cell(VertexHandle(v)).is_valid())
-      writer.mark_deleted(VertexHandle(v));  // only a vertex that was removed loses its cells
-    else
+  // Only a vertex that was removed loses its cells.
+  const auto is_gone = [&](std::size_t v) {
+    return incident_cells[v] == kNone && mesh.incident_cell(VertexHandle(v)).is_valid();
+  };
+  for (Index v : par::compact<Index>(policy, m.n_vertices, is_gone)) writer.mark_deleted(VertexHandle(v));
+  par::for_each(policy, m.n_vertices, [&](std::size_t v) {
+    if (!mesh.is_deleted(VertexHandle(v)))
       writer.set_incident_cell(VertexHandle(v), CellHandle(incident_cells[v]));
-  }
+  });
   writer.free_cells().clear();
   for (cl_uint c : free_cells) writer.free_cells().push_back(CellHandle(c));
   work.quality = std::move(quality);

@@ -48,7 +48,7 @@ class DeviceMesh {
   /// Calls require_room().
   void upload(const TetMesh& mesh, const Workspace& work);
   /// Writes back everything that passes have changed.
-  void download(TetMesh& mesh, Workspace& work);
+  void download(TetMesh& mesh, Workspace& work, par::Policy policy = {});
 
   /// Cells that are not deleted.
   std::size_t n_logical_cells() const;

@@ -23,7 +23,7 @@ bool DeviceMesh::from_cache() const { refuse(); }
 std::uint64_t DeviceMesh::bytes_needed(std::size_t, std::size_t) { refuse(); }
 void DeviceMesh::require_room(std::size_t, std::size_t) const { refuse(); }
 void DeviceMesh::upload(const TetMesh&, const Workspace&) { refuse(); }
-void DeviceMesh::download(TetMesh&, Workspace&) { refuse(); }
+void DeviceMesh::download(TetMesh&, Workspace&, par::Policy) { refuse(); }
 std::size_t DeviceMesh::n_logical_cells() const { refuse(); }
 RoundCounts DeviceMesh::round(Kind, const DeviceLook&, std::uint64_t, std::uint32_t, std::size_t) {
   refuse();

@@ -23,11 +23,29 @@ void permute(par::Policy policy, const std::vector<Handle<Kind>>& to, std::size_
 
 /// Old → new with the order of the kept ones kept.
 template <class H, class Keep>
-std::vector<H> close_up(std::size_t n, std::size_t& n_new, Keep&& keep) {
+std::vector<H> close_up(par::Policy policy, std::size_t n, std::size_t& n_new, Keep&& keep) {
   std::vector<H> to(n);
-  n_new = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (keep(i)) to[i] = H(n_new++);
+  const int n_parts = par::thread_count(policy, n);
+  std::vector<std::size_t> next(static_cast<std::size_t>(n_parts), 0);  // of each part
+  const auto for_part = [&](int part, auto&& body) {
+    const std::size_t end = par::part_begin(n, n_parts, part + 1);
+    for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i) body(i);
+  };
+  par::parts(n_parts, [&](int part) {
+    std::size_t n_kept = 0;
+    for_part(part, [&](std::size_t i) {
+      if (keep(i)) to[i] = H(n_kept++);
+    });
+    next[static_cast<std::size_t>(part)] = n_kept;
+  });
+  n_new = par::exclusive_scan(std::span(next));
+  par::parts(n_parts, [&](int part) {
+    const std::size_t first = next[static_cast<std::size_t>(part)];
+    if (first == 0) return;
+    for_part(part, [&](std::size_t i) {
+      if (to[i].is_valid()) to[i] = H(to[i].idx() + first);
+    });
+  });
   return to;
 }
 
@@ -141,12 +159,12 @@ GarbageMap TetMesh::collect_garbage(GarbageOptions options) {
   GarbageMap map;
   std::size_t n_vertices = 0;
   std::size_t n_cells = 0;
-  map.vertices = close_up<VertexHandle>(points_.size(), n_vertices, [&](std::size_t i) {
+  map.vertices = close_up<VertexHandle>(options.policy, points_.size(), n_vertices, [&](std::size_t i) {
     return (vertex_status_[i] & kDeleted) == 0 &&
            !(options.drop_unused_vertices && !incident_cell_[i].is_valid());
   });
-  map.cells =
-      close_up<CellHandle>(cells_.size(), n_cells, [&](std::size_t i) { return !is_deleted(CellHandle(i)); });
+  map.cells = close_up<CellHandle>(options.policy, cells_.size(), n_cells,
+                                   [&](std::size_t i) { return !is_deleted(CellHandle(i)); });
   renumber_attached(map, n_vertices, n_cells);
   const std::size_t vertex_gap = first_gap(map.vertices, n_vertices);
   close_gaps(map.vertices, vertex_gap, n_vertices, labels_.vertices);

@@ -25,15 +25,25 @@ std::uint64_t spread(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249ULL;
 }
 
-CurveGrid grid_of(const TetMesh& mesh, SpaceCurve curve) {
+CurveGrid grid_of(const TetMesh& mesh, SpaceCurve curve, par::Policy policy) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
-  for (const Vec3& p : mesh.points())
-    for (int i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], p[i]);
-      high[i] = std::max(high[i], p[i]);
-    }
-  return {curve, low, high};
+  struct Box {
+    Vec3 low = {kInfinity, kInfinity, kInfinity}, high = {-kInfinity, -kInfinity, -kInfinity};
+  };
+  const Box box = par::reduce(
+      policy, mesh.n_vertices(), Box{},
+      [&](std::size_t i) {
+        const Vec3 p = mesh.point(VertexHandle(i));
+        return Box{p, p};
+      },
+      [](Box a, const Box& b) {
+        for (int i = 0; i < 3; ++i) {
+          a.low[i] = std::min(a.low[i], b.low[i]);
+          a.high[i] = std::max(a.high[i], b.high[i]);
+        }
+        return a;
+      });
+  return {curve, box.low, box.high};
 }
 
 /// Old → new when the things that exist(i) are sorted by place(i).
@@ -42,11 +52,9 @@ std::vector<H> sorted_places(par::Policy policy, std::size_t n, std::size_t& n_n
                              Place&& place) {
   if (n > std::numeric_limits<std::uint32_t>::max())
     throw ResourceLimit("reorder: " + std::to_string(n) + " things are more than the sort can number");
-  std::vector<par::KeyIndex> items;
-  items.reserve(n);
-  for (std::size_t i = 0; i < n; ++i)
-    if (exists(i)) items.push_back({0, static_cast<std::uint32_t>(i)});
-  par::for_each(policy, items.size(), [&](std::size_t i) { items[i].key = place(items[i].index); });
+  const std::vector<std::uint32_t> kept = par::compact<std::uint32_t>(policy, n, exists);
+  std::vector<par::KeyIndex> items(kept.size());
+  par::for_each(policy, items.size(), [&](std::size_t i) { items[i] = {place(kept[i]), kept[i]}; });
   std::vector<par::KeyIndex> scratch;
   par::stable_sort(policy, items, scratch);
   n_new = items.size();
@@ -141,7 +149,7 @@ bool is_scattered(const TetMesh& mesh, par::Policy policy) {
 }
 
 GarbageMap reorder(TetMesh& mesh, const ReorderOptions& options) {
-  const CurveGrid grid = grid_of(mesh, options.curve);
+  const CurveGrid grid = grid_of(mesh, options.curve, options.policy);
   GarbageMap map;
   std::size_t n_vertices = 0;
   std::size_t n_cells = 0;

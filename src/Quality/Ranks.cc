@@ -15,14 +15,20 @@ constexpr std::size_t kBins = 4096;
 /// for a quotient all is in the first one.
 class Bins {
  public:
-  explicit Bins(std::span<const double> values) {
-    double high = -std::numeric_limits<double>::infinity();
-    low_ = std::numeric_limits<double>::infinity();
-    for (const double x : values) {
-      low_ = x < low_ ? x : low_;
-      high = x > high ? x : high;
-    }
-    const double range = high - low_;
+  Bins(std::span<const double> values, par::Policy policy) {
+    struct Range {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+    };
+    const Range all = par::reduce(
+        policy, values.size(), Range{},
+        [&](std::size_t i) {
+          return Range{values[i], values[i]};
+        },
+        [](Range a, Range b) {
+          return Range{b.low < a.low ? b.low : a.low, b.high > a.high ? b.high : a.high};
+        });
+    low_ = all.low;
+    const double range = all.high - low_;
     if (range > 0 && range <= std::numeric_limits<double>::max()) scale_ = kBins / range;
     if (!(scale_ <= std::numeric_limits<double>::max())) scale_ = 0;
   }
@@ -38,26 +44,52 @@ class Bins {
 
 }  // namespace
 
-std::vector<double> values_at(std::span<const double> values, std::span<const std::size_t> ranks) {
-  const Bins bins(values);
+std::vector<double> values_at(std::span<const double> values, std::span<const std::size_t> ranks,
+                              par::Policy policy) {
+  const Bins bins(values, policy);
+  const int n_parts = par::thread_count(policy, values.size());
+  const auto for_part = [&](int part, auto&& body) {
+    const std::size_t end = par::part_begin(values.size(), n_parts, part + 1);
+    for (std::size_t i = par::part_begin(values.size(), n_parts, part); i < end; ++i) body(values[i]);
+  };
+  struct Part {
+    std::vector<std::size_t> n = std::vector<std::size_t>(kBins, 0);  // by bin
+    std::vector<std::vector<double>> members = std::vector<std::vector<double>>(kBins);
+  };
+  std::vector<Part> parts(static_cast<std::size_t>(n_parts));
+  par::parts(n_parts, [&](int part) {
+    std::vector<std::size_t>& mine = parts[static_cast<std::size_t>(part)].n;
+    for_part(part, [&](double x) { ++mine[bins.of(x)]; });
+  });
   std::array<std::size_t, kBins + 1> first{};  // of each bin, in the sorted order
-  for (const double x : values) ++first[bins.of(x) + 1];
-  for (std::size_t i = 0; i < kBins; ++i) first[i + 1] += first[i];
+  for (std::size_t i = 0; i < kBins; ++i) {
+    first[i + 1] = first[i];
+    for (const Part& part : parts) first[i + 1] += part.n[i];
+  }
   const auto bin_with = [&](std::size_t rank) {
     return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), rank) - first.begin()) - 1;
   };
   std::array<std::uint8_t, kBins> is_asked{};
   for (const std::size_t rank : ranks) is_asked[bin_with(rank)] = 1;
-  std::vector<std::vector<double>> members(kBins);
-  for (std::size_t i = 0; i < kBins; ++i)
-    if (is_asked[i]) members[i].reserve(first[i + 1] - first[i]);
-  for (const double x : values)
-    if (const std::size_t bin = bins.of(x); is_asked[bin]) members[bin].push_back(x);
+  par::parts(n_parts, [&](int part) {
+    Part& mine = parts[static_cast<std::size_t>(part)];
+    for (std::size_t i = 0; i < kBins; ++i)
+      if (is_asked[i]) mine.members[i].reserve(mine.n[i]);
+    for_part(part, [&](double x) {
+      if (const std::size_t bin = bins.of(x); is_asked[bin]) mine.members[bin].push_back(x);
+    });
+  });
   std::vector<double> found;
   for (const std::size_t rank : ranks) {
     const std::size_t bin = bin_with(rank);
-    const auto at = members[bin].begin() + static_cast<std::ptrdiff_t>(rank - first[bin]);
-    std::nth_element(members[bin].begin(), at, members[bin].end());
+    std::vector<double>& members = parts[0].members[bin];
+    for (std::size_t part = 1; part < parts.size(); ++part) {
+      std::vector<double>& more = parts[part].members[bin];
+      members.insert(members.end(), more.begin(), more.end());
+      more.clear();
+    }
+    const auto at = members.begin() + static_cast<std::ptrdiff_t>(rank - first[bin]);
+    std::nth_element(members.begin(), at, members.end());
     found.push_back(*at);
   }
   return found;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "Parallel/DisjointSets.hh"
 #include "Quality/CellTotals.hh"
@@ -77,7 +78,7 @@ Box add_vertices(const TetMesh& mesh, par::Policy policy, Statistics& s) {
 }
 
 // Of decision values; the mean is left to the caller.
-Distribution distribution(Metric metric, const std::vector<double>& values) {
+Distribution distribution(Metric metric, const std::vector<double>& values, par::Policy policy) {
   Distribution d;
   if (values.empty()) return d;
   const std::size_t n = values.size();
@@ -86,7 +87,7 @@ Distribution distribution(Metric metric, const std::vector<double>& values) {
     const auto rank = static_cast<std::size_t>(std::ceil(kPercentiles[i] / 100.0 * static_cast<double>(n)));
     ranks[i + 1] = std::clamp<std::size_t>(rank, 1, n) - 1;
   }
-  const std::vector<double> found = detail::values_at(values, ranks);
+  const std::vector<double> found = detail::values_at(values, ranks, policy);
   for (std::size_t i = 0; i < kPercentiles.size(); ++i) d.percentiles[i] = report_value(metric, found[i + 1]);
   d.min = report_value(metric, found[0]);
   d.max = d.percentiles.back();
@@ -110,28 +111,65 @@ std::size_t edge_count(const TetMesh& mesh, std::span<const HalfFaceHandle> cons
 }
 
 // A cell belongs to the root of its smallest neighbour, if that is smaller than itself: one look for most
-// cells, and few roots are left to be joined.
-std::size_t count_components(const TetMesh& mesh) {
-  std::vector<Index> number(mesh.n_cells());   // of the root that a cell belongs to
-  std::vector<std::array<Index, 2>> touching;  // roots
-  Index n_roots = 0;
-  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
-    if (mesh.is_deleted(CellHandle(i))) continue;
-    const auto& mates = mesh.cell(CellHandle(i)).mate;
-    std::size_t least = i;
-    for (const HalfFaceHandle m : mates)
-      if (m.is_valid()) least = std::min<std::size_t>(least, cell_of(m).idx());
-    number[i] = least == i ? n_roots++ : number[least];
-    for (const HalfFaceHandle m : mates) {
-      if (!m.is_valid() || cell_of(m).idx() >= i) continue;
-      const std::array<Index, 2> both = {number[cell_of(m).idx()], number[i]};
-      if (both[0] != both[1] && (touching.empty() || both != touching.back())) touching.push_back(both);
+// cells, and few roots are left to be joined. Threads find the roots of pieces of the mesh.
+std::size_t count_components(const TetMesh& mesh, par::Policy policy) {
+  const std::size_t n = mesh.n_cells();
+  const int n_parts = par::thread_count(policy, n);
+  struct Part {
+    std::size_t n_roots = 0;
+    std::vector<std::array<Index, 2>> touching;  // roots
+    std::vector<Index> at_others;                // cells with a neighbour in a part before
+
+    void touch(Index one, Index other) {
+      const std::array<Index, 2> both = {one, other};
+      if (one != other && (touching.empty() || both != touching.back())) touching.push_back(both);
     }
-  }
+  };
+  std::vector<Part> parts(static_cast<std::size_t>(n_parts));
+  std::vector<Index> number(n);  // of the root that a cell belongs to; within its part at first
+  par::parts(n_parts, [&](int p) {
+    Part& mine = parts[static_cast<std::size_t>(p)];
+    const std::size_t begin = par::part_begin(n, n_parts, p), end = par::part_begin(n, n_parts, p + 1);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (mesh.is_deleted(CellHandle(i))) continue;
+      const auto& mates = mesh.cell(CellHandle(i)).mate;
+      std::size_t least = i;
+      bool is_at_others = false;
+      for (const HalfFaceHandle m : mates) {
+        if (!m.is_valid()) continue;
+        if (cell_of(m).idx() < begin)
+          is_at_others = true;
+        else
+          least = std::min<std::size_t>(least, cell_of(m).idx());
+      }
+      if (is_at_others) mine.at_others.push_back(static_cast<Index>(i));
+      number[i] = least == i ? static_cast<Index>(mine.n_roots++) : number[least];
+      for (const HalfFaceHandle m : mates)
+        if (m.is_valid() && cell_of(m).idx() >= begin && cell_of(m).idx() < i)
+          mine.touch(number[cell_of(m).idx()], number[i]);
+    }
+  });
+  std::size_t n_roots = 0;
+  for (Part& part : parts) n_roots += std::exchange(part.n_roots, n_roots);  // those before it
+  par::parts(n_parts, [&](int p) {
+    Part& mine = parts[static_cast<std::size_t>(p)];
+    const auto before = static_cast<Index>(mine.n_roots);
+    const std::size_t end = par::part_begin(n, n_parts, p + 1);
+    for (std::size_t i = par::part_begin(n, n_parts, p); i < end; ++i) number[i] += before;
+    for (auto& [one, other] : mine.touching) one += before, other += before;
+  });
+  par::parts(n_parts, [&](int p) {
+    Part& mine = parts[static_cast<std::size_t>(p)];
+    const std::size_t begin = par::part_begin(n, n_parts, p);
+    for (const Index i : mine.at_others)
+      for (const HalfFaceHandle m : mesh.cell(CellHandle(i)).mate)
+        if (m.is_valid() && cell_of(m).idx() < begin) mine.touch(number[cell_of(m).idx()], number[i]);
+  });
   par::DisjointSets<Index> sets(n_roots);
   std::size_t components = n_roots;
-  for (const auto& [one, other] : touching)
-    if (sets.join(one, other)) --components;
+  for (const Part& part : parts)
+    for (const auto& [one, other] : part.touching)
+      if (sets.join(one, other)) --components;
   return components;
 }
 
@@ -184,15 +222,9 @@ Statistics statistics(const TetMesh& mesh, par::Policy policy, const StatisticsO
   s.edge_length.min = s.min_edge;
   s.edge_length.mean = s.mean_edge;
   s.edge_length.max = s.max_edge;
-  constexpr int kTasks = 3;
-  const int n_parts = std::min(kTasks, policy.threads);
-  par::parts(n_parts, [&](int part) {
-    for (int task = part; task < kTasks; task += n_parts) {
-      if (task == 0) s.min_dihedral = distribution(Metric::kMinDihedral, values.min_dihedral);
-      if (task == 1) s.volume_length = distribution(Metric::kVolumeLength, values.volume_length);
-      if (task == 2 && options.components) s.components = count_components(mesh);
-    }
-  });
+  s.min_dihedral = distribution(Metric::kMinDihedral, values.min_dihedral, policy);
+  s.volume_length = distribution(Metric::kVolumeLength, values.volume_length, policy);
+  if (options.components) s.components = count_components(mesh, policy);
   if (s.cells > 0) {
     const auto n = static_cast<double>(s.cells);
     s.min_dihedral.mean = kDegrees * totals.min_angles.value() / n;

@@ -136,7 +136,7 @@ void DevicePasses::bring_back() {
   is_resident_ = false;
   Run& run = state_.run_;
   try {
-    run.device.mesh()->download(run.mesh, run.work);
+    run.device.mesh()->download(run.mesh, run.work, run.policy());
   } catch (const DeviceError& error) {
     lose(error.what());
   }

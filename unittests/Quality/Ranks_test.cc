@@ -16,9 +16,12 @@ void expect_as_sorted(const std::vector<double>& values) {
   std::sort(sorted.begin(), sorted.end());
   const std::size_t n = values.size();
   const std::vector<std::size_t> ranks = {0, 0, n / 100, n / 20, n / 4, n / 2, n - 1, n - 1};
-  const std::vector<double> found = values_at(values, ranks);
-  ASSERT_EQ(found.size(), ranks.size());
-  for (std::size_t i = 0; i < ranks.size(); ++i) EXPECT_EQ(found[i], sorted[ranks[i]]) << ranks[i];
+  for (const int threads : {1, 2, 5}) {
+    const std::vector<double> found = values_at(values, ranks, {.threads = threads, .serial_below = 1});
+    ASSERT_EQ(found.size(), ranks.size());
+    for (std::size_t i = 0; i < ranks.size(); ++i)
+      EXPECT_EQ(found[i], sorted[ranks[i]]) << ranks[i] << ", threads: " << threads;
+  }
 }
 
 std::vector<double> random_values(std::size_t n, double scale) {

@@ -245,6 +245,41 @@ TEST(Statistics, UnusedVerticesAndSeparatePartsAreCounted) {
   EXPECT_FALSE(less.surface_ceiling.cell.is_valid());
 }
 
+/// Boxes apart from one another whose cells are mixed, so that each thread has some of all; one of them falls
+/// into two where cells between its halves are deleted.
+TEST(Statistics, SeparatePartsAreCountedByAnyThreads) {
+  constexpr std::size_t kBoxes = 5;
+  const TetMesh one = mesh_of(generate::box({4, 2, 2}));
+  std::vector<Vec3> points;
+  std::vector<std::array<Index, 4>> cells;
+  for (std::size_t box = 0; box < kBoxes; ++box) {
+    const auto first = static_cast<Index>(points.size());
+    for (const Vec3 p : one.points()) points.push_back(p + Vec3{0, 9.0 * static_cast<double>(box), 0});
+    for (const CellHandle c : one.cells()) {
+      std::array<Index, 4> corners{};
+      for (std::size_t k = 0; k < 4; ++k) corners[k] = one.cell(c).v[k].idx() + first;
+      cells.push_back(corners);
+    }
+  }
+  for (const bool is_mixed : {false, true}) {
+    if (is_mixed)
+      std::ranges::sort(cells, {}, [&](const auto& c) { return mix64(c[0] + 1000ULL * c[1] + c[2] * c[3]); });
+    TetMesh mesh = build(points, cells);
+    for (const int threads : {1, 2, 3, 8})
+      EXPECT_EQ(statistics(mesh, {.threads = threads, .serial_below = 1}).components, kBoxes) << threads;
+    double low = 1e9, high = -1e9;
+    for (const Vec3 p : one.points()) low = std::min(low, p.x), high = std::max(high, p.x);
+    const double third = low + (high - low) / 4, half = low + (high - low) / 2;
+    for (const CellHandle c : mesh.cells()) {
+      Vec3 middle;
+      for (const VertexHandle v : mesh.cell(c).v) middle = middle + 0.25 * mesh.point(v);
+      if (middle.y < 5 && middle.x > third && middle.x < half) mesh.delete_cell(c);
+    }
+    for (const int threads : {1, 2, 3, 8})
+      EXPECT_EQ(statistics(mesh, {.threads = threads, .serial_below = 1}).components, kBoxes + 1) << threads;
+  }
+}
+
 TEST(Statistics, DeletedCellsDoNotCount) {
   TetMesh mesh = mesh_of(generate::box({1, 1, 1}));
   const Statistics whole = statistics(mesh);
