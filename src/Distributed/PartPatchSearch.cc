@@ -261,7 +261,7 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
     parts.change_face_labels({}, changes.set);
     parts.change_face_labels(changes.gone, {});
   }
-  // As Workspace::attach() has it in shared memory.
+  // As in shared memory, where what waits to be looked at makes no difference: no pass goes on afterwards.
   Workspace& work = parts.work();
   std::fill(work.changed.begin(), work.changed.end(), work.clock);
   std::fill(work.pending.begin(), work.pending.end(), 0xff);

@@ -27,13 +27,9 @@ std::vector<H> close_up(par::Policy policy, std::size_t n, std::size_t& n_new, K
   std::vector<H> to(n);
   const int n_parts = par::thread_count(policy, n);
   std::vector<std::size_t> next(static_cast<std::size_t>(n_parts), 0);  // of each part
-  const auto for_part = [&](int part, auto&& body) {
-    const std::size_t end = par::part_begin(n, n_parts, part + 1);
-    for (std::size_t i = par::part_begin(n, n_parts, part); i < end; ++i) body(i);
-  };
   par::parts(n_parts, [&](int part) {
     std::size_t n_kept = 0;
-    for_part(part, [&](std::size_t i) {
+    par::for_part(n, n_parts, part, [&](std::size_t i) {
       if (keep(i)) to[i] = H(n_kept++);
     });
     next[static_cast<std::size_t>(part)] = n_kept;
@@ -42,7 +38,7 @@ std::vector<H> close_up(par::Policy policy, std::size_t n, std::size_t& n_new, K
   par::parts(n_parts, [&](int part) {
     const std::size_t first = next[static_cast<std::size_t>(part)];
     if (first == 0) return;
-    for_part(part, [&](std::size_t i) {
+    par::for_part(n, n_parts, part, [&](std::size_t i) {
       if (to[i].is_valid()) to[i] = H(to[i].idx() + first);
     });
   });

@@ -44,6 +44,13 @@ inline std::size_t part_begin(std::size_t n, int n_parts, int part) {
          std::min<std::size_t>(n % static_cast<std::size_t>(n_parts), static_cast<std::size_t>(part));
 }
 
+/// Calls body(i) for each item i of that part.
+template <class Body>
+void for_part(std::size_t n, int n_parts, int part, Body&& body) {
+  const std::size_t end = part_begin(n, n_parts, part + 1);
+  for (std::size_t i = part_begin(n, n_parts, part); i < end; ++i) body(i);
+}
+
 namespace detail {
 /// Hands out block numbers 0, 1, … to n_threads threads until n_blocks are gone.
 void run_blocks(int n_threads, std::size_t n_blocks, void (*body)(void*, std::size_t), void* context);

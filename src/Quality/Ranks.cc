@@ -48,23 +48,22 @@ std::vector<double> values_at(std::span<const double> values, std::span<const st
                               par::Policy policy) {
   const Bins bins(values, policy);
   const int n_parts = par::thread_count(policy, values.size());
-  const auto for_part = [&](int part, auto&& body) {
-    const std::size_t end = par::part_begin(values.size(), n_parts, part + 1);
-    for (std::size_t i = par::part_begin(values.size(), n_parts, part); i < end; ++i) body(values[i]);
+  const auto for_values = [&](int part, auto&& body) {
+    par::for_part(values.size(), n_parts, part, [&](std::size_t i) { body(values[i]); });
   };
-  struct Part {
+  struct Binned {
     std::vector<std::size_t> n = std::vector<std::size_t>(kBins, 0);  // by bin
     std::vector<std::vector<double>> members = std::vector<std::vector<double>>(kBins);
   };
-  std::vector<Part> parts(static_cast<std::size_t>(n_parts));
+  std::vector<Binned> binned(static_cast<std::size_t>(n_parts));  // by part
   par::parts(n_parts, [&](int part) {
-    std::vector<std::size_t>& mine = parts[static_cast<std::size_t>(part)].n;
-    for_part(part, [&](double x) { ++mine[bins.of(x)]; });
+    std::vector<std::size_t>& n = binned[static_cast<std::size_t>(part)].n;
+    for_values(part, [&](double x) { ++n[bins.of(x)]; });
   });
   std::array<std::size_t, kBins + 1> first{};  // of each bin, in the sorted order
   for (std::size_t i = 0; i < kBins; ++i) {
     first[i + 1] = first[i];
-    for (const Part& part : parts) first[i + 1] += part.n[i];
+    for (const Binned& part : binned) first[i + 1] += part.n[i];
   }
   const auto bin_with = [&](std::size_t rank) {
     return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), rank) - first.begin()) - 1;
@@ -72,19 +71,19 @@ std::vector<double> values_at(std::span<const double> values, std::span<const st
   std::array<std::uint8_t, kBins> is_asked{};
   for (const std::size_t rank : ranks) is_asked[bin_with(rank)] = 1;
   par::parts(n_parts, [&](int part) {
-    Part& mine = parts[static_cast<std::size_t>(part)];
+    Binned& mine = binned[static_cast<std::size_t>(part)];
     for (std::size_t i = 0; i < kBins; ++i)
       if (is_asked[i]) mine.members[i].reserve(mine.n[i]);
-    for_part(part, [&](double x) {
+    for_values(part, [&](double x) {
       if (const std::size_t bin = bins.of(x); is_asked[bin]) mine.members[bin].push_back(x);
     });
   });
   std::vector<double> found;
   for (const std::size_t rank : ranks) {
     const std::size_t bin = bin_with(rank);
-    std::vector<double>& members = parts[0].members[bin];
-    for (std::size_t part = 1; part < parts.size(); ++part) {
-      std::vector<double>& more = parts[part].members[bin];
+    std::vector<double>& members = binned[0].members[bin];  // of all parts, once they are asked for
+    for (std::size_t part = 1; part < binned.size(); ++part) {
+      std::vector<double>& more = binned[part].members[bin];
       members.insert(members.end(), more.begin(), more.end());
       more.clear();
     }

@@ -129,9 +129,9 @@ std::size_t count_components(const TetMesh& mesh, par::Policy policy) {
   std::vector<Index> number(n);  // of the root that a cell belongs to; within its part at first
   par::parts(n_parts, [&](int p) {
     Part& mine = parts[static_cast<std::size_t>(p)];
-    const std::size_t begin = par::part_begin(n, n_parts, p), end = par::part_begin(n, n_parts, p + 1);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (mesh.is_deleted(CellHandle(i))) continue;
+    const std::size_t begin = par::part_begin(n, n_parts, p);
+    par::for_part(n, n_parts, p, [&](std::size_t i) {
+      if (mesh.is_deleted(CellHandle(i))) return;
       const auto& mates = mesh.cell(CellHandle(i)).mate;
       std::size_t least = i;
       bool is_at_others = false;
@@ -147,15 +147,14 @@ std::size_t count_components(const TetMesh& mesh, par::Policy policy) {
       for (const HalfFaceHandle m : mates)
         if (m.is_valid() && cell_of(m).idx() >= begin && cell_of(m).idx() < i)
           mine.touch(number[cell_of(m).idx()], number[i]);
-    }
+    });
   });
   std::size_t n_roots = 0;
   for (Part& part : parts) n_roots += std::exchange(part.n_roots, n_roots);  // those before it
   par::parts(n_parts, [&](int p) {
     Part& mine = parts[static_cast<std::size_t>(p)];
     const auto before = static_cast<Index>(mine.n_roots);
-    const std::size_t end = par::part_begin(n, n_parts, p + 1);
-    for (std::size_t i = par::part_begin(n, n_parts, p); i < end; ++i) number[i] += before;
+    par::for_part(n, n_parts, p, [&](std::size_t i) { number[i] += before; });
     for (auto& [one, other] : mine.touching) one += before, other += before;
   });
   par::parts(n_parts, [&](int p) {

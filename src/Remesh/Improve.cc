@@ -74,7 +74,7 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
 /// Gives the mesh handles without gaps, in the old order where nothing has changed. Returns where each vertex
 /// and cell went; nothing where they stay.
 GarbageMap tidy(TetMesh& mesh, const ImproveOptions& options, bool changed, const GarbageMap& order) {
-  if (changed) return mesh.collect_garbage();
+  if (changed) return mesh.collect_garbage({.policy = options.policy});
   GarbageMap map;
   if (order.cells.empty()) return map;
   map.cells.resize(mesh.n_cells());

@@ -213,18 +213,6 @@ void measure(const TetMesh& mesh, std::span<const CellHandle> cells, Workspace& 
   if (work.has_qualities_of<MinDihedral>()) in(MinDihedral{});
 }
 
-/// The same of these vertices, whose star sizes are right.
-void look_for_pinched(const TetMesh& mesh, std::span<const VertexHandle> vertices, Workspace& work) {
-  Star scratch;
-  for (VertexHandle v : vertices) {
-    const std::uint32_t size = work.star_size[v.idx()];
-    const bool is_one = size > 0 && is_pinched(mesh, v, size, scratch);
-    if (is_one && work.pinched.empty()) work.pinched.assign(mesh.n_vertices(), 0);
-    if (!work.pinched.empty()) work.pinched[v.idx()] = is_one ? 1 : 0;
-  }
-  if (std::count(work.pinched.begin(), work.pinched.end(), 1) == 0) work.pinched.clear();
-}
-
 }  // namespace
 
 void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
@@ -256,7 +244,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed, Workspace& work) co
   for (CellHandle c : cells) work.pending[c.idx()] = 0xff;
   work.all_touched = true;
   measure(whole, cells, work);
-  look_for_pinched(whole, vertices, work);
+  work.look_for_pinched(whole, vertices);
 }
 
 std::vector<CellHandle> Patch::write(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const {

@@ -45,11 +45,12 @@ class Patch {
   /// Writes `changed`, which became of mesh() without collection of garbage, in place of the cells. The whole
   /// must not have changed there meanwhile; its workspace must be attached again before it is used.
   void put_back(TetMesh& whole, const TetMesh& changed) const;
-  /// The same, and the workspace follows: it has what it would have after attach(), and the qualities that it
-  /// had are right for all cells. For patches whose boundary stays.
-  void put_back(TetMesh& whole, const TetMesh& changed, Workspace& work) const;
   /// The same where somebody keeps account of the whole's labels of faces, and writes them.
   void put_back(TetMesh& whole, const TetMesh& changed, FaceLabels& labels) const;
+  /// put_back() for which the workspace need not be attached again: it has star sizes, pinched vertices and
+  /// qualities of what is there now, and the cells and vertices of the patch wait to be looked at. What is
+  /// frozen is right as long as the patch has left its boundary alone.
+  void put_back(TetMesh& whole, const TetMesh& changed, Workspace& work) const;
 
  private:
   struct Rim;

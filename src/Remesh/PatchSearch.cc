@@ -419,8 +419,10 @@ bool search_patches(const Run& run, double degrees, const PatchEffort& effort) {
     if (done->n_changed > 0) {
       if (run.is_part())
         run.work.forget_qualities();
-      else if (run.surface)  // whose vertices may have come or gone
+      else if (run.surface)  // of which vertices may have come or gone, also before
         run.work.attach(run.mesh, run.policy());
+      else
+        run.work.look_again_for_pinched(run.mesh, run.policy());
       if (run.strategy.patch.has_surface) rebuild_surface(run);
     }
     if (!done->worst_rose) break;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hfremesh/HalfFace/Errors.hh"
 #include "hfremesh/HalfFace/Handles.hh"
 #include "hfremesh/HalfFace/TupleMap.hh"
 
@@ -17,7 +18,7 @@ namespace hfr {
 class ByteTable {
  public:
   /// Of `n` slots; at most `n_set` will be set.
-  ByteTable(std::size_t n, std::size_t n_set, std::uint8_t otherwise) : otherwise_(otherwise) {
+  ByteTable(std::size_t n, std::size_t n_set, std::uint8_t otherwise) {
     if (n > 0 && n_set >= n / kFew)
       all_.assign(n, otherwise);
     else
@@ -28,17 +29,21 @@ class ByteTable {
   /// Whether threads may set different slots at a time.
   bool is_for_threads() const { return !all_.empty(); }
   void set(Index slot, std::uint8_t byte) {
-    if (all_.empty())
-      few_[place(slot)] = {slot, byte};
-    else
+    if (!all_.empty()) {
       all_[slot] = byte;
+      return;
+    }
+    Entry& entry = few_[place(slot)];
+    if (entry.slot == kNoSlot) ++n_set_;
+    HFR_ASSERT(2 * n_set_ <= few_.size());  // or a search for another one would not end
+    entry = {slot, byte};
   }
 
  private:
   // A slot that is looked up takes some ten times as long as one that is read.
   static constexpr std::size_t kFew = 256;
   static constexpr Index kNoSlot = CellHandle::kInvalid;
-  struct Set {
+  struct Entry {
     Index slot;
     std::uint8_t byte;
   };
@@ -51,9 +56,9 @@ class ByteTable {
     return at;
   }
 
-  std::uint8_t otherwise_;
   std::vector<std::uint8_t> all_;  // by slot; empty where few are set
-  std::vector<Set> few_;           // a power of two of them, at most half of them in use
+  std::vector<Entry> few_;         // a power of two of them, at most half of them in use
+  std::size_t n_set_ = 0;          // of those
 };
 
 }  // namespace hfr

@@ -12,13 +12,13 @@
 namespace hfr {
 
 /// The cells below a value, kept from one call to the next: what was touched meanwhile is looked at, the rest
-/// is not, unless threads have looked at all sooner.
+/// is not, unless a look at all is quicker.
 class PoorCells {
  public:
   /// Ascending slots whose quality is below the value. Empties the workspace's list of touched cells.
   std::span<const Index> below(double value, Workspace& work, par::Policy policy) {
     const auto& quality = work.quality;
-    if (work.all_touched || value != below_ || !is_worth_it(work)) {
+    if (work.all_touched || value != below_ || (!work.touched.empty() && !is_worth_it(work))) {
       cells_ = par::compact<Index>(policy, quality.size(), [&](std::size_t i) { return quality[i] < value; });
     } else if (!work.touched.empty()) {
       std::erase_if(cells_, [&](Index c) { return !(quality[c] < value); });
@@ -35,8 +35,8 @@ class PoorCells {
   }
 
  private:
-  /// Whether the list is brought up to date sooner than made anew. That sorts what was touched and goes
-  /// through the list on one thread; a look at all cells reads them in order, on all threads.
+  /// Whether the list is brought up to date sooner than made anew. That goes through the list and sorts what
+  /// was touched on one thread; a look at all cells reads them in order, with as many threads as there are.
   bool is_worth_it(const Workspace& work) const {
     constexpr std::size_t kListed = 4, kTouched = 64;  // cells that are read for one
     return kListed * cells_.size() + kTouched * work.touched.size() <= work.quality.size();

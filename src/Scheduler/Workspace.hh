@@ -2,6 +2,7 @@
 #ifndef HFR_SCHEDULER_WORKSPACE_HH
 #define HFR_SCHEDULER_WORKSPACE_HH
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <type_traits>
@@ -80,6 +81,29 @@ struct Workspace {
     close_gaps(garbage.vertices, star_size);
     close_gaps(garbage.vertices, frozen);
     close_gaps(garbage.vertices, pinched);
+  }
+
+  /// Brings `pinched` up to date for these vertices, whose star sizes are right.
+  void look_for_pinched(const TetMesh& mesh, std::span<const VertexHandle> vertices) {
+    Star scratch;
+    for (VertexHandle v : vertices) {
+      const std::uint32_t size = star_size[v.idx()];
+      const bool is_one = size > 0 && is_pinched(mesh, v, size, scratch);
+      if (is_one && pinched.empty()) pinched.assign(mesh.n_vertices(), 0);
+      if (!pinched.empty()) pinched[v.idx()] = is_one ? 1 : 0;
+    }
+    if (std::count(pinched.begin(), pinched.end(), 1) == 0) pinched.clear();
+  }
+  /// Brings `pinched` up to date where rounds leave it behind: one that was pinched may no longer be, and a
+  /// star may have outgrown Star.
+  void look_again_for_pinched(const TetMesh& mesh, par::Policy policy) {
+    const auto asks = [&](std::size_t v) {
+      return star_size[v] > static_cast<std::uint32_t>(Star::kCapacity) ||
+             (!pinched.empty() && pinched[v] != 0);
+    };
+    std::vector<VertexHandle> vertices;
+    for (Index v : par::compact<Index>(policy, star_size.size(), asks)) vertices.push_back(VertexHandle(v));
+    look_for_pinched(mesh, vertices);
   }
 
   /// Follows the mesh after it has grown.

@@ -139,7 +139,7 @@ TEST_P(OnDevice, RoundsAreThoseOfTheHost) {
     EXPECT_EQ(counts.candidates, expected.candidates);
     EXPECT_EQ(counts.winners, expected.winners);
     n_winners += counts.winners;
-    device_->download(there.mesh, there.work);
+    device_->download(there.mesh, there.work, {.threads = 1 + r % 3, .serial_below = 1});
     expect_same(host, there);
     ASSERT_FALSE(HasFatalFailure()) << "round " << r;
     EXPECT_EQ(check(there.mesh), Ok);
@@ -193,7 +193,7 @@ TEST_P(OnDevice, VerticesAreRemovedAsOnTheHost) {
     if (kind == DeviceMesh::Kind::kVertex) n_removed += counts.winners;
     // From round to round on the device, and by way of the host, too.
     if (r % 3 == 0) continue;
-    device_->download(there.mesh, there.work);
+    device_->download(there.mesh, there.work, {.threads = 3, .serial_below = 1});
     expect_same(host, there);
     ASSERT_FALSE(HasFatalFailure()) << "round " << r;
     EXPECT_EQ(check(there.mesh), Ok);

@@ -269,11 +269,11 @@ TEST(Statistics, SeparatePartsAreCountedByAnyThreads) {
       EXPECT_EQ(statistics(mesh, {.threads = threads, .serial_below = 1}).components, kBoxes) << threads;
     double low = 1e9, high = -1e9;
     for (const Vec3 p : one.points()) low = std::min(low, p.x), high = std::max(high, p.x);
-    const double third = low + (high - low) / 4, half = low + (high - low) / 2;
+    const double quarter = low + (high - low) / 4, half = low + (high - low) / 2;
     for (const CellHandle c : mesh.cells()) {
       Vec3 middle;
       for (const VertexHandle v : mesh.cell(c).v) middle = middle + 0.25 * mesh.point(v);
-      if (middle.y < 5 && middle.x > third && middle.x < half) mesh.delete_cell(c);
+      if (middle.y < 5 && middle.x > quarter && middle.x < half) mesh.delete_cell(c);
     }
     for (const int threads : {1, 2, 3, 8})
       EXPECT_EQ(statistics(mesh, {.threads = threads, .serial_below = 1}).components, kBoxes + 1) << threads;

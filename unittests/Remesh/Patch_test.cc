@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "HalfFace/Writer.hh"
 #include "Operators/FaceSwap.hh"
 #include "Operators/Metrics.hh"
@@ -61,6 +64,7 @@ TEST(Patch, HoldsTheCellsAroundAndTheirPoints) {
 }
 
 /// Expects of the workspace what one that is attached anew has; what is frozen, where the boundary stays.
+/// What has changed waits to be looked at, and nothing else.
 template <class Metric>
 void put_back_with_workspace(const Patch& patch, TetMesh& mesh, const TetMesh& changed,
                              const Metric& metric) {
@@ -68,27 +72,32 @@ void put_back_with_workspace(const Patch& patch, TetMesh& mesh, const TetMesh& c
   work.clock = anew.clock = 7;
   work.attach(mesh, {});
   work.set_qualities(mesh, metric, {});
+  work.clear_touched();
   std::fill(work.changed.begin(), work.changed.end(), 3U);
+  std::fill(work.pending.begin(), work.pending.end(), std::uint8_t{0});
+  const TetMesh before = mesh;
   patch.put_back(mesh, changed, work);
   anew.attach(mesh, {});
   anew.set_qualities(mesh, metric, {});
   EXPECT_TRUE(work.has_qualities_of<Metric>());
   EXPECT_EQ(work.quality, anew.quality);
   EXPECT_EQ(work.star_size, anew.star_size);
+  EXPECT_EQ(work.pinched, anew.pinched);
+  EXPECT_EQ(work.claim.size(), mesh.n_cells());
+  EXPECT_TRUE(work.all_touched);
   if (boundary_of(changed) == boundary_of(patch.mesh())) {
     EXPECT_EQ(work.frozen, anew.frozen);
   }
-  EXPECT_EQ(work.pinched, anew.pinched);
-  EXPECT_EQ(work.claim, anew.claim);
-  EXPECT_TRUE(work.all_touched);
-  // Cells that are there now wait to be looked at, and their vertices count as changed.
-  for (CellHandle c : patch.cells()) {
-    EXPECT_EQ(work.pending[c.idx()], 0xff);
-    if (mesh.is_deleted(c)) continue;
-    for (VertexHandle v : mesh.cell(c).v) EXPECT_EQ(work.changed[v.idx()], 7U);
-  }
+  std::set<VertexHandle> of_patch(patch.vertices().begin(), patch.vertices().end());
+  for (std::size_t i = before.n_vertices(); i < mesh.n_vertices(); ++i) of_patch.insert(V(i));
   for (std::size_t i = 0; i < mesh.n_vertices(); ++i)
-    EXPECT_TRUE(work.changed[i] == 7U || std::ranges::find(patch.vertices(), V(i)) == patch.vertices().end());
+    EXPECT_EQ(work.changed[i], of_patch.contains(V(i)) ? 7U : 3U) << i;
+  const std::set<CellHandle> were_there(patch.cells().begin(), patch.cells().end());
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+    const bool is_new = i >= before.n_cells() || before.is_deleted(C(i));
+    const bool waits = were_there.contains(C(i)) || (is_new && !mesh.is_deleted(C(i)));
+    EXPECT_EQ(work.pending[i], waits ? 0xff : 0) << i;
+  }
 }
 
 TEST(Patch, PutBackUnchangedIsTheSameMesh) {
@@ -125,17 +134,66 @@ TetMesh inner_vertex_with_a_cell_apart() {
                                     {0, 7, 8, 9}});
 }
 
-/// A vertex is pinched after a patch was put back where it was so before, and where the patch makes it so.
+/// A vertex is pinched after a patch was put back where it was so before and the patch leaves that alone; not
+/// where the cell apart goes; and one is where the patch leaves two cells that have but this vertex in
+/// common.
 TEST(Patch, WorkspaceSaysWhichVerticesArePinched) {
   TetMesh mesh = inner_vertex_with_a_cell_apart();
   const Patch same(mesh, C(0), 2, pinched_vertices(mesh, star_sizes(mesh)));
   put_back_with_workspace(same, mesh, same.mesh(), MinSine2{});
-  const Patch patch(mesh, C(8), 0);
-  ASSERT_EQ(patch.cells().size(), 1U);
-  TetMesh empty = patch.mesh();
-  TetMesh::Writer writer(empty);
-  writer.mark_deleted(C(0));
-  put_back_with_workspace(patch, mesh, empty, MinSine2{});
+  const auto without = [](const TetMesh& whole, std::span<const CellHandle> gone) {
+    TetMesh left = whole;
+    for (CellHandle c : gone) left.delete_cell(c);
+    return left;
+  };
+  const Patch apart(mesh, C(8), 0);
+  ASSERT_EQ(apart.cells().size(), 1U);
+  put_back_with_workspace(apart, mesh, without(apart.mesh(), std::array{C(0)}), MinSine2{});
+  ASSERT_TRUE(pinched_vertices(mesh, star_sizes(mesh)).empty());
+  const Patch round(mesh, C(0), 2);
+  ASSERT_EQ(round.cells().size(), 8U);
+  // Of the eight cells, that of three positive axes and that of three negative ones.
+  std::vector<CellHandle> gone;
+  for (std::size_t i = 0; i < 8; ++i) {
+    Vec3 middle;
+    for (VertexHandle v : round.mesh().cell(C(i)).v) middle = middle + round.mesh().point(v);
+    const int n_positive = (middle.x > 0 ? 1 : 0) + (middle.y > 0 ? 1 : 0) + (middle.z > 0 ? 1 : 0);
+    if (n_positive != 0 && n_positive != 3) gone.push_back(C(i));
+  }
+  ASSERT_EQ(gone.size(), 6U);
+  put_back_with_workspace(round, mesh, without(round.mesh(), gone), MinSine2{});
+  EXPECT_FALSE(pinched_vertices(mesh, star_sizes(mesh)).empty());
+}
+
+/// Rounds leave a vertex pinched that is no longer, and one whose star has outgrown Star not pinched.
+TEST(Workspace, LooksAgainForPinchedVertices) {
+  constexpr Index kRing = Star::kCapacity + 20;
+  std::vector<Vec3> points;
+  std::vector<Corners> cells;
+  for (Index i = 0; i < kRing; ++i) {
+    const double turn = 2 * std::numbers::pi * i / kRing;
+    points.push_back({std::cos(turn), std::sin(turn), 0});
+    cells.push_back({kRing, kRing + 1, i, (i + 1) % kRing});
+  }
+  points.insert(points.end(), {{0, 0, -1}, {0, 0, 1}});
+  const TetMesh mesh = build(std::move(points), cells);
+  Workspace work;
+  work.attach(mesh, {});
+  const std::vector<std::uint8_t> expected = work.pinched;
+  ASSERT_FALSE(expected.empty());
+  work.pinched.clear();
+  for (const int threads : {1, 3}) {
+    work.look_again_for_pinched(mesh, {.threads = threads, .serial_below = 1});
+    EXPECT_EQ(work.pinched, expected);
+    work.pinched[4] = 1;
+  }
+  const TetMesh box = jittered(3, 0.2, 3);
+  work.attach(box, {});
+  ASSERT_TRUE(work.pinched.empty());
+  work.pinched.assign(box.n_vertices(), 0);
+  work.pinched[4] = 1;
+  work.look_again_for_pinched(box, {});
+  EXPECT_TRUE(work.pinched.empty());
 }
 
 TEST(Patch, VertexWithCellsThatThePatchDoesNotSeeStays) {
