@@ -261,7 +261,8 @@ PatchesDone search_patches_in_parts(DistributedMesh& parts, std::span<const std:
     parts.change_face_labels({}, changes.set);
     parts.change_face_labels(changes.gone, {});
   }
-  // As in shared memory, where what waits to be looked at makes no difference: no pass goes on afterwards.
+  // All of a part counts as changed, where in shared memory a patch does: passes after it begin anew, so that
+  // nobody can tell.
   Workspace& work = parts.work();
   std::fill(work.changed.begin(), work.changed.end(), work.clock);
   std::fill(work.pending.begin(), work.pending.end(), 0xff);
