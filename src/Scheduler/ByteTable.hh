@@ -40,7 +40,7 @@ class ByteTable {
   }
 
  private:
-  // A slot that is looked up takes some ten times as long as one that is read.
+  // Of one in so many and more, the work on what is set outweighs a byte for each slot.
   static constexpr std::size_t kFew = 256;
   static constexpr Index kNoSlot = CellHandle::kInvalid;
   struct Entry {
