@@ -39,6 +39,14 @@ MapRecorder::~MapRecorder() {
   if (origin_) mesh_.properties().cells.remove(kOrigin);
 }
 
+/// What the cell had before the run.
+void MapRecorder::restore(CellHandle old, CellHandle now) {
+  for (const auto& property : mesh_.properties().cells)
+    for (const auto& before : before_->properties().cells)
+      if (before->name() == property->name() && before->type() == property->type() && !before->is_anonymous())
+        property->copy_from(*before, old.idx(), now.idx());
+}
+
 MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy) {
   MeshMaps maps;
   maps.vertices.resize(n_vertices_);
@@ -65,7 +73,10 @@ MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, p
     // A slot may have been filled with another cell, or with the same again.
     const auto& now = mesh_.cell(c).v;
     if (vertices != now && AnyOrder::key(vertices) != AnyOrder::key(now)) return;
-    if (origin_ && (*origin_)[c] != CellHandle(i).idx()) return;
+    if (origin_ && (*origin_)[c] != CellHandle(i).idx()) {
+      if (!before_) return;
+      restore(CellHandle(i), c);
+    }
     maps.cells[i] = c;
     maps.old_cells[c.idx()] = CellHandle(i);
   });

@@ -24,9 +24,14 @@ class MapRecorder {
 
   /// After it. `order`: where vertices and cells went before the run; `garbage`: and after it. Empty lists:
   /// they stayed.
+  ///
+  /// A cell may go and come again in its old place, with the properties of another that was there in between.
+  /// With a copy of the mesh it has its own ones again, those that have a name; without one it counts as
+  /// another cell.
   MeshMaps maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy = {});
 
  private:
+  void restore(CellHandle old, CellHandle now);
   const std::array<VertexHandle, 4>& old_cell(std::size_t i) const {
     return before_ ? before_->cell(CellHandle(i)).v : cells_[i];
   }
@@ -36,8 +41,7 @@ class MapRecorder {
   std::size_t n_vertices_, n_cells_;
   std::vector<std::array<VertexHandle, 4>> cells_;
   VertexProperty<Index> source_;
-  /// By cell: the old one whose properties it has. A cell may go and come again in its old place, with the
-  /// properties of another that was there in between: then it is not what it was.
+  /// By cell: the old one whose properties it has.
   std::optional<CellProperty<Index>> origin_;
 };
 

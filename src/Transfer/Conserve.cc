@@ -21,28 +21,20 @@ std::vector<double> volumes(const TetMesh& mesh, std::span<const CellHandle> cel
   return out;
 }
 
-/// The parents of created cells again, and what is found of the others.
+/// Those of created cells again that are known, and what is found of the others.
 Overlaps overlaps_of_changed(const TetMesh& old, const TetMesh& now, const Edits& edits,
                              std::span<const CellHandle> new_cells, std::span<const CellHandle> old_cells,
                              par::Policy policy) {
-  if (!edits.has_parents()) return find_overlaps(old, edits, shapes_of(now, new_cells), old_cells, policy);
-  const Parents& parents = edits.parents();
-  const Overlaps of_moved = find_overlaps(old, edits, shapes_of(now, edits.moved_cells), old_cells, policy);
+  const Overlaps* of_created = overlaps_of_created(edits);
+  if (!of_created) return find_overlaps(old, shapes_of(now, edits, new_cells), old_cells, policy);
+  const Overlaps of_moved = find_overlaps(old, shapes_of(now, edits, edits.moved_cells), old_cells, policy);
   Overlaps all;
   all.first.push_back(0);
   std::size_t created = 0, moved = 0;
   for (CellHandle c : new_cells) {
-    if (created < edits.created_cells.size() && edits.created_cells[created].cell == c) {
-      const double whole = std::abs(volume(now, c));
-      for (const ParentCell& parent : parents.of(created))
-        all.parts.push_back({parent.old_cell, parent.share * whole});
-      std::sort(all.parts.begin() + static_cast<std::ptrdiff_t>(all.first.back()), all.parts.end(),
-                [](const Overlap& a, const Overlap& b) { return a.old_cell < b.old_cell; });
-      ++created;
-    } else {
-      const auto parts = of_moved.of(moved++);
-      all.parts.insert(all.parts.end(), parts.begin(), parts.end());
-    }
+    const bool is_created = created < edits.created_cells.size() && edits.created_cells[created].cell == c;
+    const auto parts = is_created ? of_created->of(created++) : of_moved.of(moved++);
+    all.parts.insert(all.parts.end(), parts.begin(), parts.end());
     all.first.push_back(all.parts.size());
   }
   return all;
@@ -55,7 +47,14 @@ Cavities::Cavities(const TetMesh& old, const TetMesh& now, const Edits& edits, p
       new_cells_(changed_new_cells(edits)),
       overlaps_(overlaps_of_changed(old, now, edits, new_cells_, old_cells_, policy)),
       old_volume_(volumes(old, old_cells_, policy)),
-      new_volume_(volumes(now, new_cells_, policy)) {
+      new_volume_(volumes(now, new_cells_, policy)),
+      beside_(new_cells_.size()) {
+  std::vector<CellHandle> uncovered;
+  for (std::size_t i = 0; i < new_cells_.size(); ++i)
+    if (overlaps_.of(i).empty()) uncovered.push_back(new_cells_[i]);
+  const std::vector<CellHandle> near = old_cells_beside(old, shapes_of(now, edits, uncovered), policy);
+  for (std::size_t i = 0, k = 0; i < new_cells_.size(); ++i)
+    if (overlaps_.of(i).empty()) beside_[i] = near[k++];
   const std::size_t n_old = old_cells_.size(), n = n_old + new_cells_.size();
   par::DisjointSets<Index> sets(n);
   for (std::size_t i = 0; i < n_old; ++i)
@@ -100,61 +99,164 @@ bool Cavities::is_outside(std::size_t i) const {
   return std::abs(std::abs(new_volume_[i]) - covered) > kRounding * std::abs(new_volume_[i]);
 }
 
-Conserved conserve(const Cavities& cavities, std::span<const double> old_values,
-                   std::span<const double> old_density, std::span<const double> new_density,
-                   std::span<const double> fallback) {
-  const auto density = [](std::span<const double> d, std::size_t i) { return d.empty() ? 1.0 : d[i]; };
-  Conserved out;
-  out.values.assign(cavities.new_cells().size(), 0);
-  for (const Cavities::Cavity& cavity : cavities.cavities()) {
-    double low = std::numeric_limits<double>::infinity(), high = -low, held = 0;
-    for (const Index j : cavity.old_cells) {
-      low = std::min(low, old_values[j]);
-      high = std::max(high, old_values[j]);
-      held += cavities.old_volume(j) * density(old_density, j) * old_values[j];
+FixedSum sum_of_up_to(double bound) {
+  constexpr double kLeast = 0x1p-900;  // below which the units have no numbers
+  if (bound < 0x1p1000) return FixedSum(std::max(bound, kLeast));
+  FixedSum none;  // a bound that is no number makes a sum that is none
+  none.add(std::numeric_limits<double>::quiet_NaN());
+  return none;
+}
+
+double order_free_sum(std::span<const double> values) {
+  double largest = 0;
+  for (double x : values) largest = std::max(largest, std::abs(x));
+  FixedSum sum = sum_of_up_to(largest);
+  for (double x : values) sum.add(x);
+  return sum.value();
+}
+
+namespace {
+
+/// One component of a field, in all cavities at the same time.
+class Conservation {
+ public:
+  Conservation(const Cavities& cavities, std::span<const double> old_values,
+               std::span<const double> old_density, std::span<const double> new_density,
+               std::span<const double> fallback, CavityParts* parts)
+      : cavities_(cavities),
+        old_values_(old_values),
+        old_density_(old_density),
+        new_density_(new_density),
+        fallback_(fallback),
+        parts_(parts),
+        values_(cavities.new_cells().size()) {}
+
+  Conserved run() {
+    find_means();
+    find_bounds();
+    keep_in_bounds();
+    const std::vector<double> held = sums([&](std::size_t a, FixedSum& sum) {
+      for (const Index j : cavity(a).old_cells) sum.add(held_by_old(j));
+    });
+    std::vector<double> missing = missing_now();
+    // Twice: the second time for what the first one has rounded.
+    for (int turn = 0; turn < 2; ++turn) {
+      share_out(missing);
+      missing = missing_now();
     }
-    out.integral += held;
-    double missing = held;
-    for (const Index i : cavity.new_cells) {
+    return {std::move(values_), total(held), total(missing)};
+  }
+
+ private:
+  const Cavities::Cavity& cavity(std::size_t a) const { return cavities_.cavities()[a]; }
+  double old_mass(Index j) const {
+    return cavities_.old_volume(j) * (old_density_.empty() ? 1.0 : old_density_[j]);
+  }
+  double new_mass(Index i) const {
+    return cavities_.new_volume(i) * (new_density_.empty() ? 1.0 : new_density_[i]);
+  }
+  double held_by_old(Index j) const { return old_mass(j) * old_values_[j]; }
+
+  void find_means() {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
       double sum = 0, weight = 0;
-      for (const Overlap& part : cavities.overlaps().of(i)) {
-        const Index j = place_in(cavities.old_cells(), part.old_cell);
-        const double w = part.volume * density(old_density, j);
-        sum += w * old_values[j];
+      for (const Overlap& part : cavities_.overlaps().of(i)) {
+        const Index j = place_in(cavities_.old_cells(), part.old_cell);
+        const double w = part.volume * (old_density_.empty() ? 1.0 : old_density_[j]);
+        sum += w * old_values_[j];
         weight += w;
       }
-      double value = weight > 0 ? sum / weight : fallback[i];
-      if (low <= high) value = std::clamp(value, low, high);
-      out.values[i] = value;
-      missing -= cavities.new_volume(i) * density(new_density, i) * value;
+      values_[i] = weight > 0 ? sum / weight : fallback_[i];
     }
+  }
+  void find_bounds() {
+    for (const Cavities::Cavity& cavity : cavities_.cavities()) {
+      CavityBounds& bounds = bounds_.emplace_back();
+      for (const Index j : cavity.old_cells) {
+        const double mass = std::abs(old_mass(j));
+        bounds.add({old_values_[j], old_values_[j], mass, 0});
+      }
+      for (const Index i : cavity.new_cells)
+        bounds.add({CavityBounds().low, CavityBounds().high, std::abs(new_mass(i)), std::abs(values_[i])});
+    }
+    if (parts_) parts_->join(std::span(bounds_));
+  }
+  void keep_in_bounds() {
+    for (std::size_t a = 0; a < bounds_.size(); ++a)
+      for (const Index i : cavities_.cavities()[a].new_cells)
+        if (bounds_[a].low <= bounds_[a].high)
+          values_[i] = std::clamp(values_[i], bounds_[a].low, bounds_[a].high);
+  }
+  /// What a value in the cavity may be, in size.
+  double largest_value(std::size_t a) const {
+    const CavityBounds& bounds = bounds_[a];
+    return bounds.low <= bounds.high ? std::max(std::abs(bounds.low), std::abs(bounds.high))
+                                     : bounds.fallback;
+  }
+
+  /// One for each cavity, to which add(cavity, sum) adds what is here: products of masses and of values or
+  /// their differences.
+  template <class Add>
+  std::vector<double> sums(Add&& add) {
+    std::vector<FixedSum> all;
+    for (std::size_t a = 0; a < bounds_.size(); ++a) {
+      all.push_back(sum_of_up_to(2 * bounds_[a].mass * largest_value(a)));
+      add(a, all[a]);
+    }
+    if (parts_) parts_->join(std::span(all));
+    std::vector<double> values;
+    for (const FixedSum& sum : all) values.push_back(sum.value());
+    return values;
+  }
+  /// What the old cells of each cavity held and its new ones do not.
+  std::vector<double> missing_now() {
+    return sums([&](std::size_t a, FixedSum& sum) {
+      for (const Index j : cavity(a).old_cells) sum.add(held_by_old(j));
+      for (const Index i : cavity(a).new_cells) sum.add(-new_mass(i) * values_[i]);
+    });
+  }
+  /// In proportion to the room that values have within the bounds.
+  void share_out(std::span<const double> missing) {
+    const auto bound = [&](std::size_t a) { return missing[a] > 0 ? bounds_[a].high : bounds_[a].low; };
+    const auto room = [&](std::size_t a, Index i) {
+      const double mass = new_mass(i);
+      return mass > 0 ? mass * (bound(a) - values_[i]) : 0.0;
+    };
     // Beyond the old mesh, with nobody to share with; or what cells hold is no number, which stays where they
     // were.
-    if (cavity.old_cells.empty() || !std::isfinite(missing)) {
-      out.lost += missing;
-      continue;
+    const auto has_share = [&](std::size_t a) {
+      return missing[a] != 0 && std::isfinite(missing[a]) && bounds_[a].low <= bounds_[a].high;
+    };
+    const std::vector<double> all_room = sums([&](std::size_t a, FixedSum& sum) {
+      if (!has_share(a)) return;
+      for (const Index i : cavity(a).new_cells) sum.add(room(a, i));
+    });
+    for (std::size_t a = 0; a < all_room.size(); ++a) {
+      if (!has_share(a) || all_room[a] == 0) continue;
+      const double share = std::min(1.0, missing[a] / all_room[a]);
+      for (const Index i : cavity(a).new_cells)
+        if (room(a, i) != 0)
+          values_[i] =
+              std::clamp(values_[i] + share * (bound(a) - values_[i]), bounds_[a].low, bounds_[a].high);
     }
-    // Twice: the second time for what the first one has rounded.
-    for (int turn = 0; turn < 2 && missing != 0; ++turn) {
-      const double bound = missing > 0 ? high : low;
-      const auto room = [&](Index i) {
-        const double mass = cavities.new_volume(i) * density(new_density, i);
-        return mass > 0 ? mass * (bound - out.values[i]) : 0.0;
-      };
-      double all_room = 0;
-      for (const Index i : cavity.new_cells) all_room += room(i);
-      if (all_room == 0) break;
-      const double share = std::min(1.0, missing / all_room);
-      missing = held;
-      for (const Index i : cavity.new_cells) {
-        if (room(i) != 0)
-          out.values[i] = std::clamp(out.values[i] + share * (bound - out.values[i]), low, high);
-        missing -= cavities.new_volume(i) * density(new_density, i) * out.values[i];
-      }
-    }
-    out.lost += missing;
   }
-  return out;
+  double total(std::span<const double> by_cavity) {
+    return parts_ ? parts_->total(by_cavity) : order_free_sum(by_cavity);
+  }
+
+  const Cavities& cavities_;
+  std::span<const double> old_values_, old_density_, new_density_, fallback_;
+  CavityParts* parts_;
+  std::vector<double> values_;  // of new cells
+  std::vector<CavityBounds> bounds_;
+};
+
+}  // namespace
+
+Conserved conserve(const Cavities& cavities, std::span<const double> old_values,
+                   std::span<const double> old_density, std::span<const double> new_density,
+                   std::span<const double> fallback, CavityParts* parts) {
+  return Conservation(cavities, old_values, old_density, new_density, fallback, parts).run();
 }
 
 }  // namespace hfr

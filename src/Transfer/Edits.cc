@@ -10,7 +10,9 @@
 
 #include "HalfFace/Errors.hh"
 #include "Transfer/Locate.hh"
+#include "Transfer/NearVertex.hh"
 #include "Transfer/Overlaps.hh"
+#include "Transfer/Stars.hh"
 
 namespace hfr {
 namespace {
@@ -40,11 +42,37 @@ std::vector<H> unmapped(const std::vector<H>& map, par::Policy policy) {
   return out;
 }
 
-void place(const TetMesh& old, const Edits& edits, std::vector<PlacedVertex>& vertices, par::Policy policy) {
+/// From old vertices inwards, a layer of neighbours after the other.
+void find_near_vertices(const TetMesh& now, const MeshMaps& maps, std::vector<PlacedVertex>& created,
+                        par::Policy policy) {
+  if (created.empty()) return;
+  std::vector<VertexHandle> vertices;
+  for (const PlacedVertex& v : created) vertices.push_back(v.vertex);
+  const Stars stars(now, vertices, policy);
+  std::vector<VertexHandle> near = maps.old_vertices;  // by new vertex
+  std::vector<std::pair<VertexHandle, VertexHandle>> layer;
+  do {
+    layer.clear();
+    for (PlacedVertex& v : created) {
+      if (v.near_vertex.is_valid()) continue;
+      const VertexHandle u = neighbour_with_near_vertex(
+          now, v.vertex, stars.of(v.vertex), [&](VertexHandle w) { return near[w.idx()].is_valid(); });
+      if (!u.is_valid()) continue;
+      v.near_vertex = near[u.idx()];
+      layer.emplace_back(v.vertex, v.near_vertex);
+    }
+    for (const auto& [v, is_near] : layer) near[v.idx()] = is_near;
+  } while (!layer.empty());
+}
+
+void place(const TetMesh& old, std::vector<PlacedVertex>& vertices, par::Policy policy) {
+  std::vector<VertexHandle> near;
+  for (const PlacedVertex& v : vertices) near.push_back(v.near_vertex);
+  const Stars stars(old, near, policy);
   constexpr double kNanoseconds = 2'000;  // a vertex, about
   par::for_each_dynamic(policy.for_items_of(kNanoseconds), vertices.size(), 64, [&](std::size_t i) {
     PlacedVertex& v = vertices[i];
-    const Place at = locate(old, v.point, edits.maps.sources[v.vertex.idx()]);
+    const Place at = locate(old, v.point, stars.of(v.near_vertex));
     v.old_cell = at.cell;
     v.weights = at.weights;
     v.inside = at.inside;
@@ -68,7 +96,7 @@ std::vector<CellHandle> cells_that_moved(const TetMesh& now, const Edits& edits,
 }
 
 /// The created cells of the edits, with where their corners are.
-std::vector<NewCell> created_cells(const TetMesh& old, const Edits& edits) {
+std::vector<NewCell> shapes_of_created(const TetMesh& old, const Edits& edits) {
   const auto point = [&](VertexHandle v) {
     for (const auto* list : {&edits.moved_vertices, &edits.created_vertices}) {
       const auto at = std::lower_bound(list->begin(), list->end(), v,
@@ -81,15 +109,23 @@ std::vector<NewCell> created_cells(const TetMesh& old, const Edits& edits) {
   cells.reserve(edits.created_cells.size());
   for (const CreatedCell& c : edits.created_cells) {
     const auto& v = c.vertices;
-    cells.push_back({v, {point(v[0]), point(v[1]), point(v[2]), point(v[3])}});
+    cells.push_back({.vertices = v, .points = {point(v[0]), point(v[1]), point(v[2]), point(v[3])}});
   }
+  add_starts(edits, cells);
   return cells;
 }
 
-/// The largest share first; of equal ones the smaller handle.
-Parents find_parents(const TetMesh& old, const Edits& edits, par::Policy policy) {
-  const std::vector<NewCell> cells = created_cells(old, edits);
-  Overlaps overlaps = find_overlaps(old, edits, cells, changed_old_cells(edits), policy);
+}  // namespace
+
+struct Edits::ParentSearch {
+  std::mutex mutex;
+  std::shared_ptr<const TetMesh> old;  // until they are found
+  par::Policy policy;
+  std::optional<Parents> found;
+  Overlaps overlaps;  // that they were made of
+};
+
+Parents parents_of(std::span<const NewCell> cells, const Overlaps& overlaps, par::Policy policy) {
   Parents parents;
   parents.all.resize(overlaps.parts.size());
   par::for_each(policy, cells.size(), [&](std::size_t i) {
@@ -101,27 +137,26 @@ Parents find_parents(const TetMesh& old, const Edits& edits, par::Policy policy)
       return a.share > b.share || (a.share == b.share && a.old_cell < b.old_cell);
     });
   });
-  parents.first = std::move(overlaps.first);
+  parents.first = overlaps.first;
   return parents;
 }
-
-}  // namespace
-
-struct Edits::ParentSearch {
-  std::mutex mutex;
-  std::shared_ptr<const TetMesh> old;  // until they are found
-  par::Policy policy;
-  std::optional<Parents> found;
-};
 
 const Parents& Edits::parents() const {
   HFR_REQUIRE(search_, "parents of created cells were left out of the edits");
   const std::scoped_lock lock(search_->mutex);
   if (!search_->found) {
-    search_->found = find_parents(*search_->old, *this, search_->policy);
+    const std::vector<NewCell> cells = shapes_of_created(*search_->old, *this);
+    search_->overlaps = find_overlaps(*search_->old, cells, changed_old_cells(*this), search_->policy);
+    search_->found = parents_of(cells, search_->overlaps, search_->policy);
     search_->old.reset();
   }
   return *search_->found;
+}
+
+const Overlaps* overlaps_of_created(const Edits& edits) {
+  if (!edits.has_parents()) return nullptr;
+  edits.parents();
+  return &edits.search_->overlaps;
 }
 
 Edits make_edits(std::shared_ptr<const TetMesh> old, const TetMesh& now, MeshMaps maps, par::Policy policy) {
@@ -141,7 +176,8 @@ Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Pol
   for (CellHandle c : unmapped(edits.maps.old_cells, policy))
     edits.created_cells.push_back({c, now.cell_vertices(c)});
   for (VertexHandle v : unmapped(edits.maps.old_vertices, policy))
-    edits.created_vertices.push_back({.vertex = v, .old_vertex = {}, .point = now.point(v), .old_cell = {}});
+    edits.created_vertices.push_back(
+        {.vertex = v, .old_vertex = {}, .near_vertex = {}, .point = now.point(v), .old_cell = {}});
   const auto& was = edits.maps.old_vertices;
   const auto has_moved = [&](VertexHandle v) {
     return was[v.idx()].is_valid() && !(now.point(v) == old.point(was[v.idx()]));
@@ -150,11 +186,13 @@ Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Pol
        par::compact<Index>(policy, was.size(), [&](std::size_t v) { return has_moved(VertexHandle(v)); }))
     edits.moved_vertices.push_back({.vertex = VertexHandle(i),
                                     .old_vertex = was[i],
+                                    .near_vertex = was[i],
                                     .point = now.point(VertexHandle(i)),
                                     .old_cell = {}});
   edits.moved_cells = cells_that_moved(now, edits, policy);
-  place(old, edits, edits.created_vertices, policy);
-  place(old, edits, edits.moved_vertices, policy);
+  find_near_vertices(now, edits.maps, edits.created_vertices, policy);
+  place(old, edits.created_vertices, policy);
+  place(old, edits.moved_vertices, policy);
   return edits;
 }
 

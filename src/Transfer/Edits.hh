@@ -18,8 +18,11 @@ namespace hfr {
 struct PlacedVertex {
   VertexHandle vertex;      ///< of the mesh as it is
   VertexHandle old_vertex;  ///< invalid: created
-  Vec3 point;               ///< where it is
-  CellHandle old_cell;      ///< of the mesh as it was; invalid where no cell with a volume is near
+  /// From which old vertex on it was looked for: the vertex itself where it is old, otherwise that of the
+  /// nearest of its neighbours that have one. Invalid: nothing old hangs together with it.
+  VertexHandle near_vertex;
+  Vec3 point;           ///< where it is
+  CellHandle old_cell;  ///< of the mesh as it was; invalid where no cell with a volume is near
   /// They add up to 1. One below the -1e-10 that rounding leaves only where `inside` is false.
   std::array<double, 4> weights{};
   bool inside = true;  ///< false: it lies beyond the mesh as it was, and old_cell is the nearest
@@ -48,6 +51,8 @@ struct Parents {
     return {all.data() + first[i], all.data() + first[i + 1]};
   }
 };
+
+struct Overlaps;
 
 /// What a repair did to a mesh, element by element: enough for a solver to bring its arrays, its matrix and
 /// its own fields up to date. "Old" handles are those of the mesh before it, "new" ones those after it; both
@@ -102,6 +107,7 @@ class Edits {
  private:
   struct ParentSearch;
   friend Edits make_edits(std::shared_ptr<const TetMesh>, const TetMesh&, MeshMaps, par::Policy);
+  friend const Overlaps* overlaps_of_created(const Edits& edits);
 
   std::shared_ptr<ParentSearch> search_;
 };

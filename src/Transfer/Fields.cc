@@ -11,6 +11,8 @@
 #include "IO/FieldLayout.hh"
 #include "Transfer/Conserve.hh"
 #include "Transfer/Gradients.hh"
+#include "Transfer/Overlaps.hh"
+#include "Transfer/PlacedValue.hh"
 
 namespace hfr {
 namespace {
@@ -87,43 +89,6 @@ DenseStored& required(const TetMesh& mesh, const std::string& name, Transfer how
   return *found;
 }
 
-/// What the old field has at a vertex within its old cell.
-double interpolated(const Values& from, const std::array<VertexHandle, 4>& corners,
-                    const std::array<double, 4>& weights, int k) {
-  // In differences, so that a constant stays one.
-  const double first = from.get(corners[0].idx(), k);
-  double value = first;
-  for (std::size_t j = 1; j < 4; ++j) value += weights[j] * (from.get(corners[j].idx(), k) - first);
-  return value;
-}
-
-/// By what the gradients at the corners bend it: Σ w_i g_i·(x - x_i) / 2, which makes the whole exact for
-/// quadratic functions whose gradients these are. 0 where one is not known.
-double bend(const TetMesh& old, const Values& from, const Gradients& gradients, const PlacedVertex& v,
-            int k) {
-  const auto& corners = old.cell_vertices(v.old_cell);
-  double sum = 0;
-  for (std::size_t j = 0; j < 4; ++j) {
-    const std::span<const Gradients::Term> terms = gradients.terms(corners[j]);
-    if (terms.empty()) return 0;
-    const double here = from.get(corners[j].idx(), k);
-    Vec3 gradient;
-    for (const Gradients::Term& term : terms)
-      gradient = gradient + (from.get(term.neighbour.idx(), k) - here) * term.weight;
-    sum += v.weights[j] * dot(gradient, v.point - old.point(corners[j]));
-  }
-  return 0.5 * sum;
-}
-
-double within_corners(double value, const Values& from, const std::array<VertexHandle, 4>& corners, int k) {
-  double low = from.get(corners[0].idx(), k), high = low;
-  for (std::size_t j = 1; j < 4; ++j) {
-    low = std::min(low, from.get(corners[j].idx(), k));
-    high = std::max(high, from.get(corners[j].idx(), k));
-  }
-  return value < low ? low : value > high ? high : value;
-}
-
 /// Linearly, and with gradients bent.
 void transfer_interpolated(const TetMesh& old, TetMesh& now, const Edits& edits, const std::string& name,
                            const Gradients* gradients, FieldReport& report) {
@@ -131,35 +96,49 @@ void transfer_interpolated(const TetMesh& old, TetMesh& now, const Edits& edits,
   const auto to = values_of(required(now, name, Transfer::kLinear));
   for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
     for (const PlacedVertex& v : *list) {
-      if (!v.old_cell.is_valid()) {  // of its source, as it is
-        ++report.n_outside;
-        continue;
-      }
+      const bool has_place = v.old_cell.is_valid();
+      report.n_outside += has_place && v.inside ? 0 : 1;
+      if (!has_place && !v.near_vertex.is_valid()) continue;
       ++report.n_changed;
-      report.n_outside += v.inside ? 0 : 1;
-      const auto& corners = old.cell_vertices(v.old_cell);
       for (int k = 0; k < from->n_components(); ++k) {
-        double value = interpolated(*from, corners, v.weights, k);
-        if (gradients && v.inside)
-          value = within_corners(value + bend(old, *from, *gradients, v, k), *from, corners, k);
-        to->set(v.vertex.idx(), k, value);
+        const auto get = [&](VertexHandle u) { return from->get(u.idx(), k); };
+        to->set(v.vertex.idx(), k, has_place ? value_at(old, v, gradients, get) : get(v.near_vertex));
       }
     }
 }
 
+/// The old cells that vertices have been put in.
+std::vector<CellHandle> places_of(const Edits& edits) {
+  std::vector<CellHandle> cells;
+  for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
+    for (const PlacedVertex& v : *list)
+      if (v.old_cell.is_valid()) cells.push_back(v.old_cell);
+  return cells;
+}
+
 void transfer_inherited(const TetMesh& old, TetMesh& now, const Edits& edits, const std::string& name,
-                        FieldReport& report) {
+                        par::Policy policy, FieldReport& report) {
   const DenseStored& from = required(old, name, Transfer::kInherit);
   DenseStored& to = required(now, name, Transfer::kInherit);
   const Parents& parents = edits.parents();
-  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
-    if (parents.of(i).empty()) {
-      ++report.n_outside;
-      continue;
-    }
+  std::vector<std::size_t> outside;
+  const auto write = [&](std::size_t i, CellHandle parent) {
     ++report.n_changed;
-    to.copy_from(from, parents.of(i).front().old_cell.idx(), edits.created_cells[i].cell.idx());
+    to.copy_from(from, parent.idx(), edits.created_cells[i].cell.idx());
+  };
+  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
+    if (parents.of(i).empty())
+      outside.push_back(i);
+    else
+      write(i, parents.of(i).front().old_cell);
   }
+  report.n_outside = outside.size();
+  if (outside.empty()) return;
+  std::vector<CellHandle> cells;
+  for (std::size_t i : outside) cells.push_back(edits.created_cells[i].cell);
+  const std::vector<CellHandle> beside = old_cells_beside(old, shapes_of(now, edits, cells), policy);
+  for (std::size_t k = 0; k < outside.size(); ++k)
+    if (beside[k].is_valid()) write(outside[k], beside[k]);
 }
 
 std::vector<double> component(const Values& values, std::span<const CellHandle> cells, int k) {
@@ -183,8 +162,11 @@ void transfer_conserved(const TetMesh& old, TetMesh& now, const Cavities& caviti
   for (std::size_t i = 0; i < cavities.new_cells().size(); ++i)
     report.n_outside += cavities.is_outside(i) ? 1 : 0;
   for (int k = 0; k < from->n_components(); ++k) {
-    const Conserved conserved = conserve(cavities, component(*from, cavities.old_cells(), k), old_density,
-                                         new_density, component(*to, cavities.new_cells(), k));
+    std::vector<double> fallback = component(*to, cavities.new_cells(), k);
+    for (std::size_t i = 0; i < fallback.size(); ++i)
+      if (cavities.beside(i).is_valid()) fallback[i] = from->get(cavities.beside(i).idx(), k);
+    const Conserved conserved =
+        conserve(cavities, component(*from, cavities.old_cells(), k), old_density, new_density, fallback);
     for (std::size_t i = 0; i < conserved.values.size(); ++i)
       to->set(cavities.new_cells()[i].idx(), k, conserved.values[i]);
     report.integral.push_back(conserved.integral);
@@ -250,11 +232,11 @@ std::vector<FieldReport> transfer_fields(const TetMesh& old, TetMesh& now, const
           transfer_interpolated(old, now, edits, field.name, nullptr, reports[i]);
           break;
         case Transfer::kQuadratic:
-          if (!gradients) gradients.emplace(old, edits, policy);
+          if (!gradients) gradients.emplace(old, places_of(edits), policy);
           transfer_interpolated(old, now, edits, field.name, &*gradients, reports[i]);
           break;
         case Transfer::kInherit:
-          transfer_inherited(old, now, edits, field.name, reports[i]);
+          transfer_inherited(old, now, edits, field.name, policy, reports[i]);
           break;
         case Transfer::kConserve:
           if (!cavities) cavities.emplace(old, now, edits, policy);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "HalfFace/Geometry.hh"
+#include "Transfer/Stars.hh"
 
 namespace hfr {
 namespace {
@@ -13,11 +14,19 @@ namespace {
 // Of what three edges at right angles have: below it, they count as lying in one plane.
 constexpr double kFlat = 1e-9;
 
-std::vector<Gradients::Term> terms_of(const TetMesh& mesh, VertexHandle v) {
+/// Those of the neighbours in the order of their handles: sums of them are the same however the mesh is
+/// stored.
+std::vector<Gradients::Term> terms_of(const TetMesh& mesh, VertexHandle v, std::span<const CellHandle> star) {
   const Vec3 at = mesh.point(v);
+  std::vector<VertexHandle> neighbours;
+  for (CellHandle c : star)
+    for (VertexHandle u : mesh.cell(c).v)
+      if (u != v) neighbours.push_back(u);
+  std::sort(neighbours.begin(), neighbours.end());
+  neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
   std::vector<Gradients::Term> terms;
   double shortest = std::numeric_limits<double>::infinity();
-  for (VertexHandle u : mesh.vertex_vertices(v)) {
+  for (VertexHandle u : neighbours) {
     const Vec3 d = mesh.point(u) - at;
     const double length = norm(d);
     if (!(length > 0) || !std::isfinite(1 / length)) continue;
@@ -47,17 +56,17 @@ std::vector<Gradients::Term> terms_of(const TetMesh& mesh, VertexHandle v) {
 
 }  // namespace
 
-Gradients::Gradients(const TetMesh& old, const Edits& edits, par::Policy policy) {
-  for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
-    for (const PlacedVertex& v : *list)
-      if (v.old_cell.is_valid())
-        for (VertexHandle corner : old.cell_vertices(v.old_cell)) vertices_.push_back(corner);
+Gradients::Gradients(const TetMesh& old, std::span<const CellHandle> cells, par::Policy policy) {
+  for (CellHandle c : cells)
+    for (VertexHandle corner : old.cell_vertices(c)) vertices_.push_back(corner);
   std::sort(vertices_.begin(), vertices_.end());
   vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
   terms_.resize(vertices_.size());
+  const Stars stars(old, vertices_, policy);
   constexpr double kNanoseconds = 1'000;  // a vertex, about
-  par::for_each_dynamic(policy.for_items_of(kNanoseconds), vertices_.size(), 64,
-                        [&](std::size_t i) { terms_[i] = terms_of(old, vertices_[i]); });
+  par::for_each_dynamic(policy.for_items_of(kNanoseconds), vertices_.size(), 64, [&](std::size_t i) {
+    terms_[i] = terms_of(old, vertices_[i], stars.of(vertices_[i]));
+  });
 }
 
 std::span<const Gradients::Term> Gradients::terms(VertexHandle v) const {

@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "HalfFace/TetMesh.hh"
-#include "Transfer/Edits.hh"
 
 namespace hfr {
 
 /// How the gradient of a field of vertices follows from its values round a vertex: by least squares over the
 /// edges of the vertex, each with the weight 1/length⁴. Exact for linear functions. Made once, for all
-/// fields, for the corners of the old cells in which an edit has put vertices.
+/// fields, for the corners of the old cells that vertices have been put in.
 class Gradients {
  public:
   /// The gradient is the sum of weight · (value at the neighbour - value at the vertex).
@@ -22,7 +21,8 @@ class Gradients {
     Vec3 weight;
   };
 
-  Gradients(const TetMesh& old, const Edits& edits, par::Policy policy);
+  /// For the corners of these cells.
+  Gradients(const TetMesh& old, std::span<const CellHandle> cells, par::Policy policy);
 
   /// Of an old vertex; none where its edges lie in one plane, and of other vertices than those corners.
   std::span<const Term> terms(VertexHandle v) const;

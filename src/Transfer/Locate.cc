@@ -35,7 +35,8 @@ double least(const std::array<double, 4>& weights) {
 /// The best place among cells that were looked at.
 class Best {
  public:
-  Best(const TetMesh& mesh, Vec3 point) : mesh_(mesh), point_(point) {}
+  Best(const TetMesh& mesh, Vec3 point, std::span<const std::uint8_t> is_cut)
+      : mesh_(mesh), point_(point), is_cut_(is_cut) {}
 
   /// True when the cell has the point.
   bool look_at(CellHandle c) {
@@ -44,16 +45,30 @@ class Best {
     const double value = least(weights);
     if (value > value_) {
       value_ = value;
-      place_ = {c, weights, value >= kOnFace};
+      place_ = {c, weights, value >= kOnFace, {}};
     }
     return place_.inside;
   }
+  /// The cell behind a face; invalid where there is none, which is noted where one is missing.
+  CellHandle behind(HalfFaceHandle h) {
+    const HalfFaceHandle m = mesh_.opposite_halfface(h);
+    if (m.is_valid()) return cell_of(m);
+    if (!is_cut_.empty() && is_cut_[h.idx()] != 0 && !cut_.is_valid()) cut_ = h;
+    return {};
+  }
+  bool is_cut_short() const { return cut_.is_valid(); }
   double value() const { return value_; }
-  const Place& place() const { return place_; }
+  Place place() const {
+    Place place = place_;
+    place.cut = cut_;
+    return place;
+  }
 
  private:
   const TetMesh& mesh_;
   Vec3 point_;
+  std::span<const std::uint8_t> is_cut_;
+  HalfFaceHandle cut_;
   Place place_;
   double value_ = -std::numeric_limits<double>::infinity();
 };
@@ -74,9 +89,10 @@ bool walk(const TetMesh& mesh, Vec3 point, CellHandle c, Best& best) {
     CellHandle next;
     for (int k : order) {
       if (!(weights[static_cast<std::size_t>(k)] < 0)) break;
-      const HalfFaceHandle m = mesh.opposite_halfface(halfface_of(c, k));
-      if (!m.is_valid() || cell_of(m) == from) continue;
-      next = cell_of(m);
+      const CellHandle there = best.behind(halfface_of(c, k));
+      if (best.is_cut_short()) return false;
+      if (!there.is_valid() || there == from) continue;
+      next = there;
       break;
     }
     if (!next.is_valid()) return false;
@@ -98,9 +114,12 @@ void search(const TetMesh& mesh, std::vector<CellHandle> cells, Best& best) {
     in_vain = best.value() > before ? 0 : in_vain + 1;
     std::vector<CellHandle> layer;
     for (CellHandle c : cells)
-      for (const HalfFaceHandle m : mesh.cell(c).mate)
-        if (m.is_valid() && !std::binary_search(known.begin(), known.end(), cell_of(m)))
-          layer.push_back(cell_of(m));
+      for (const HalfFaceHandle h : mesh.cell_halffaces(c)) {
+        const CellHandle there = best.behind(h);
+        if (best.is_cut_short()) return;
+        if (there.is_valid() && !std::binary_search(known.begin(), known.end(), there))
+          layer.push_back(there);
+      }
     std::sort(layer.begin(), layer.end());
     layer.erase(std::unique(layer.begin(), layer.end()), layer.end());
     const auto n_known = static_cast<std::ptrdiff_t>(known.size());
@@ -112,15 +131,13 @@ void search(const TetMesh& mesh, std::vector<CellHandle> cells, Best& best) {
 
 }  // namespace
 
-Place locate(const TetMesh& mesh, Vec3 point, VertexHandle near) {
-  Best best(mesh, point);
-  std::vector<CellHandle> star;
-  if (mesh.incident_cell(near).is_valid())
-    for (CellHandle c : mesh.vertex_cells(near)) star.push_back(c);
+Place locate(const TetMesh& mesh, Vec3 point, std::span<const CellHandle> star,
+             std::span<const std::uint8_t> is_cut) {
+  Best best(mesh, point, is_cut);
   for (CellHandle c : star)
     if (best.look_at(c)) return best.place();
   if (best.place().cell.is_valid() && walk(mesh, point, best.place().cell, best)) return best.place();
-  search(mesh, std::move(star), best);
+  if (!best.is_cut_short()) search(mesh, {star.begin(), star.end()}, best);
   return best.place();
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "Transfer/SharedVolume.hh"
+#include "Transfer/Stars.hh"
+#include "Transfer/TetBox.hh"
 
 namespace hfr {
 namespace {
@@ -20,60 +22,6 @@ constexpr double kNoVolume = 1e-12;
 constexpr double kCovered = 1e-7;
 
 constexpr double kNanoseconds = 3'000;  // a new cell, about
-
-struct Box {
-  Vec3 low, high;
-
-  Box() = default;
-  explicit Box(const TetPoints& t) : low(t[0]), high(t[0]) {
-    for (const Vec3& p : t)
-      for (int k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], p[k]);
-        high[k] = std::max(high[k], p[k]);
-      }
-  }
-  bool meets(const Box& o) const {
-    return low.x <= o.high.x && o.low.x <= high.x && low.y <= o.high.y && o.low.y <= high.y &&
-           low.z <= o.high.z && o.low.z <= high.z;
-  }
-};
-
-/// Boxes by where they begin along the axis in which all of them together are longest.
-class AlongAxis {
- public:
-  AlongAxis() = default;
-  AlongAxis(std::span<const Box> boxes, std::span<const Index> numbers) {
-    if (numbers.empty()) return;
-    Vec3 low = boxes[numbers[0]].low, high = boxes[numbers[0]].high;
-    for (const Index i : numbers)
-      for (int d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], boxes[i].low[d]);
-        high[d] = std::max(high[d], boxes[i].high[d]);
-      }
-    for (const int d : {1, 2})
-      if (high[d] - low[d] > high[axis_] - low[axis_]) axis_ = d;
-    by_begin_.reserve(numbers.size());
-    for (const Index i : numbers) {
-      by_begin_.emplace_back(boxes[i].low[axis_], i);
-      widest_ = std::max(widest_, boxes[i].high[axis_] - boxes[i].low[axis_]);
-    }
-    std::sort(by_begin_.begin(), by_begin_.end());
-  }
-  /// visit(number) for those that may meet the box, until it returns true; whether it did.
-  template <class Visit>
-  bool find_near(const Box& box, Visit&& visit) const {
-    auto at =
-        std::lower_bound(by_begin_.begin(), by_begin_.end(), std::pair(box.low[axis_] - widest_, Index(0)));
-    for (; at != by_begin_.end() && at->first <= box.high[axis_]; ++at)
-      if (visit(at->second)) return true;
-    return false;
-  }
-
- private:
-  int axis_ = 0;
-  std::vector<std::pair<double, Index>> by_begin_;
-  double widest_ = 0;
-};
 
 /// The old cells in question, numbered in the order that they are given in: each with its box and planes,
 /// with which others it shares a face, and by vertex.
@@ -88,7 +36,7 @@ class Candidates {
     for (std::size_t i = 0; i < cells.size(); ++i) number[cells[i].idx()] = static_cast<Index>(i);
     par::for_each(policy, cells.size(), [&](std::size_t i) {
       const TetPoints points = points_of(mesh, cells[i]);
-      boxes_[i] = Box(points);
+      boxes_[i] = TetBox(points);
       shapes_[i] = {points, TetPlanes(points), {}, volume6(points) < 0};
       for (std::size_t k = 0; k < 4; ++k) {
         const HalfFaceHandle m = mesh.cell(cells[i]).mate[k];
@@ -96,14 +44,14 @@ class Candidates {
       }
     });
     list_by_vertex(mesh);
-    inverted_ = AlongAxis(boxes_, par::compact<Index>(policy, cells.size(),
-                                                      [&](std::size_t i) { return shapes_[i].is_inverted; }));
+    inverted_ = BoxTree(boxes_, par::compact<Index>(policy, cells.size(),
+                                                    [&](std::size_t i) { return shapes_[i].is_inverted; }));
   }
   /// For near().
   void sort() {
     std::vector<Index> all(cells_.size());
     std::iota(all.begin(), all.end(), Index{0});
-    all_ = AlongAxis(boxes_, all);
+    all_ = BoxTree(boxes_, std::move(all));
   }
   struct Shape {
     TetPoints points;
@@ -112,7 +60,7 @@ class Candidates {
     bool is_inverted = false;
   };
   CellHandle cell(Index number) const { return cells_[number]; }
-  const Box& box(Index number) const { return boxes_[number]; }
+  const TetBox& box(Index number) const { return boxes_[number]; }
   const Shape& shape(Index number) const { return shapes_[number]; }
   std::size_t size() const { return cells_.size(); }
   std::span<const Index> of(VertexHandle v) const {
@@ -123,16 +71,16 @@ class Candidates {
     const auto at = std::lower_bound(cells_.begin(), cells_.end(), c);
     return at != cells_.end() && *at == c ? static_cast<Index>(at - cells_.begin()) : kNone;
   }
-  /// Those that may meet the box.
+  /// Those whose box meets this one.
   template <class Visit>
-  void near(const Box& box, Visit&& visit) const {
+  void near(const TetBox& box, Visit&& visit) const {
     all_.find_near(box, [&](Index i) {
       visit(i);
       return false;
     });
   }
-  bool is_near_an_inverted_one(const Box& box) const {
-    return inverted_.find_near(box, [&](Index i) { return box.meets(boxes_[i]); });
+  bool is_near_an_inverted_one(const TetBox& box) const {
+    return inverted_.find_near(box, [](Index) { return true; });
   }
 
  private:
@@ -147,10 +95,10 @@ class Candidates {
   }
 
   std::span<const CellHandle> cells_;
-  std::vector<Box> boxes_;
+  std::vector<TetBox> boxes_;
   std::vector<Shape> shapes_;
   std::vector<Index> first_of_, of_;  // by vertex: where its candidates begin, and these
-  AlongAxis inverted_, all_;
+  BoxTree inverted_, all_;
 };
 
 /// Candidates that a search has seen; one list serves many searches.
@@ -174,7 +122,7 @@ class Search {
   void begin(const TetPoints& cell) {
     cell_ = cell;
     planes_ = TetPlanes(cell);
-    box_ = Box(cell);
+    box_ = TetBox(cell);
     volume_ = std::abs(volume6(cell)) / 6;
     seen_.forget();
     parts_.clear();
@@ -183,7 +131,7 @@ class Search {
   /// the middle of the cell, or where a walk to it ends, from `first`. True when any were found: all there
   /// are where they cover the cell and no inverted candidate, which overlaps others, is near.
   bool look_along_faces(Index first) {
-    if (first == Candidates::kNone) return false;
+    if (first == Candidates::kNone || !box_.meets(candidates_.box(first))) return false;
     const Index middle = with_middle(first);
     const Index start = middle == Candidates::kNone ? first : middle;
     if (!seen_.add(start)) return false;
@@ -258,6 +206,7 @@ class Search {
       const auto least = static_cast<std::size_t>(std::min_element(u.begin(), u.end()) - u.begin());
       if (u[least] >= 0) return at;
       at = old.neighbours[least];
+      if (at != Candidates::kNone && !box_.meets(candidates_.box(at))) return Candidates::kNone;
     }
     return Candidates::kNone;
   }
@@ -266,7 +215,7 @@ class Search {
   Seen seen_;
   TetPoints cell_;
   TetPlanes planes_;
-  Box box_;
+  TetBox box_;
   double volume_ = 0;
   std::vector<Index> queue_;
   std::vector<Overlap> parts_;
@@ -317,21 +266,15 @@ Overlaps joined(const std::vector<Found>& found, std::span<const std::uint8_t> i
 
 }  // namespace
 
-Overlaps find_overlaps(const TetMesh& old, const Edits& edits, std::span<const NewCell> new_cells,
+Overlaps find_overlaps(const TetMesh& old, std::span<const NewCell> new_cells,
                        std::span<const CellHandle> old_cells, par::Policy policy) {
   Candidates candidates(old, old_cells, policy);
-  std::unordered_map<Index, CellHandle> place;
-  for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
-    for (const PlacedVertex& v : *list)
-      if (v.old_cell.is_valid()) place.emplace(v.vertex.idx(), v.old_cell);
   /// visit(candidate) for those that may have something of the cell, until it returns true.
   const auto for_near_corners = [&](const NewCell& c, auto&& visit) {
-    for (VertexHandle v : c.vertices) {
-      const auto at = place.find(v.idx());
-      if (at != place.end() && visit(candidates.number(at->second))) return;
-      const VertexHandle source = edits.maps.sources[v.idx()];
-      if (!source.is_valid()) continue;
-      for (const Index near : candidates.of(source))
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (c.places[k].is_valid() && visit(candidates.number(c.places[k]))) return;
+      if (!c.near[k].is_valid()) continue;
+      for (const Index near : candidates.of(c.near[k]))
         if (visit(near)) return;
     }
   };
@@ -371,11 +314,42 @@ Overlaps find_overlaps(const TetMesh& old, const Edits& edits, std::span<const N
   return joined(first, is_open, second);
 }
 
-std::vector<NewCell> shapes_of(const TetMesh& now, std::span<const CellHandle> cells) {
+std::vector<NewCell> shapes_of(const TetMesh& now, const Edits& edits, std::span<const CellHandle> cells) {
   std::vector<NewCell> out;
   out.reserve(cells.size());
-  for (CellHandle c : cells) out.push_back({now.cell_vertices(c), points_of(now, c)});
+  for (CellHandle c : cells) out.push_back({.vertices = now.cell_vertices(c), .points = points_of(now, c)});
+  add_starts(edits, out);
   return out;
+}
+
+void add_starts(const Edits& edits, std::span<NewCell> cells) {
+  std::unordered_map<Index, const PlacedVertex*> placed;
+  for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
+    for (const PlacedVertex& v : *list) placed.emplace(v.vertex.idx(), &v);
+  for (NewCell& cell : cells)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const VertexHandle v = cell.vertices[k];
+      cell.near[k] = edits.maps.old_vertices[v.idx()];
+      const auto at = placed.find(v.idx());
+      if (at == placed.end()) continue;
+      cell.near[k] = at->second->near_vertex;
+      cell.places[k] = at->second->old_cell;
+    }
+}
+
+std::vector<CellHandle> old_cells_beside(const TetMesh& old, std::span<const NewCell> cells,
+                                         par::Policy policy) {
+  std::vector<VertexHandle> near;
+  for (const NewCell& cell : cells) near.insert(near.end(), cell.near.begin(), cell.near.end());
+  const Stars stars(old, near, policy);
+  std::vector<CellHandle> beside;
+  for (const NewCell& cell : cells) {
+    VertexHandle nearest;
+    for (VertexHandle v : cell.near)
+      if (!stars.of(v).empty() && (!nearest.is_valid() || v < nearest)) nearest = v;
+    beside.push_back(nearest.is_valid() ? stars.of(nearest).front() : CellHandle());
+  }
+  return beside;
 }
 
 std::vector<CellHandle> changed_old_cells(const Edits& edits) {

@@ -2,6 +2,8 @@
 #ifndef HFR_TRANSFER_OVERLAPS_HH
 #define HFR_TRANSFER_OVERLAPS_HH
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -32,14 +34,32 @@ struct Overlaps {
 struct NewCell {
   std::array<VertexHandle, 4> vertices;
   TetPoints points;
+  /// What old cells are looked for from: the old vertex near each corner, and the old cell that this lies in
+  /// where it has moved or is new. May be invalid.
+  std::array<VertexHandle, 4> near{};
+  std::array<CellHandle, 4> places{};
 };
-std::vector<NewCell> shapes_of(const TetMesh& now, std::span<const CellHandle> cells);
+std::vector<NewCell> shapes_of(const TetMesh& now, const Edits& edits, std::span<const CellHandle> cells);
+/// Sets `near` and `places`.
+void add_starts(const Edits& edits, std::span<NewCell> cells);
 
 /// Between the new cells that are given and the old ones, ascending, that are where they are. The old cells
-/// are found from the old vertices of a new cell on, from half-face to half-face; where what is found does
-/// not cover the cell, among all that are given. `edits`: its maps and created vertices.
-Overlaps find_overlaps(const TetMesh& old, const Edits& edits, std::span<const NewCell> new_cells,
+/// are found from what lies near a new cell's corners on, from half-face to half-face; where what is found
+/// does not cover the cell, among all that are given. An old cell counts for nothing where its box does not
+/// meet that of the new one: so those that do are all that the result hangs on.
+Overlaps find_overlaps(const TetMesh& old, std::span<const NewCell> new_cells,
                        std::span<const CellHandle> old_cells, par::Policy policy);
+
+/// For new cells that no old one covers: one of the old cells near them. That is the one with the smallest
+/// handle round the smallest of the old vertices near their corners; invalid where there is none.
+std::vector<CellHandle> old_cells_beside(const TetMesh& old, std::span<const NewCell> cells,
+                                         par::Policy policy);
+
+/// The largest share first; of equal ones the smaller handle.
+Parents parents_of(std::span<const NewCell> cells, const Overlaps& overlaps, par::Policy policy);
+/// Those that the parents of created cells were made of, by entry of created_cells; nullptr: there are no
+/// parents.
+const Overlaps* overlaps_of_created(const Edits& edits);
 
 /// Old cells that the new ones of the edits may cover: those that are gone, and those with a vertex that has
 /// moved. Ascending.

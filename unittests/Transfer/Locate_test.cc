@@ -4,13 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "HalfFace/Generate.hh"
 #include "Quality/Tets.hh"
+#include "Transfer/Stars.hh"
 
 namespace hfr::test {
 namespace {
+
+Place located(const TetMesh& mesh, Vec3 point, VertexHandle near) {
+  return locate(mesh, point, Stars(mesh, std::array{near}, {}).of(near));
+}
 
 TetMesh box(double jitter = 0.2) {
   const generate::Arrays arrays = generate::jittered_box({6, 6, 6}, jitter, 5);
@@ -33,7 +39,7 @@ TEST(Locate, PointsAnywhereAreFoundFromAnyVertex) {
   RandomTets random(3);
   for (int i = 0; i < 500; ++i) {
     const Vec3 p = random.point();
-    const Place at = locate(mesh, p, VertexHandle(static_cast<std::size_t>(i) * 7 % mesh.n_vertices()));
+    const Place at = located(mesh, p, VertexHandle(static_cast<std::size_t>(i) * 7 % mesh.n_vertices()));
     ASSERT_TRUE(at.inside);
     expect_same(point_of(mesh, at), p);
     EXPECT_GE(*std::min_element(at.weights.begin(), at.weights.end()), -1e-10);
@@ -43,7 +49,7 @@ TEST(Locate, PointsAnywhereAreFoundFromAnyVertex) {
 TEST(Locate, PointsAtVerticesAndOnTheSurfaceAreInside) {
   const TetMesh mesh = box();
   for (VertexHandle v : mesh.vertices()) {
-    const Place at = locate(mesh, mesh.point(v), v);
+    const Place at = located(mesh, mesh.point(v), v);
     ASSERT_TRUE(at.inside);
     expect_same(point_of(mesh, at), mesh.point(v));
   }
@@ -51,7 +57,7 @@ TEST(Locate, PointsAtVerticesAndOnTheSurfaceAreInside) {
 
 TEST(Locate, PointBeyondTheSurfaceIsSaidToBeOutsideWithTheCellThatItIsLeastOutsideOf) {
   const TetMesh mesh = box(0);
-  const Place at = locate(mesh, {0.52, 0.51, 1.03}, VertexHandle(0));
+  const Place at = located(mesh, {0.52, 0.51, 1.03}, VertexHandle(0));
   ASSERT_TRUE(at.cell.is_valid());
   EXPECT_FALSE(at.inside);
   expect_same(point_of(mesh, at), {0.52, 0.51, 1.03});
@@ -70,7 +76,7 @@ TEST(Locate, PointsAnyNumberOfCellsAwayAreFound) {
   const double length = mesh.point(at_x(1e9)).x;
   for (const double share : {0.05, 0.08, 0.1, 0.9, 1.0}) {  // of 15,000 cells
     const Vec3 p = {share * length, 0.41, 0.52};
-    const Place at = locate(mesh, p, at_x(0));
+    const Place at = located(mesh, p, at_x(0));
     ASSERT_TRUE(at.inside) << share;
     expect_same(point_of(mesh, at), p);
   }
@@ -86,7 +92,7 @@ TEST(Locate, InvertedCellsOnTheWayDoNotHideThePoint) {
     const Vec3 p = mesh.point(near) + 0.05 * (random.point() - Vec3{0.5, 0.5, 0.5});
     if (std::min({p.x, p.y, p.z}) < 0 || std::max({p.x, p.y, p.z}) > 1) continue;
     ++n_found;
-    const Place at = locate(mesh, p, near);
+    const Place at = located(mesh, p, near);
     ASSERT_TRUE(at.inside);
     expect_same(point_of(mesh, at), p);
   }
@@ -96,7 +102,7 @@ TEST(Locate, InvertedCellsOnTheWayDoNotHideThePoint) {
 TEST(Locate, AroundFlatCellsOnlyThereIsNoPlace) {
   const TetMesh mesh =
       build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
-  EXPECT_FALSE(locate(mesh, {0.3, 0.3, 0}, VertexHandle(0)).cell.is_valid());
+  EXPECT_FALSE(located(mesh, {0.3, 0.3, 0}, VertexHandle(0)).cell.is_valid());
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(Overlaps, AreThoseOfAllPairs) {
     const std::vector<CellHandle> is = changed_new_cells(edits), was = changed_old_cells(edits);
     const auto expected = all_pairs(two, is, was);
     for (const int threads : {1, 2, 7}) {
-      const Overlaps found = find_overlaps(two.old, edits, shapes_of(two.now, is), was, {threads, 0});
+      const Overlaps found = find_overlaps(two.old, shapes_of(two.now, edits, is), was, {threads, 0});
       ASSERT_EQ(found.first.size(), is.size() + 1);
       for (std::size_t i = 0; i < is.size(); ++i) {
         const auto parts = found.of(i);
@@ -66,8 +66,8 @@ TEST(Overlaps, NearInvertedOldCellsThoseWithVolumeOnBothSidesAreFound) {
     for (CellHandle c : two.old.cells()) n_inverted += volume(two.old, c) < 0 ? 1 : 0;
     const Edits edits = two.edits();
     const std::vector<CellHandle> is = changed_new_cells(edits), was = changed_old_cells(edits);
-    const Overlaps one = find_overlaps(two.old, edits, shapes_of(two.now, is), was, {1, 0});
-    const Overlaps two_threads = find_overlaps(two.old, edits, shapes_of(two.now, is), was, {2, 0});
+    const Overlaps one = find_overlaps(two.old, shapes_of(two.now, edits, is), was, {1, 0});
+    const Overlaps two_threads = find_overlaps(two.old, shapes_of(two.now, edits, is), was, {2, 0});
     EXPECT_EQ(one.first, two_threads.first);
     for (std::size_t i = 0; i < is.size(); ++i) {
       double covered = 0;
