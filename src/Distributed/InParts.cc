@@ -339,7 +339,8 @@ InParts survey(DistributedMesh& mesh, double goal, par::Policy policy) {
   return all;
 }
 
-PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
+PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options,
+                    std::vector<std::pair<std::uint64_t, std::uint64_t>>* renumbered) {
   validate(options);
   const std::string reason = reason_against(options);
   HFR_REQUIRE(reason.empty(), "meshes in parts do not have " + reason + " yet");
@@ -359,6 +360,12 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options) {
   if (!options.min_dihedral && is_dense(mesh) && is_scattered(mesh)) {
     mesh.drop_dead_slots();
     order = mesh.renumber(numbers_along_curve(mesh));
+    if (renumbered) {
+      renumbered->clear();
+      for (std::size_t i = 0; i < order->size(); ++i)
+        renumbered->emplace_back((*order)[i], mesh.number(CellHandle(i)));
+      std::ranges::sort(*renumbered);
+    }
   }
   RunControl control = control_of(mesh.comm(), options);
   std::optional<WorkBalance> balance;

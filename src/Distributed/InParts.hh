@@ -83,7 +83,11 @@ std::string reason_against(const ImproveOptions& options);
 /// Ranks may have other time limits and callbacks: all stop where one of them is to, and hear of the same
 /// progress. A limit costs a reduction for each round. A rank whose callback throws has to call Comm::fail(),
 /// as for any other failure; the mesh is of no further use then.
-PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options);
+///
+/// `renumbered`: gets, where the run gave cells other numbers first, those of each cell that this rank held
+/// then, before and after; by ascending ones before.
+PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options,
+                    std::vector<std::pair<std::uint64_t, std::uint64_t>>* renumbered = nullptr);
 
 /// What check() of the parts has found.
 struct PartsCheck {

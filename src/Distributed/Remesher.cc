@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "Distributed/OwnItems.hh"
+#include "Distributed/PartTransfer.hh"
 #include "HalfFace/Errors.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
@@ -120,7 +121,8 @@ std::string reason_against(const RemesherOptions& options) {
   if (triggers.indicator || !triggers.indicator_field.empty()) return "triggers by an indicator";
   if (options.on_inversion == OnInversion::kSubsteps) return "sub-steps";
   if (options.motion != Motion::kGiven) return "vertices that follow others";
-  if (!options.fields.empty()) return "fields";
+  for (const FieldTransfer& field : options.fields)
+    if (field.how == Transfer::kCallback) return "fields by callback";
   if (options.ids) return "ids that never change";
   const SurfaceOptions& surface = options.improve.surface;
   if (!surface.fixed_vertices.empty() || !surface.fixed_edges.empty() || !surface.fixed_faces.empty() ||
@@ -137,6 +139,12 @@ Remesher::Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options
   validate(options_);
   const std::string reason = reason_against(options_);
   HFR_REQUIRE(reason.empty(), "a Remesher in parts does not have " + reason + " yet");
+  for (const FieldTransfer& field : options_.fields) {
+    for (const Field& other : fields_)
+      HFR_REQUIRE(other.how.name != field.name,
+                  "field '" + field.name + "' is named twice: in parts each name stands for one");
+    fields_.push_back({field, 0, {}});
+  }
   rebuild(arrays);
   kStepEffort.bound(options_.improve, static_cast<std::size_t>(mesh_->n_cells()));
   watch_ = std::make_unique<Watch>(options_.triggers, options_.improve.policy);
@@ -186,10 +194,145 @@ void Remesher::put_points_back() {
   for (std::size_t v = 0; v < was_.size(); ++v) mesh_->part().set_point(VertexHandle(v), was_[v]);
 }
 
+// --- fields ---
+
+auto Remesher::named(std::string_view name) const -> const Field& {
+  const auto at = std::ranges::find_if(fields_, [&](const Field& f) { return f.how.name == name; });
+  HFR_REQUIRE(at != fields_.end(), "field '" + std::string(name) + "' is not named by the options");
+  return *at;
+}
+
+std::span<const double> Remesher::field(std::string_view name) const { return named(name).values; }
+
+void Remesher::set_field(std::string_view name, std::span<const double> values, std::size_t n_components) {
+  Field& field = fields_[static_cast<std::size_t>(&named(name) - fields_.data())];
+  const bool of_vertices = is_of_vertices(field.how.how);
+  const std::size_t n = of_vertices ? points_.size() : own_cells(*mesh_).size();
+  HFR_REQUIRE(n_components > 0, "field '" + field.how.name + "' has no components");
+  HFR_REQUIRE(values.size() == n * n_components,
+              "field '" + field.how.name + "' has " + std::to_string(values.size()) + " values for " +
+                  std::to_string(n) + (of_vertices ? " points" : " cells") + " of this rank, of " +
+                  std::to_string(n_components) + " components each");
+  const auto asked = static_cast<double>(n_components);
+  const double least = comm_.min(asked), most = -comm_.min(-asked);
+  HFR_REQUIRE(least == most, "field '" + field.how.name + "' has " + std::to_string(n_components) +
+                                 " components on this rank, and another number of them elsewhere");
+  field.n_components = n_components;
+  field.values.assign(values.begin(), values.end());
+  if (of_vertices) tell_values(field);
+}
+
+/// As hfr::validate_fields() has it, of a mesh with properties of these names.
+void Remesher::require_fields() const {
+  if (fields_.empty()) return;
+  TetMesh named;
+  std::vector<FieldTransfer> transfers;
+  for (const Field& field : fields_) {
+    HFR_REQUIRE(field.n_components > 0,
+                "field '" + field.how.name + "' has no values yet: set_field() gives them");
+    const std::vector<double> preset(field.n_components);
+    if (is_of_vertices(field.how.how))
+      named.request_vertex_property<std::vector<double>>(field.how.name, preset);
+    else
+      named.request_cell_property<std::vector<double>>(field.how.name, preset);
+    transfers.push_back(field.how);
+  }
+  validate_fields(named, transfers);
+}
+
+/// After a repair that has changed something: over it, and to the ranks that have the cells then.
+std::vector<FieldReport> Remesher::bring_fields_along(
+    const DistributedMesh& old, std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered) {
+  std::vector<PartField> fields;
+  for (const Field& field : fields_) {
+    PartField& own = fields.emplace_back(PartField{field.how, field.n_components, {}});
+    if (!is_of_vertices(field.how.how)) {
+      own.values = field.values;
+      continue;
+    }
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (old.is_own(points_[i]))
+        own.values.insert(own.values.end(), field.values.data() + field.n_components * i,
+                          field.values.data() + field.n_components * (i + 1));
+  }
+  std::vector<FieldReport> reports =
+      transfer_in_parts(old, *mesh_, renumbered, fields, options_.improve.policy);
+  const RankArrays arrays = own_arrays(*mesh_);
+  std::vector<std::uint64_t> vertices_had, vertices_wanted, cells_wanted;
+  for (std::size_t i = 0; i < arrays.points.size(); ++i)
+    if (arrays.owner[i] == comm_.rank()) vertices_had.push_back(arrays.vertex_number[i]);
+  rebuild(arrays);
+  for (VertexHandle v : points_)
+    if (mesh_->is_own(v)) vertices_wanted.push_back(mesh_->number(v));
+  for (CellHandle c : own_cells(*mesh_)) cells_wanted.push_back(mesh_->number(c));
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    const std::size_t width = fields[f].n_components;
+    if (!is_of_vertices(fields[f].how.how)) {
+      fields_[f].values = rows_where_wanted(comm_, mesh_->n_cells(), arrays.cell_number, fields[f].values,
+                                            width, cells_wanted);
+      continue;
+    }
+    const std::vector<double> own =
+        rows_where_wanted(comm_, mesh_->n_vertices(), vertices_had, fields[f].values, width, vertices_wanted);
+    fields_[f].values.assign(width * points_.size(), 0.0);
+    for (std::size_t i = 0, k = 0; i < points_.size(); ++i)
+      if (mesh_->is_own(points_[i]))
+        std::copy_n(own.data() + width * k++, width, fields_[f].values.data() + width * i);
+    tell_values(fields_[f]);
+  }
+  return reports;
+}
+
+/// Of own points, to the ranks that have them as well.
+void Remesher::tell_values(Field& field) {
+  const std::size_t width = field.n_components;
+  const auto place = [&](VertexHandle v) { return std::ranges::lower_bound(points_, v) - points_.begin(); };
+  std::vector<Packer> to(comm_.n_ranks());
+  for (std::size_t r = 0; r < to.size(); ++r)
+    for (VertexHandle v : held_by_[r]) {
+      to[r].put(mesh_->number(v));
+      const double* row = field.values.data() + width * static_cast<std::size_t>(place(v));
+      for (std::size_t k = 0; k < width; ++k) to[r].put(row[k]);
+    }
+  for (const Comm::Message& message : comm_.exchange(to))
+    for (Unpacker in(message.bytes); !in.at_end();) {
+      const VertexHandle v = mesh_->vertex_at(in.get<std::uint64_t>());
+      const auto at = static_cast<std::size_t>(place(v));
+      const bool is_here = at < points_.size() && points_[at] == v;
+      for (std::size_t k = 0; k < width; ++k) {
+        const auto value = in.get<double>();
+        if (is_here) field.values[width * at + k] = value;
+      }
+    }
+}
+
+// --- a step ---
+
+void Remesher::repair(PartsStep& result) {
+  std::vector<std::uint64_t> numbers;
+  for (VertexHandle v : points_) numbers.push_back(mesh_->number(v));
+  std::shared_ptr<const DistributedMesh> old;
+  if (!fields_.empty()) old = mesh_->copy();
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> renumbered;
+  result.repair = improve(*mesh_, options_.improve, &renumbered);
+  result.changed = result.repair->changed;
+  if (result.changed && old) {
+    result.fields = bring_fields_along(*old, renumbered);
+  } else if (result.changed) {
+    rebuild(own_arrays(*mesh_));
+  } else {  // but vertices may have gone to other ranks and back
+    std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
+    held_by_ = mesh_->held_by_others();
+  }
+  watch_->excuse(*mesh_);
+  steps_ = 0;
+}
+
 PartsStep Remesher::step(std::span<const Vec3> displacement) {
   HFR_REQUIRE(displacement.size() == points_.size(),
               "displacement: has " + std::to_string(displacement.size()) + " entries for " +
                   std::to_string(points_.size()) + " points of this rank");
+  require_fields();
   PartsStep result;
   std::uint64_t n_moved = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -225,20 +368,7 @@ PartsStep Remesher::step(std::span<const Vec3> displacement) {
     if (result.cause == RepairCause::kNone && every > 0 && steps_ >= every)
       result.cause = RepairCause::kSteps;
   }
-  if (result.cause != RepairCause::kNone) {
-    std::vector<std::uint64_t> numbers;
-    for (VertexHandle v : points_) numbers.push_back(mesh_->number(v));
-    result.repair = improve(*mesh_, options_.improve);
-    result.changed = result.repair->changed;
-    if (result.changed) {
-      rebuild(own_arrays(*mesh_));
-    } else {  // but vertices may have gone to other ranks and back
-      std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
-      held_by_ = mesh_->held_by_others();
-    }
-    watch_->excuse(*mesh_);
-    steps_ = 0;
-  }
+  if (result.cause != RepairCause::kNone) repair(result);
   result.min_dihedral = watch_->min_dihedral();
   result.n_inverted = watch_->n_inverted();
   return result;

@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hfremesh/Distributed/InParts.hh"
@@ -25,8 +27,9 @@ struct PartsStep {
   /// With OnInversion::kRefuse: numbers of the cells that would be inverted or flat, ascending.
   std::vector<std::uint64_t> refused;
   std::optional<PartsResult> repair;
-  double min_dihedral = 0;       ///< after it, degrees
-  std::uint64_t n_inverted = 0;  ///< after it: cells that are inverted or flat
+  std::vector<FieldReport> fields;  ///< of the repair, for each field; none where it has changed nothing
+  double min_dihedral = 0;          ///< after it, degrees
+  std::uint64_t n_inverted = 0;     ///< after it: cells that are inverted or flat
 };
 
 /// What of these options is not there in parts, as in "a Remesher in parts does not have …"; empty where all
@@ -39,9 +42,12 @@ std::string reason_against(const RemesherOptions& options);
 /// call, and the object is of no further use.
 ///
 /// There are the triggers min_dihedral, inverted and every, and OnInversion::kRepair and kRefuse. Throws
-/// InvalidInput for what reason_against() names: other triggers, sub-steps, vertices that follow, fields,
-/// ids, what is fixed, time limits, cancelling, and what mpi::improve() does not have. A step looks at all
-/// cells of a rank.
+/// InvalidInput for what reason_against() names: other triggers, sub-steps, vertices that follow, fields by
+/// callback, ids, what is fixed, time limits, cancelling, and what mpi::improve() does not have. A step looks
+/// at all cells of a rank.
+///
+/// Fields, of numbers of double precision, are not properties here: set_field() gives the values that a rank
+/// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
 class Remesher {
  public:
   /// Of what from_arrays() takes, which says what it throws. Here and after each repair that has changed
@@ -53,11 +59,21 @@ class Remesher {
 
   /// `displacement`: of each point of arrays(), in its order and in the mesh's units; of a point that several
   /// ranks have, that which its owner gives counts. Throws InvalidInput, before anything is moved, for
-  /// another number of them, and for one that is not finite.
+  /// another number of them, for one that is not finite, and
+  /// for fields that have no values or cannot be transferred (hfr::validate_fields()).
   PartsStep step(std::span<const Vec3> displacement);
 
   /// What this rank has now: own_arrays(). Other cells and points only after a step that has `changed`.
   RankArrays arrays();
+  /// What this rank has of a field of options.fields: of each point of arrays() or of each of its cells,
+  /// `n_components` values, one after the other. Of a point that several ranks have, those that its owner
+  /// gives count. Before the first step, and whenever the values have changed otherwise than by a step.
+  /// Throws InvalidInput for a field that the options do not name, another number of values, and other
+  /// components than other ranks give.
+  void set_field(std::string_view name, std::span<const double> values, std::size_t n_components = 1);
+  /// The same as it is now, also of points of others. Good until the next step that has `changed`. Throws
+  /// InvalidInput for a field that the options do not name.
+  std::span<const double> field(std::string_view name) const;
   /// The parts as they are, to be written or checked.
   DistributedMesh& mesh() { return *mesh_; }
 
@@ -68,11 +84,23 @@ class Remesher {
   void move_points(std::span<const Vec3> displacement);
   void put_points_back();
   void tell_points();
+  struct Field {
+    FieldTransfer how;
+    std::size_t n_components = 0;  ///< 0: has no values yet
+    std::vector<double> values;    ///< as arrays() has points, or cells
+  };
+  const Field& named(std::string_view name) const;
+  void require_fields() const;
+  void tell_values(Field& field);
+  void repair(PartsStep& result);
+  std::vector<FieldReport> bring_fields_along(
+      const DistributedMesh& old, std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered);
 
   Comm& comm_;
   RemesherOptions options_;
   std::unique_ptr<DistributedMesh> mesh_;
   std::unique_ptr<Watch> watch_;
+  std::vector<Field> fields_;
   std::vector<VertexHandle> points_;  // those of arrays()
   /// Own vertices that other ranks hold, by rank.
   std::vector<std::vector<VertexHandle>> held_by_;

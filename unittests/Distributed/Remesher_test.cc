@@ -5,8 +5,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "Distributed/Labelled.hh"
@@ -47,6 +49,86 @@ Vec3 swirl(Vec3 p, double dt) {
   return {speed * hump(p.x) * std::sin(2 * kPi * p.y), -speed * std::sin(2 * kPi * p.x) * hump(p.y), 0};
 }
 
+/// One field of each kind, on a whole mesh and on its parts.
+class Fields {
+ public:
+  static std::vector<FieldTransfer> all() {
+    return {{.name = "t"},
+            {.name = "u", .how = Transfer::kQuadratic},
+            {.name = "velocity", .how = Transfer::kConserve, .density = "rho"},
+            {.name = "rho", .how = Transfer::kConserve},
+            {.name = "history", .how = Transfer::kInherit}};
+  }
+
+  explicit Fields(TetMesh& whole)
+      : t_(whole.request_vertex_property<double>("t")),
+        u_(whole.request_vertex_property<Vec3>("u")),
+        rho_(whole.request_cell_property<double>("rho")),
+        history_(whole.request_cell_property<double>("history")),
+        velocity_(whole.request_cell_property<Vec3>("velocity")) {
+    for (VertexHandle v : whole.vertices()) {
+      const Vec3 p = whole.point(v);
+      t_[v] = std::sin(5 * p.x) + p.y * p.z;
+      u_[v] = {p.x * p.x, std::cos(3 * p.y + p.x), generate::random_unit(1, v.idx())};
+    }
+    for (CellHandle c : whole.cells()) {
+      rho_[c] = 1 + generate::random_unit(2, c.idx());
+      history_[c] = c.idx() + 0.5;
+      velocity_[c] = {generate::random_unit(3, c.idx()), -1, generate::random_unit(4, c.idx()) * 1e-3};
+    }
+  }
+  /// Of points of others the part is given what does not count.
+  void give(mpi::Remesher& together, const RankArrays& mine, int rank) const {
+    for (const FieldTransfer& field : all()) {
+      std::vector<double> values = of_part(field.name, mine);
+      const std::size_t width = width_of(field.name);
+      for (std::size_t i = 0; is_of_vertices(field.how) && i < mine.points.size(); ++i)
+        if (mine.owner[i] != rank) std::fill_n(values.data() + width * i, width, 1e9);
+      together.set_field(field.name, values, width);
+    }
+  }
+  void expect_same(const mpi::Remesher& together, const RankArrays& mine, int step) const {
+    for (const FieldTransfer& field : all()) {
+      const auto given = together.field(field.name);
+      EXPECT_TRUE(std::ranges::equal(given, of_part(field.name, mine))) << field.name << ", step " << step;
+    }
+  }
+
+ private:
+  static std::size_t width_of(const std::string& name) { return name == "u" || name == "velocity" ? 3 : 1; }
+  std::vector<double> of_part(const std::string& name, const RankArrays& mine) const {
+    std::vector<double> values;
+    const auto add = [&](Vec3 x) { values.insert(values.end(), {x.x, x.y, x.z}); };
+    for (std::uint64_t v : mine.vertex_number) {
+      if (name == "t") values.push_back(t_[V(v)]);
+      if (name == "u") add(u_[V(v)]);
+    }
+    for (std::uint64_t number : mine.cell_number) {
+      const CellHandle c(number);
+      if (name == "rho") values.push_back(rho_[c]);
+      if (name == "history") values.push_back(history_[c]);
+      if (name == "velocity") add(velocity_[c]);
+    }
+    return values;
+  }
+
+  VertexProperty<double> t_;
+  VertexProperty<Vec3> u_;
+  CellProperty<double> rho_, history_;
+  CellProperty<Vec3> velocity_;
+};
+
+void expect_same_reports(const std::vector<FieldReport>& a, const std::vector<FieldReport>& b, int step) {
+  ASSERT_EQ(a.size(), b.size()) << "step " << step;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].name, b[i].name);
+    EXPECT_EQ(a[i].n_changed, b[i].n_changed) << a[i].name << ", step " << step;
+    EXPECT_EQ(a[i].n_outside, b[i].n_outside) << a[i].name << ", step " << step;
+    EXPECT_EQ(a[i].integral, b[i].integral) << a[i].name << ", step " << step;
+    EXPECT_EQ(a[i].lost, b[i].lost) << a[i].name << ", step " << step;
+  }
+}
+
 /// What hfr::Remesher says on all ranks, each of which has the whole, and the parts, step by step: the same.
 /// Returns how many steps have repaired.
 template <class Displacement>
@@ -54,9 +136,12 @@ int expect_same_steps(const TetMesh& input, const RemesherOptions& options, int 
                       Displacement&& displacement, int* n_refused = nullptr) {
   mpi::Comm comm(MPI_COMM_WORLD);
   TetMesh whole = input;
+  std::optional<Fields> fields;
+  if (!options.fields.empty()) fields.emplace(whole);
   Remesher alone(whole, options);
   mpi::Remesher together(comm, slab_of(input, comm), options);
   RankArrays mine = together.arrays();
+  if (fields) fields->give(together, mine, comm.rank());
   int n_repairs = 0;
   for (int step = 0; step < n_steps; ++step) {
     std::vector<Vec3> of_whole, of_mine;
@@ -86,6 +171,11 @@ int expect_same_steps(const TetMesh& input, const RemesherOptions& options, int 
       for (std::size_t k = 0; k < 4; ++k)
         same = same && V(mine.cells[i][k]) == whole.cell(CellHandle(mine.cell_number[i])).v[k];
     EXPECT_TRUE(same) << "step " << step;
+    if (fields) {
+      fields->expect_same(together, mine, step);
+      expect_same_reports(a.repairs.empty() ? std::vector<FieldReport>() : a.repairs[0].fields, b.fields,
+                          step);
+    }
     EXPECT_TRUE(mpi::check(together.mesh()).is_good) << "step " << step;
   }
   return n_repairs;
@@ -189,6 +279,66 @@ TEST(PartRemesher, LabelsStayInTheirOrder) {
   EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
 }
 
+/// Of every kind, over repairs of a few cells and of all.
+TEST(PartRemesher, FieldsAreThoseOfSharedMemory) {
+  RemesherOptions options = towards(15, 12);
+  options.fields = Fields::all();
+  const auto move = [](int step, Vec3 p) { return swirl(p, step % 4 == 3 ? 0 : 0.03); };
+  EXPECT_GT(expect_same_steps(valid_box(8, 0.1, 1), options, 12, move), 3);
+  options.improve.min_dihedral.reset();
+  options.triggers.every = 2;
+  EXPECT_GE(expect_same_steps(valid_box(6, 0.1, 2), options, 4, move), 2);
+}
+
+/// Cells overlap in the mesh as it was.
+TEST(PartRemesher, FieldsOverInvertedCellsAreThoseOfSharedMemory) {
+  RemesherOptions options = towards(15, 10);
+  options.fields = Fields::all();
+  const auto move = [](int step, Vec3 p) { return swirl(p, step % 2 == 0 ? 0.25 : 0.01); };
+  EXPECT_GE(expect_same_steps(valid_box(6, 0.1, 3), options, 4, move), 2);
+}
+
+#ifdef HFR_HAS_SURFACE
+/// New cells lie beyond the mesh as it was, in part and as a whole.
+TEST(PartRemesher, FieldsWhereTheSurfaceChangesAreThoseOfSharedMemory) {
+  RemesherOptions options = towards(20, 17);
+  options.improve.surface.mode = SurfaceMode::kFree;
+  options.fields = Fields::all();
+  const auto move = [](int step, Vec3 p) { return Vec3{0.3 * p.z * p.z + 0.02 * step * p.y, 0, 0.05 * p.x}; };
+  EXPECT_GE(expect_same_steps(valid_box(5, 0.15, 4), options, 3, move), 2);
+}
+#endif
+
+TEST(PartRemesher, FieldsThatAreNotThereAreRefused) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  RemesherOptions options = towards(15, 10);
+  options.fields = {{.name = "rho", .how = Transfer::kConserve}};
+  mpi::Remesher remesher(comm, slab_of(valid_box(4, 0.1, 1), comm), options);
+  const auto refusal = [](auto&& act) {
+    try {
+      act();
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::size_t n = remesher.arrays().cells.size();
+  const std::vector<Vec3> rest(remesher.arrays().points.size());
+  EXPECT_THAT(refusal([&] { remesher.step(rest); }), testing::HasSubstr("'rho' has no values yet"));
+  EXPECT_THAT(refusal([&] { remesher.field("u"); }), testing::HasSubstr("'u' is not named"));
+  EXPECT_THAT(refusal([&] { remesher.set_field("rho", std::vector<double>(n + 1)); }),
+              testing::HasSubstr("cells of this rank"));
+  remesher.set_field("rho", std::vector<double>(2 * n), 2);
+  EXPECT_EQ(refusal([&] { remesher.step(rest); }), "");
+  options.fields.push_back({.name = "rho"});
+  EXPECT_THAT(refusal([&] { mpi::Remesher(comm, slab_of(valid_box(4, 0.1, 1), comm), options); }),
+              testing::HasSubstr("'rho' is named twice"));
+  if (comm.size() == 1) return;
+  const std::size_t components = comm.rank() == 0 ? 1 : 2;
+  EXPECT_THAT(refusal([&] { remesher.set_field("rho", std::vector<double>(components * n), components); }),
+              testing::HasSubstr("another number of them elsewhere"));
+}
+
 TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const RankArrays arrays = slab_of(valid_box(4, 0.1, 1), comm);
@@ -206,7 +356,8 @@ TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
   EXPECT_EQ(refusal([](RemesherOptions& o) { o.on_inversion = OnInversion::kSubsteps; }),
             "a Remesher in parts does not have sub-steps yet");
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.motion = Motion::kLaplace; }), testing::HasSubstr("follow"));
-  EXPECT_THAT(refusal([](RemesherOptions& o) { o.fields = {{.name = "u"}}; }), testing::HasSubstr("fields"));
+  EXPECT_THAT(refusal([](RemesherOptions& o) { o.fields = {{.name = "u", .how = Transfer::kCallback}}; }),
+              testing::HasSubstr("fields by callback"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.ids = true; }), testing::HasSubstr("ids"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.motion = 1; }), testing::HasSubstr("motion"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.jacobian_ratio = 0.5; }),
