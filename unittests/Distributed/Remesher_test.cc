@@ -309,6 +309,35 @@ TEST(PartRemesher, FieldsWhereTheSurfaceChangesAreThoseOfSharedMemory) {
 }
 #endif
 
+/// Moves that are as wild as they come: also far beyond what a rank has of others.
+TEST(PartRemesher, FieldsOfRandomMovesAreThoseOfSharedMemory) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const auto random = [&](std::uint64_t i) { return generate::random_unit(seed, i); };
+    RemesherOptions options = towards(10 + 5 * std::abs(random(1)), 8);
+    if (random(2) > 0.3) options.improve.min_dihedral.reset();
+#ifdef HFR_HAS_SURFACE
+    if (random(3) > 0.3)
+      options.improve.surface.mode = random(3) > 0.6 ? SurfaceMode::kFree : SurfaceMode::kFlat;
+#endif
+    options.triggers.every = 1;
+    options.fields = Fields::all();
+    const double far = std::pow(10, -2 + 1.5 * random(4));
+    const auto move = [&](int step, Vec3 p) {
+      const auto bits = [&](double x) { return static_cast<std::uint64_t>(std::llround(1e6 * x)); };
+      const std::uint64_t at = bits(p.x) + 1'000'003 * bits(p.y) + 998'244'353 * bits(p.z);
+      if (random(at + static_cast<std::uint64_t>(step)) < 0.4) return swirl(p, 0.5 * far);
+      const auto inside = [](double t) { return t * (1 - t); };  // the surface stays
+      return (4 * far * inside(p.x) * inside(p.y) * inside(p.z)) *
+             Vec3{random(at + 1), random(at + 2), random(at + 3)};
+    };
+    expect_same_steps(valid_box(static_cast<Index>(4 + seed % 4), 0.12, seed), options, 3, move);
+    if (HasFailure()) {
+      ADD_FAILURE() << "seed " << seed;
+      return;
+    }
+  }
+}
+
 TEST(PartRemesher, FieldsThatAreNotThereAreRefused) {
   mpi::Comm comm(MPI_COMM_WORLD);
   RemesherOptions options = towards(15, 10);
