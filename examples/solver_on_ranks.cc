@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A solver on several ranks whose mesh moves: each rank has its cells and their points as arrays, a swirl
-// carries the inner vertices along, and all ranks repair the mesh where it has to be, without any of them
-// having the whole. Prints a line a step; ends with 1 where a step has left an inverted cell or an angle
-// below the goal. Usage: mpirun -n 2 example_solver_on_ranks [N STEPS]     6 N³ cells (16)
+// carries the inner vertices and what the cells hold along, and all ranks repair the mesh where it has to be,
+// without any of them having the whole. Prints a line a step; ends with 1 where a step has left an inverted
+// cell, an angle below the goal, or another mass than there was. Usage: mpirun -n 2 example_solver_on_ranks
+// [N STEPS]     6 N³ cells (16)
 #include <mpi.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +15,8 @@
 #include <hfremesh/HalfFace/Generate.hh>
 #include <map>
 #include <numbers>
+#include <span>
+#include <vector>
 
 namespace {
 
@@ -49,21 +54,62 @@ Vec3 displacement(Vec3 p) {
   return {speed * hump(p.x) * std::sin(2 * kPi * p.y), -speed * std::sin(2 * kPi * p.x) * hump(p.y), 0};
 }
 
+/// Volumes of the cells of a rank, with its points as they are or displaced.
+std::vector<double> volumes(const RankArrays& mine, double fraction) {
+  std::vector<double> out;
+  for (const auto& cell : mine.cells) {
+    std::array<Vec3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto at = std::lower_bound(mine.vertex_number.begin(), mine.vertex_number.end(), cell[k]);
+      const Vec3 was = mine.points[static_cast<std::size_t>(at - mine.vertex_number.begin())];
+      p[k] = was + fraction * displacement(was);
+    }
+    out.push_back(dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0])) / 6);
+  }
+  return out;
+}
+
+/// Density times volume, over all ranks.
+double mass_of(std::span<const double> density, const RankArrays& mine) {
+  double mass = 0, all = 0;
+  const std::vector<double> volume = volumes(mine, 0);
+  for (std::size_t i = 0; i < volume.size(); ++i) mass += density[i] * volume[i];
+  MPI_Allreduce(&mass, &all, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  return all;
+}
+
 bool run(hfr::mpi::Comm& comm, hfr::Index n, int n_steps) {
   hfr::RemesherOptions options;
   options.improve.min_dihedral = kGoal;
   options.improve.policy.threads = 1;  // a core for each rank
   options.triggers.min_dihedral = kTrigger;
+  options.fields = {{.name = "temperature"}, {.name = "density", .how = hfr::Transfer::kConserve}};
   hfr::mpi::Remesher remesher(comm, slab(n, comm.rank(), comm.size()), options);
+  {  // values of the points and of the cells that this rank has
+    const RankArrays mine = remesher.arrays();
+    std::vector<double> temperature, density(mine.cells.size(), 1.0);
+    for (const Vec3& p : mine.points) temperature.push_back(p.x);
+    remesher.set_field("temperature", temperature);
+    remesher.set_field("density", density);
+  }
   bool is_good = true;
   for (int step = 1; step <= n_steps; ++step) {
     const RankArrays mine = remesher.arrays();  // what the solver goes on with: its cells, points and numbers
     std::vector<Vec3> displacements;
     for (const Vec3& p : mine.points) displacements.push_back(displacement(p));
+    // A cell keeps what it holds while it moves.
+    const auto density = remesher.field("density");
+    std::vector<double> moved(density.begin(), density.end());
+    const std::vector<double> before = volumes(mine, 0), after = volumes(mine, 1);
+    for (std::size_t i = 0; i < moved.size(); ++i) moved[i] *= before[i] / after[i];
+    const double mass_before = mass_of(density, mine);
+    remesher.set_field("density", moved);
     const hfr::mpi::PartsStep done = remesher.step(displacements);
-    is_good = is_good && done.n_inverted == 0 && done.min_dihedral >= kTrigger;
+    const double mass = mass_of(remesher.field("density"), remesher.arrays());
+    is_good = is_good && done.n_inverted == 0 && done.min_dihedral >= kTrigger &&
+              std::abs(mass - mass_before) < 1e-12;
     if (comm.rank() == 0)
-      std::printf("step %2d: smallest angle %5.2f%s\n", step, done.min_dihedral,
+      std::printf("step %2d: smallest angle %5.2f, mass %.15f%s\n", step, done.min_dihedral, mass,
                   done.changed ? ", repaired: other cells now" : "");
   }
   return is_good;

@@ -7,6 +7,7 @@
 
 #include "Distributed/Buffer.hh"
 #include "Distributed/OwnItems.hh"
+#include "HalfFace/Errors.hh"
 #include "HalfFace/Writer.hh"
 
 namespace hfr::mpi {
@@ -70,7 +71,10 @@ void OldRegion::ask_for_stars(std::vector<Named> vertices) {
   for (const Comm::Message& message : came.messages) {
     std::vector<CellHandle> cells;
     for (std::uint64_t number : Unpacker(message.bytes).get_all<std::uint64_t>()) {
-      const auto star = own_stars_.of(old_.vertex_at(number));
+      const VertexHandle v = old_.vertex_at(number);
+      if (!v.is_valid() || !old_.is_own(v))
+        throw InternalError("a rank was asked for a star that is not its own");
+      const auto star = own_stars_.of(v);
       cells.insert(cells.end(), star.begin(), star.end());
     }
     pack(std::move(cells), answers[static_cast<std::size_t>(message.from)]);
@@ -146,7 +150,9 @@ void OldRegion::pack(std::vector<CellHandle> cells, Packer& to) const {
 }
 
 void OldRegion::take(std::vector<Packer>& to) {
-  for (const Comm::Message& message : old_.comm().exchange(to)) {
+  const auto came = old_.comm().exchange(to);
+  if (came.empty()) return;
+  for (const Comm::Message& message : came) {
     Unpacker in(message.bytes);
     in.append_to(vertices_);
     in.append_to(cells_);

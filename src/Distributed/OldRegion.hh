@@ -24,6 +24,9 @@ class OldRegion {
   /// where it was.
   OldRegion(const DistributedMesh& old, std::function<bool(CellHandle)> is_changed, par::Policy policy);
 
+  OldRegion(const OldRegion&) = delete;  // the tree looks at own_boxes_
+  OldRegion& operator=(const OldRegion&) = delete;
+
   /// A vertex, and the rank that owned it.
   struct Named {
     std::uint64_t number = 0;
@@ -36,6 +39,8 @@ class OldRegion {
   /// All changed cells whose boxes meet one of these, and those of this rank.
   void ask_for_changed(std::span<const TetBox> boxes);
 
+  /// Changed cells of this rank.
+  std::size_t n_own_changed() const { return own_changed_.size(); }
   const TetMesh& mesh() const { return mesh_; }
   /// By half-face: whether there is a cell behind it that is not in this mesh.
   std::span<const std::uint8_t> is_cut() const { return is_cut_; }

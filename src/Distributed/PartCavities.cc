@@ -7,14 +7,17 @@
 #include <map>
 #include <utility>
 
+#include "Distributed/Buffer.hh"
 #include "HalfFace/Geometry.hh"
 #include "Parallel/DisjointSets.hh"
 
 namespace hfr::mpi {
 namespace {
 
-/// A set of cells that a rank has found to hang together.
-std::uint64_t name_of_set(int rank, Index set) { return (static_cast<std::uint64_t>(rank) << 32U) | set; }
+/// A set of cells that a rank has found to hang together; a part has fewer than 2^32 changed ones.
+std::uint64_t name_of_set(int rank, Index set) {
+  return (static_cast<std::uint64_t>(rank) << 32U) | static_cast<std::uint32_t>(set);
+}
 
 /// That a set of this rank hangs together with a cell of another one.
 struct Tie {
@@ -150,20 +153,33 @@ PartCavities::PartCavities(Comm& comm, const OldRegion& region, std::vector<Cell
                     std::move(new_volume), std::move(beside), std::move(cavities));
 }
 
+/// On the rank whose name it is.
 template <class T>
 void PartCavities::join_all(std::span<T> mine) {
   struct Said {
     std::uint64_t name = 0;
     T value{};
   };
-  std::vector<Said> said;
-  for (const Shared& one : shared_) said.push_back({one.name, mine[one.cavity]});
+  const auto home = [](std::uint64_t name) { return static_cast<std::size_t>(name >> 32U); };
+  std::vector<Packer> to(comm_.n_ranks()), back(comm_.n_ranks());
+  for (const Shared& one : shared_) to[home(one.name)].put(Said{one.name, mine[one.cavity]});
+  const auto came = comm_.exchange(to);
   std::map<std::uint64_t, T> all;
-  for (const Said& one : comm_.all_gather(std::span<const Said>(said))) {
-    const auto [at, is_new] = all.emplace(one.name, one.value);
-    if (!is_new) at->second.add(one.value);
-  }
-  for (const Shared& one : shared_) mine[one.cavity] = all.at(one.name);
+  for (const Comm::Message& message : came)
+    for (Unpacker in(message.bytes); !in.at_end();) {
+      const auto said = in.get<Said>();
+      const auto [at, is_new] = all.emplace(said.name, said.value);
+      if (!is_new) at->second.add(said.value);
+    }
+  for (const Comm::Message& message : came)
+    for (Unpacker in(message.bytes); !in.at_end();)
+      back[static_cast<std::size_t>(message.from)].put(all.at(in.get<Said>().name));
+  std::vector<std::vector<T>> joined(comm_.n_ranks());
+  for (const Comm::Message& message : comm_.exchange(back))
+    for (Unpacker in(message.bytes); !in.at_end();)
+      joined[static_cast<std::size_t>(message.from)].push_back(in.get<T>());
+  std::vector<std::size_t> next(comm_.n_ranks(), 0);
+  for (const Shared& one : shared_) mine[one.cavity] = joined[home(one.name)][next[home(one.name)]++];
 }
 
 void PartCavities::join(std::span<CavityBounds> bounds) { join_all(bounds); }

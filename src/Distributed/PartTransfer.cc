@@ -125,8 +125,8 @@ class PartTransfer {
     find_placed();
     const bool of_vertices = has([](const PartField& f) { return is_of_vertices(f.how.how); });
     if (of_vertices) transfer_of_vertices();
-    if (has([](const PartField& f) { return !is_of_vertices(f.how.how); })) transfer_of_cells();
-    const bool any = comm_.sum(placed_.size() + changed_.size()) > 0;
+    if (has_fields_of_cells()) transfer_of_cells();
+    const bool any = comm_.sum(placed_.size() + changed_.size() + region_.n_own_changed()) > 0;
     for (std::size_t f = 0; f < fields_.size(); ++f) {
       reports_[f].name = fields_[f].how.name;
       std::array<std::uint64_t, 2> n = {reports_[f].n_changed, reports_[f].n_outside};
@@ -155,6 +155,9 @@ class PartTransfer {
   template <class Is>
   bool has(Is&& is) const {
     return std::any_of(fields_.begin(), fields_.end(), is);
+  }
+  bool has_fields_of_cells() const {
+    return has([](const PartField& f) { return !is_of_vertices(f.how.how); });
   }
   const TetMesh& part() const { return now_.part(); }
 
@@ -218,8 +221,9 @@ class PartTransfer {
           changes_.is_old(now_.number(v)) ? old_.vertex_at(now_.number(v)) : VertexHandle();
       if (!was.is_valid() || !(old_.part().point(was) == part().point(v))) asked.push_back(v);
     }
-    for (const Changed& c : changed_)
-      for (VertexHandle v : part().cell(c.now).v) asked.push_back(v);
+    if (has_fields_of_cells())
+      for (const Changed& c : changed_)
+        for (VertexHandle v : part().cell(c.now).v) asked.push_back(v);
     std::ranges::sort(asked);
     asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
     std::vector<Named> stars;
@@ -248,16 +252,18 @@ class PartTransfer {
     for (std::size_t i : open) near.push_back(near_of(i));
     const Stars stars(mesh, near, policy_);
     std::vector<Place> places(open.size());
+    std::vector<CutFaces> cuts(open.size(), CutFaces{region_.is_cut()});
     constexpr double kNanoseconds = 2'000;  // a vertex, about
     par::for_each_dynamic(policy_.for_items_of(kNanoseconds), open.size(), 64, [&](std::size_t k) {
-      places[k] = locate(mesh, part().point(placed_[open[k]].vertex), stars.of(near[k]), region_.is_cut());
+      places[k] = locate(mesh, part().point(placed_[open[k]].vertex), stars.of(near[k]), &cuts[k]);
     });
     std::vector<std::size_t> again;
     std::vector<Named> beyond;
     for (std::size_t k = 0; k < open.size(); ++k) {
       Placed& v = placed_[open[k]];
-      if (places[k].cut.is_valid()) {
-        for (VertexHandle u : mesh.cell(cell_of(places[k].cut)).v) beyond.push_back(region_.name(u));
+      if (!cuts[k].met.empty()) {
+        for (HalfFaceHandle h : cuts[k].met)
+          for (VertexHandle u : mesh.cell(cell_of(h)).v) beyond.push_back(region_.name(u));
         again.push_back(open[k]);
         continue;
       }

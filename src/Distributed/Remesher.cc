@@ -218,7 +218,7 @@ void Remesher::set_field(std::string_view name, std::span<const double> values, 
   HFR_REQUIRE(least == most, "field '" + field.how.name + "' has " + std::to_string(n_components) +
                                  " components on this rank, and another number of them elsewhere");
   field.n_components = n_components;
-  field.values.assign(values.begin(), values.end());
+  field.values = std::vector<double>(values.begin(), values.end());  // which may be its own
   if (of_vertices) tell_values(field);
 }
 
@@ -242,7 +242,8 @@ void Remesher::require_fields() const {
 
 /// After a repair that has changed something: over it, and to the ranks that have the cells then.
 std::vector<FieldReport> Remesher::bring_fields_along(
-    const DistributedMesh& old, std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered) {
+    std::shared_ptr<const DistributedMesh> old,
+    std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered) {
   std::vector<PartField> fields;
   for (const Field& field : fields_) {
     PartField& own = fields.emplace_back(PartField{field.how, field.n_components, {}});
@@ -251,12 +252,13 @@ std::vector<FieldReport> Remesher::bring_fields_along(
       continue;
     }
     for (std::size_t i = 0; i < points_.size(); ++i)
-      if (old.is_own(points_[i]))
+      if (old->is_own(points_[i]))
         own.values.insert(own.values.end(), field.values.data() + field.n_components * i,
                           field.values.data() + field.n_components * (i + 1));
   }
   std::vector<FieldReport> reports =
-      transfer_in_parts(old, *mesh_, renumbered, fields, options_.improve.policy);
+      transfer_in_parts(*old, *mesh_, renumbered, fields, options_.improve.policy);
+  old.reset();
   const RankArrays arrays = own_arrays(*mesh_);
   std::vector<std::uint64_t> vertices_had, vertices_wanted, cells_wanted;
   for (std::size_t i = 0; i < arrays.points.size(); ++i)
@@ -317,7 +319,7 @@ void Remesher::repair(PartsStep& result) {
   result.repair = improve(*mesh_, options_.improve, &renumbered);
   result.changed = result.repair->changed;
   if (result.changed && old) {
-    result.fields = bring_fields_along(*old, renumbered);
+    result.fields = bring_fields_along(std::move(old), renumbered);
   } else if (result.changed) {
     rebuild(own_arrays(*mesh_));
   } else {  // but vertices may have gone to other ranks and back

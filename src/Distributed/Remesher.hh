@@ -50,8 +50,9 @@ std::string reason_against(const RemesherOptions& options);
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
 class Remesher {
  public:
-  /// Of what from_arrays() takes, which says what it throws. Here and after each repair that has changed
-  /// something, cells stay where they are if parts are even (Keep::kIfEven).
+  /// Of what from_arrays() takes, which says what it throws; InvalidInput also for a field that is named
+  /// twice. Here and after each repair that has changed something, cells stay where they are if parts are
+  /// even (Keep::kIfEven).
   Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options = {});
   ~Remesher();
   Remesher(const Remesher&) = delete;
@@ -71,8 +72,9 @@ class Remesher {
   /// Throws InvalidInput for a field that the options do not name, another number of values, and other
   /// components than other ranks give.
   void set_field(std::string_view name, std::span<const double> values, std::size_t n_components = 1);
-  /// The same as it is now, also of points of others. Good until the next step that has `changed`. Throws
-  /// InvalidInput for a field that the options do not name.
+  /// The same as it is now, also of points of others; none before set_field(). Good until that is called
+  /// again or a step has `changed`. Throws InvalidInput for a field that the options do not name. Each rank
+  /// may call it by itself.
   std::span<const double> field(std::string_view name) const;
   /// The parts as they are, to be written or checked.
   DistributedMesh& mesh() { return *mesh_; }
@@ -94,7 +96,8 @@ class Remesher {
   void tell_values(Field& field);
   void repair(PartsStep& result);
   std::vector<FieldReport> bring_fields_along(
-      const DistributedMesh& old, std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered);
+      std::shared_ptr<const DistributedMesh> old,
+      std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered);
 
   Comm& comm_;
   RemesherOptions options_;

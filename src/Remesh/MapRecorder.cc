@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/MapRecorder.hh"
 
+#include <algorithm>
 #include <type_traits>
 
 #include "HalfFace/TupleMap.hh"
@@ -43,11 +44,17 @@ MapRecorder::~MapRecorder() {
 void MapRecorder::restore(CellHandle old, CellHandle now) {
   for (const auto& property : mesh_.properties().cells)
     for (const auto& before : before_->properties().cells)
-      if (before->name() == property->name() && before->type() == property->type() && !before->is_anonymous())
+      if (before->name() == property->name() && before->type() == property->type())
         property->copy_from(*before, old.idx(), now.idx());
+  if (const bool was = before_->is_selected(old); mesh_.is_selected(now) != was) mesh_.set_selected(now, was);
+  if (const bool was = before_->is_tagged(old); mesh_.is_tagged(now) != was) mesh_.set_tagged(now, was);
 }
 
 MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy) {
+  const auto& list = mesh_.properties().cells;
+  const bool can_restore = before_ && std::none_of(list.begin(), list.end(), [](const auto& property) {
+                             return property->is_anonymous();  // by which name is it there?
+                           });
   MeshMaps maps;
   maps.vertices.resize(n_vertices_);
   maps.cells.resize(n_cells_);
@@ -74,7 +81,7 @@ MeshMaps MapRecorder::maps(const GarbageMap& order, const GarbageMap& garbage, p
     const auto& now = mesh_.cell(c).v;
     if (vertices != now && AnyOrder::key(vertices) != AnyOrder::key(now)) return;
     if (origin_ && (*origin_)[c] != CellHandle(i).idx()) {
-      if (!before_) return;
+      if (!can_restore) return;
       restore(CellHandle(i), c);
     }
     maps.cells[i] = c;

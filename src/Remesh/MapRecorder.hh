@@ -26,8 +26,8 @@ class MapRecorder {
   /// they stayed.
   ///
   /// A cell may go and come again in its old place, with the properties of another that was there in between.
-  /// With a copy of the mesh it has its own ones again, those that have a name; without one it counts as
-  /// another cell.
+  /// With a copy of the mesh it has its own ones again, if all have names; otherwise it counts as another
+  /// cell.
   MeshMaps maps(const GarbageMap& order, const GarbageMap& garbage, par::Policy policy = {});
 
  private:

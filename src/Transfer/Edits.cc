@@ -65,10 +65,7 @@ void find_near_vertices(const TetMesh& now, const MeshMaps& maps, std::vector<Pl
   } while (!layer.empty());
 }
 
-void place(const TetMesh& old, std::vector<PlacedVertex>& vertices, par::Policy policy) {
-  std::vector<VertexHandle> near;
-  for (const PlacedVertex& v : vertices) near.push_back(v.near_vertex);
-  const Stars stars(old, near, policy);
+void place(const TetMesh& old, const Stars& stars, std::vector<PlacedVertex>& vertices, par::Policy policy) {
   constexpr double kNanoseconds = 2'000;  // a vertex, about
   par::for_each_dynamic(policy.for_items_of(kNanoseconds), vertices.size(), 64, [&](std::size_t i) {
     PlacedVertex& v = vertices[i];
@@ -176,8 +173,7 @@ Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Pol
   for (CellHandle c : unmapped(edits.maps.old_cells, policy))
     edits.created_cells.push_back({c, now.cell_vertices(c)});
   for (VertexHandle v : unmapped(edits.maps.old_vertices, policy))
-    edits.created_vertices.push_back(
-        {.vertex = v, .old_vertex = {}, .near_vertex = {}, .point = now.point(v), .old_cell = {}});
+    edits.created_vertices.push_back({.vertex = v, .old_vertex = {}, .point = now.point(v), .old_cell = {}});
   const auto& was = edits.maps.old_vertices;
   const auto has_moved = [&](VertexHandle v) {
     return was[v.idx()].is_valid() && !(now.point(v) == old.point(was[v.idx()]));
@@ -186,13 +182,17 @@ Edits make_edits(const TetMesh& old, const TetMesh& now, MeshMaps maps, par::Pol
        par::compact<Index>(policy, was.size(), [&](std::size_t v) { return has_moved(VertexHandle(v)); }))
     edits.moved_vertices.push_back({.vertex = VertexHandle(i),
                                     .old_vertex = was[i],
-                                    .near_vertex = was[i],
                                     .point = now.point(VertexHandle(i)),
-                                    .old_cell = {}});
+                                    .old_cell = {},
+                                    .near_vertex = was[i]});
   edits.moved_cells = cells_that_moved(now, edits, policy);
   find_near_vertices(now, edits.maps, edits.created_vertices, policy);
-  place(old, edits.created_vertices, policy);
-  place(old, edits.moved_vertices, policy);
+  std::vector<VertexHandle> near;
+  for (auto* list : {&edits.created_vertices, &edits.moved_vertices})
+    for (const PlacedVertex& v : *list) near.push_back(v.near_vertex);
+  const Stars stars(old, near, policy);
+  place(old, stars, edits.created_vertices, policy);
+  place(old, stars, edits.moved_vertices, policy);
   return edits;
 }
 

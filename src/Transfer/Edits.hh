@@ -18,14 +18,15 @@ namespace hfr {
 struct PlacedVertex {
   VertexHandle vertex;      ///< of the mesh as it is
   VertexHandle old_vertex;  ///< invalid: created
-  /// From which old vertex on it was looked for: the vertex itself where it is old, otherwise that of the
-  /// nearest of its neighbours that have one. Invalid: nothing old hangs together with it.
-  VertexHandle near_vertex;
+
   Vec3 point;           ///< where it is
   CellHandle old_cell;  ///< of the mesh as it was; invalid where no cell with a volume is near
   /// They add up to 1. One below the -1e-10 that rounding leaves only where `inside` is false.
   std::array<double, 4> weights{};
   bool inside = true;  ///< false: it lies beyond the mesh as it was, and old_cell is the nearest
+  /// From which old vertex on it was looked for: the vertex itself where it is old, otherwise that of the
+  /// nearest of its neighbours that have one. Invalid: nothing old hangs together with it.
+  VertexHandle near_vertex = {};
 };
 
 /// What a new cell has in common with an old one, as a share of the new one's volume. Negative for an old

@@ -55,8 +55,8 @@ struct FieldTransfer {
 struct FieldReport {
   std::string name;
   std::size_t n_changed = 0;  ///< values that were written
-  std::size_t n_outside = 0;  ///< things beyond the mesh as it was, in part or as a whole; values that no old
-                              ///< one was there for stay what they are and are not written
+  std::size_t n_outside = 0;  ///< things beyond the mesh as it was, in part or as a whole: those with nothing
+                              ///< of it have the value of an old vertex or cell near them
   /// With kConserve, by component: what there was in the changed cells, and what of it found no place within
   /// the range of the old values; less than 0 for what cells beyond the old mesh have come to hold. Where the
   /// surface stays, the latter is rounding.

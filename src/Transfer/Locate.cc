@@ -35,8 +35,7 @@ double least(const std::array<double, 4>& weights) {
 /// The best place among cells that were looked at.
 class Best {
  public:
-  Best(const TetMesh& mesh, Vec3 point, std::span<const std::uint8_t> is_cut)
-      : mesh_(mesh), point_(point), is_cut_(is_cut) {}
+  Best(const TetMesh& mesh, Vec3 point, CutFaces* cut) : mesh_(mesh), point_(point), cut_(cut) {}
 
   /// True when the cell has the point.
   bool look_at(CellHandle c) {
@@ -45,7 +44,7 @@ class Best {
     const double value = least(weights);
     if (value > value_) {
       value_ = value;
-      place_ = {c, weights, value >= kOnFace, {}};
+      place_ = {c, weights, value >= kOnFace};
     }
     return place_.inside;
   }
@@ -53,22 +52,17 @@ class Best {
   CellHandle behind(HalfFaceHandle h) {
     const HalfFaceHandle m = mesh_.opposite_halfface(h);
     if (m.is_valid()) return cell_of(m);
-    if (!is_cut_.empty() && is_cut_[h.idx()] != 0 && !cut_.is_valid()) cut_ = h;
+    if (cut_ && cut_->is_cut[h.idx()] != 0) cut_->met.push_back(h);
     return {};
   }
-  bool is_cut_short() const { return cut_.is_valid(); }
+  bool is_cut_short() const { return cut_ && !cut_->met.empty(); }
   double value() const { return value_; }
-  Place place() const {
-    Place place = place_;
-    place.cut = cut_;
-    return place;
-  }
+  const Place& place() const { return place_; }
 
  private:
   const TetMesh& mesh_;
   Vec3 point_;
-  std::span<const std::uint8_t> is_cut_;
-  HalfFaceHandle cut_;
+  CutFaces* cut_;
   Place place_;
   double value_ = -std::numeric_limits<double>::infinity();
 };
@@ -116,10 +110,10 @@ void search(const TetMesh& mesh, std::vector<CellHandle> cells, Best& best) {
     for (CellHandle c : cells)
       for (const HalfFaceHandle h : mesh.cell_halffaces(c)) {
         const CellHandle there = best.behind(h);
-        if (best.is_cut_short()) return;
         if (there.is_valid() && !std::binary_search(known.begin(), known.end(), there))
           layer.push_back(there);
       }
+    if (best.is_cut_short()) return;
     std::sort(layer.begin(), layer.end());
     layer.erase(std::unique(layer.begin(), layer.end()), layer.end());
     const auto n_known = static_cast<std::ptrdiff_t>(known.size());
@@ -131,9 +125,8 @@ void search(const TetMesh& mesh, std::vector<CellHandle> cells, Best& best) {
 
 }  // namespace
 
-Place locate(const TetMesh& mesh, Vec3 point, std::span<const CellHandle> star,
-             std::span<const std::uint8_t> is_cut) {
-  Best best(mesh, point, is_cut);
+Place locate(const TetMesh& mesh, Vec3 point, std::span<const CellHandle> star, CutFaces* cut) {
+  Best best(mesh, point, cut);
   for (CellHandle c : star)
     if (best.look_at(c)) return best.place();
   if (best.place().cell.is_valid() && walk(mesh, point, best.place().cell, best)) return best.place();

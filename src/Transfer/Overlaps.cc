@@ -47,6 +47,8 @@ class Candidates {
     inverted_ = BoxTree(boxes_, par::compact<Index>(policy, cells.size(),
                                                     [&](std::size_t i) { return shapes_[i].is_inverted; }));
   }
+  Candidates(const Candidates&) = delete;  // trees look at boxes_
+  Candidates& operator=(const Candidates&) = delete;
   /// For near().
   void sort() {
     std::vector<Index> all(cells_.size());
@@ -323,6 +325,7 @@ std::vector<NewCell> shapes_of(const TetMesh& now, const Edits& edits, std::span
 }
 
 void add_starts(const Edits& edits, std::span<NewCell> cells) {
+  if (cells.empty()) return;
   std::unordered_map<Index, const PlacedVertex*> placed;
   for (const auto* list : {&edits.created_vertices, &edits.moved_vertices})
     for (const PlacedVertex& v : *list) placed.emplace(v.vertex.idx(), &v);

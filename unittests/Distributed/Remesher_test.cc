@@ -6,14 +6,22 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <random>
+#include <span>
 #include <string>
 
 #include "Distributed/Labelled.hh"
+#include "Distributed/OwnItems.hh"
+#include "Distributed/PartTransfer.hh"
 #include "Distributed/RankArrays.hh"
 #include "HalfFace/Generate.hh"
+#include "HalfFace/Reorder.hh"
 
 namespace hfr::test {
 namespace {
@@ -49,6 +57,14 @@ Vec3 swirl(Vec3 p, double dt) {
   return {speed * hump(p.x) * std::sin(2 * kPi * p.y), -speed * std::sin(2 * kPi * p.x) * hump(p.y), 0};
 }
 
+/// But for those of what is no number.
+bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return std::ranges::equal(a, b, [](double x, double y) {
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) ||
+           (std::isnan(x) && std::isnan(y));
+  });
+}
+
 /// One field of each kind, on a whole mesh and on its parts.
 class Fields {
  public:
@@ -60,12 +76,9 @@ class Fields {
             {.name = "history", .how = Transfer::kInherit}};
   }
 
-  explicit Fields(TetMesh& whole)
-      : t_(whole.request_vertex_property<double>("t")),
-        u_(whole.request_vertex_property<Vec3>("u")),
-        rho_(whole.request_cell_property<double>("rho")),
-        history_(whole.request_cell_property<double>("history")),
-        velocity_(whole.request_cell_property<Vec3>("velocity")) {
+  /// Those that it has.
+  static Fields of(TetMesh& whole) { return Fields(whole, 0); }
+  explicit Fields(TetMesh& whole) : Fields(whole, 0) {
     for (VertexHandle v : whole.vertices()) {
       const Vec3 p = whole.point(v);
       t_[v] = std::sin(5 * p.x) + p.y * p.z;
@@ -76,6 +89,14 @@ class Fields {
       history_[c] = c.idx() + 0.5;
       velocity_[c] = {generate::random_unit(3, c.idx()), -1, generate::random_unit(4, c.idx()) * 1e-3};
     }
+  }
+  /// Some values that are infinite, or no number.
+  void add_what_is_no_number(const TetMesh& whole) {
+    constexpr double kInfinite = std::numeric_limits<double>::infinity();
+    t_[V(whole.n_vertices() / 2)] = std::numeric_limits<double>::quiet_NaN();
+    u_[V(whole.n_vertices() / 3)].y = -kInfinite;
+    velocity_[CellHandle(whole.n_cells() / 2)].z = kInfinite;
+    history_[CellHandle(5)] = -0.0;
   }
   /// Of points of others the part is given what does not count.
   void give(mpi::Remesher& together, const RankArrays& mine, int rank) const {
@@ -90,11 +111,10 @@ class Fields {
   void expect_same(const mpi::Remesher& together, const RankArrays& mine, int step) const {
     for (const FieldTransfer& field : all()) {
       const auto given = together.field(field.name);
-      EXPECT_TRUE(std::ranges::equal(given, of_part(field.name, mine))) << field.name << ", step " << step;
+      EXPECT_TRUE(same_bits(given, of_part(field.name, mine))) << field.name << ", step " << step;
     }
   }
 
- private:
   static std::size_t width_of(const std::string& name) { return name == "u" || name == "velocity" ? 3 : 1; }
   std::vector<double> of_part(const std::string& name, const RankArrays& mine) const {
     std::vector<double> values;
@@ -112,6 +132,14 @@ class Fields {
     return values;
   }
 
+ private:
+  Fields(TetMesh& whole, int)
+      : t_(whole.request_vertex_property<double>("t")),
+        u_(whole.request_vertex_property<Vec3>("u")),
+        rho_(whole.request_cell_property<double>("rho")),
+        history_(whole.request_cell_property<double>("history")),
+        velocity_(whole.request_cell_property<Vec3>("velocity")) {}
+
   VertexProperty<double> t_;
   VertexProperty<Vec3> u_;
   CellProperty<double> rho_, history_;
@@ -124,8 +152,8 @@ void expect_same_reports(const std::vector<FieldReport>& a, const std::vector<Fi
     EXPECT_EQ(a[i].name, b[i].name);
     EXPECT_EQ(a[i].n_changed, b[i].n_changed) << a[i].name << ", step " << step;
     EXPECT_EQ(a[i].n_outside, b[i].n_outside) << a[i].name << ", step " << step;
-    EXPECT_EQ(a[i].integral, b[i].integral) << a[i].name << ", step " << step;
-    EXPECT_EQ(a[i].lost, b[i].lost) << a[i].name << ", step " << step;
+    EXPECT_TRUE(same_bits(a[i].integral, b[i].integral)) << a[i].name << ", step " << step;
+    EXPECT_TRUE(same_bits(a[i].lost, b[i].lost)) << a[i].name << ", step " << step;
   }
 }
 
@@ -141,6 +169,7 @@ int expect_same_steps(const TetMesh& input, const RemesherOptions& options, int 
   Remesher alone(whole, options);
   mpi::Remesher together(comm, slab_of(input, comm), options);
   RankArrays mine = together.arrays();
+  const bool is_manifold = mpi::check(together.mesh()).is_good;
   if (fields) fields->give(together, mine, comm.rank());
   int n_repairs = 0;
   for (int step = 0; step < n_steps; ++step) {
@@ -176,7 +205,7 @@ int expect_same_steps(const TetMesh& input, const RemesherOptions& options, int 
       expect_same_reports(a.repairs.empty() ? std::vector<FieldReport>() : a.repairs[0].fields, b.fields,
                           step);
     }
-    EXPECT_TRUE(mpi::check(together.mesh()).is_good) << "step " << step;
+    EXPECT_TRUE(!is_manifold || mpi::check(together.mesh()).is_good) << "step " << step;
   }
   return n_repairs;
 }
@@ -290,6 +319,56 @@ TEST(PartRemesher, FieldsAreThoseOfSharedMemory) {
   EXPECT_GE(expect_same_steps(valid_box(6, 0.1, 2), options, 4, move), 2);
 }
 
+/// A run over everything numbers cells anew that are scattered in memory.
+TEST(PartRemesher, FieldsOfScatteredCellsAreThoseOfSharedMemory) {
+  const TetMesh box = valid_box(17, 0.1, 2);
+  std::vector<std::array<Index, 4>> cells(box.n_cells());
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    for (std::size_t k = 0; k < 4; ++k) cells[i][k] = box.cell(CellHandle(i)).v[k].idx();
+  std::mt19937_64 engine(1);
+  for (std::size_t i = 1; i < cells.size(); ++i) std::swap(cells[i], cells[engine() % (i + 1)]);
+  const TetMesh mesh = build({box.points().begin(), box.points().end()}, cells);
+  ASSERT_TRUE(is_scattered(mesh));
+  RemesherOptions options = towards(15, 12);
+  options.improve.min_dihedral.reset();
+  options.improve.iterations = 1;
+  options.triggers.every = 1;
+  options.fields = Fields::all();
+  EXPECT_EQ(expect_same_steps(mesh, options, 2, [](int, Vec3 p) { return swirl(p, 0.02); }), 2);
+}
+
+/// More ranks than the mesh has work for, and two bodies that share a vertex.
+TEST(PartRemesher, FieldsOfSmallAndOfPinchedMeshesAreThoseOfSharedMemory) {
+  RemesherOptions options = towards(20, 17);
+  options.triggers.every = 1;
+  options.fields = Fields::all();
+  const auto move = [](int, Vec3 p) { return Vec3{0.1 * p.z * p.y, 0.05 * p.x * p.x, 0}; };
+  for (const Index n : {1, 2}) expect_same_steps(valid_box(n, 0.1, 4), options, 2, move);
+  const TetMesh box = valid_box(4, 0.2, 5);
+  std::vector<Vec3> points(box.points().begin(), box.points().end());
+  std::vector<std::array<Index, 4>> cells;
+  for (CellHandle c : box.cells()) {
+    auto& corners = cells.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = box.cell(c).v[k].idx();
+  }
+  const auto n = static_cast<Index>(points.size());
+  Index first = 0;
+  for (Index v = 0; v < n; ++v)
+    if (norm(points[v]) < norm(points[first])) first = v;
+  for (Index v = 0; v < n; ++v) points.push_back(2 * points[first] - points[v]);
+  for (std::size_t c = 0; c < box.n_cells(); ++c) {
+    auto corners = cells[c];
+    for (Index& v : corners) v = v == first ? v : v + n;
+    std::swap(corners[2], corners[3]);
+    cells.push_back(corners);
+  }
+  points[n + first] = {9, 9, 9};
+  points.erase(points.begin() + n + first);
+  for (auto& corners : cells)
+    for (Index& v : corners) v -= v > n + first ? 1 : 0;
+  expect_same_steps(build(points, cells), options, 3, move);
+}
+
 /// Cells overlap in the mesh as it was.
 TEST(PartRemesher, FieldsOverInvertedCellsAreThoseOfSharedMemory) {
   RemesherOptions options = towards(15, 10);
@@ -336,6 +415,82 @@ TEST(PartRemesher, FieldsOfRandomMovesAreThoseOfSharedMemory) {
       return;
     }
   }
+}
+
+/// What transfer_fields() and transfer_in_parts() make of a mesh of which vertices are moved and one cell may
+/// be taken away.
+template <class Moved>
+void expect_same_transfer(Moved&& moved, CellHandle gone = {}) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  TetMesh whole = valid_box(6, 0.1, 7);
+  Fields fields(whole);
+  fields.add_what_is_no_number(whole);
+  mpi::DistributedMesh parts(comm);
+  mpi::from_arrays(parts, slab_of(whole, comm));
+  const auto old_parts = parts.copy();
+  const auto old = std::make_shared<const TetMesh>(whole);
+  for (VertexHandle v : whole.vertices()) whole.set_point(v, moved(v.idx(), whole.point(v)));
+  for (std::size_t i = 0; i < parts.part().n_vertices(); ++i)
+    parts.part().set_point(V(i), moved(parts.number(V(i)), parts.part().point(V(i))));
+  MeshMaps maps;
+  for (VertexHandle v : whole.vertices()) maps.vertices.push_back(v);
+  for (CellHandle c : whole.cells()) maps.cells.push_back(c);
+  maps.old_vertices = maps.sources = maps.vertices;
+  if (gone.is_valid()) {
+    whole.delete_cell(gone);
+    const GarbageMap garbage = whole.collect_garbage();
+    ASSERT_EQ(whole.n_vertices(), old->n_vertices());
+    maps.cells = garbage.cells;
+    if (const CellHandle c = parts.cell_at(gone.idx()); c.is_valid()) parts.detach(c);
+    parts.free_slots().push_back(gone.idx());
+  }
+  maps.old_cells.assign(whole.n_cells(), {});
+  for (std::size_t i = 0; i < maps.cells.size(); ++i)
+    if (maps.cells[i].is_valid()) maps.old_cells[maps.cells[i].idx()] = CellHandle(i);
+  const std::vector<FieldTransfer> how = Fields::all();
+  const Edits edits = make_edits(old, whole, maps, {});
+  const std::vector<FieldReport> reports = transfer_fields(*old, whole, edits, how, {});
+
+  const auto own_of = [&](const RankArrays& mine) {  // without points of others
+    RankArrays own = mine;
+    own.vertex_number.clear();
+    for (std::size_t i = 0; i < mine.points.size(); ++i)
+      if (mine.owner[i] == comm.rank()) own.vertex_number.push_back(mine.vertex_number[i]);
+    return own;
+  };
+  RankArrays before, after = own_of(mpi::own_arrays(parts));
+  before.vertex_number = after.vertex_number;
+  for (CellHandle c : mpi::own_cells(*old_parts)) before.cell_number.push_back(old_parts->number(c));
+  TetMesh as_it_was = *old;
+  const Fields given = Fields::of(as_it_was);
+  std::vector<mpi::PartField> in_parts;
+  for (const FieldTransfer& field : how)
+    in_parts.push_back({field, Fields::width_of(field.name), given.of_part(field.name, before)});
+  const auto found = mpi::transfer_in_parts(*old_parts, parts, {}, in_parts, {});
+  for (const mpi::PartField& field : in_parts)
+    EXPECT_TRUE(same_bits(field.values, fields.of_part(field.how.name, after))) << field.how.name;
+  expect_same_reports(reports, found, 0);
+}
+
+/// To the other side of the mesh, so that searches cross the parts of all ranks, and new cells cover old ones
+/// of any.
+TEST(PartTransfer, VerticesThatGoFarHaveTheValuesOfSharedMemory) {
+  expect_same_transfer([&](std::uint64_t number, Vec3 p) {
+    const auto goes = [](double t) { return t > 0.2 && t < 0.8; };
+    if (!goes(p.x) || !goes(p.y) || !goes(p.z)) return p;
+    return number % 3 == 0 ? Vec3{1 - p.x, 1 - p.y, p.z} : number % 3 == 1 ? p + Vec3{0.02, -0.03, 0.01} : p;
+  });
+}
+
+/// Cells of which nothing was in the mesh before, some beside ones of other ranks.
+TEST(PartTransfer, CellsBeyondTheMeshHaveTheValuesOfSharedMemory) {
+  expect_same_transfer([](std::uint64_t, Vec3 p) { return p.z > 0.4 ? p + Vec3{0, 0.1 * p.x, 2} : p; });
+}
+
+/// What it held is lost, and said to be.
+TEST(PartTransfer, CellThatGoesAloneIsReportedAsInSharedMemory) {
+  expect_same_transfer([](std::uint64_t, Vec3 p) { return p; }, CellHandle(2));
+  expect_same_transfer([](std::uint64_t, Vec3 p) { return p; }, CellHandle(6 * 6 * 6 * 6 - 3));
 }
 
 TEST(PartRemesher, FieldsThatAreNotThereAreRefused) {

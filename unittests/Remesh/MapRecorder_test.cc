@@ -127,6 +127,23 @@ TEST(MeshMaps, CellThatCameAgainWithThePropertiesOfAnotherIsNotKept) {
   EXPECT_EQ(mesh.properties().cells.names(), names);
 }
 
+TEST(MeshMaps, CellThatCameAgainHasItsPropertiesBackWhereTheMeshAsItWasIsAtHand) {
+  TetMesh mesh = small_cavity(4);
+  auto value = mesh.request_cell_property<int>("value");
+  auto name = mesh.request_cell_property<std::string>("name");
+  for (CellHandle c : mesh.cells()) value[c] = static_cast<int>(c.idx()), name[c] = std::to_string(c.idx());
+  const TetMesh before = mesh;
+  MapRecorder recorder(mesh, &before);
+  mesh.copy_cell_data(C(3), C(7));
+  ASSERT_EQ(value[C(7)], 3);
+  const MeshMaps maps = recorder.maps({}, {});
+  for (std::size_t i = 0; i < mesh.n_cells(); ++i) {
+    EXPECT_EQ(maps.cells[i], C(i));
+    EXPECT_EQ(value[C(i)], static_cast<int>(i));
+    EXPECT_EQ(name[C(i)], std::to_string(i));
+  }
+}
+
 TEST(MeshMaps, KeptCellsHaveThePropertiesThatTheyHad) {
   for (const SurfaceMode mode : {SurfaceMode::kFrozen, SurfaceMode::kFlat, SurfaceMode::kFree}) {
 #ifndef HFR_HAS_SURFACE

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "Transfer/TwoMeshes.hh"
 
@@ -150,6 +152,24 @@ TEST(Conserve, WhatACellBeyondTheOldMeshHasWithNobodyBesideItIsSaid) {
   EXPECT_EQ(conserved.values[0], 7);
   EXPECT_EQ(conserved.integral, 0);
   EXPECT_NEAR(conserved.lost, -7 * cavities.new_volume(0), 1e-15);
+}
+
+TEST(Conserve, SumsDoNotDependOnTheOrder) {
+  std::vector<double> values;
+  for (std::uint64_t i = 0; i < 999; ++i)
+    values.push_back(generate::random_unit(1, i) * std::pow(10, 12 * generate::random_unit(2, i)));
+  const double sum = order_free_sum(values);
+  double plain = 0;
+  for (double x : values) plain += x;
+  EXPECT_NEAR(sum, plain, 1e-9 * std::abs(plain));
+  for (std::size_t i = 1; i < values.size(); ++i) std::swap(values[i], values[i * 7919 % (i + 1)]);
+  EXPECT_EQ(order_free_sum(values), sum);
+  EXPECT_EQ(order_free_sum({}), 0);
+  EXPECT_EQ(order_free_sum(std::vector<double>{5e-324, 5e-324}), 0) << "below what the units resolve";
+  EXPECT_EQ(order_free_sum(std::vector<double>{1e-200, 2e-200}), 3e-200);
+  EXPECT_EQ(order_free_sum(std::vector<double>{-1e300, 3e300, 1e300}), 3e300);
+  values[5] = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(std::isnan(order_free_sum(values)));
 }
 
 TEST(Conserve, InvertedOldCellsCountNegatively) {

@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "HalfFace/Geometry.hh"
+#include "HalfFace/Writer.hh"
+#include "Transfer/Gradients.hh"
 #include "Transfer/TwoMeshes.hh"
 
 namespace hfr::test {
@@ -46,6 +50,103 @@ TEST(Edits, WhatIsNotListedIsAsItWas) {
     if (!listed[v.idx()]) {
       ASSERT_EQ(two.now.point(v), two.old.point(edits.maps.old_vertices[v.idx()]));
     }
+}
+
+/// The cell that a vertex names as one of its own is what is left of how the mesh was made.
+TEST(Edits, DoNotDependOnHowTheMeshesAreStored) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const TwoMeshes one(5, 0.15, seed);
+    TwoMeshes other = one;
+    for (TetMesh* mesh : {&other.old, &other.now}) {
+      TetMesh::Writer writer(*mesh);
+      for (CellHandle c : mesh->cells())
+        for (VertexHandle v : mesh->cell(c).v) writer.set_incident_cell(v, c);
+    }
+    const Edits a = one.edits(), b = other.edits();
+    const auto expect_same = [](const std::vector<PlacedVertex>& x, const std::vector<PlacedVertex>& y) {
+      ASSERT_EQ(x.size(), y.size());
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        EXPECT_EQ(x[i].near_vertex, y[i].near_vertex);
+        EXPECT_EQ(x[i].old_cell, y[i].old_cell);
+        EXPECT_EQ(x[i].weights, y[i].weights);
+      }
+    };
+    expect_same(a.created_vertices, b.created_vertices);
+    expect_same(a.moved_vertices, b.moved_vertices);
+    ASSERT_EQ(a.parents().first, b.parents().first);
+    for (std::size_t i = 0; i < a.parents().all.size(); ++i)
+      EXPECT_EQ(a.parents().all[i].share, b.parents().all[i].share);
+    std::vector<CellHandle> cells;
+    for (const PlacedVertex& v : a.moved_vertices) cells.push_back(v.old_cell);
+    const Gradients of_one(one.old, cells, {}), of_other(other.old, cells, {});
+    std::size_t n_terms = 0;
+    for (VertexHandle v : one.old.vertices()) {
+      const auto x = of_one.terms(v), y = of_other.terms(v);
+      ASSERT_EQ(x.size(), y.size());
+      for (std::size_t i = 0; i < x.size(); ++i, ++n_terms) {
+        EXPECT_EQ(x[i].neighbour, y[i].neighbour);
+        EXPECT_EQ(x[i].weight, y[i].weight);
+      }
+    }
+    EXPECT_GT(n_terms, 100U);
+  }
+}
+
+TEST(Edits, CreatedVerticesAreLookedForFromTheirNearestOldNeighbours) {
+  const TwoMeshes two(5, 0.15, 2);
+  const Edits edits = two.edits();
+  ASSERT_FALSE(edits.created_vertices.empty());
+  for (const PlacedVertex& v : edits.created_vertices) {
+    VertexHandle nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (VertexHandle u : two.now.vertex_vertices(v.vertex))
+      if (const double d = norm(two.now.point(u) - v.point);
+          d < least && edits.maps.old_vertices[u.idx()].is_valid())
+        least = d, nearest = edits.maps.old_vertices[u.idx()];
+    EXPECT_EQ(v.near_vertex, nearest);
+  }
+  for (const PlacedVertex& v : edits.moved_vertices) EXPECT_EQ(v.near_vertex, v.old_vertex);
+}
+
+/// A cell within which four vertices are new: the innermost one has no old neighbours.
+TEST(Edits, VerticesThatHaveNewNeighboursAloneAreLookedForFromTheirs) {
+  TwoMeshes two(1, 0, 1);
+  two.old = build(std::vector<Vec3>{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}},
+                  std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
+  two.now = two.old;
+  CellHandle c(0);
+  std::vector<VertexHandle> made;
+  for (int i = 0; i < 5; ++i) {
+    made.push_back(two.now.split_cell(c));
+    // The next one goes where as many corners as can be are new.
+    std::size_t best = 0;
+    for (CellHandle d : two.now.cells()) {
+      const auto& v = two.now.cell(d).v;
+      const auto n = static_cast<std::size_t>(
+          std::count_if(v.begin(), v.end(), [](VertexHandle u) { return u.idx() > 3; }));
+      if (n >= best) best = n, c = d;
+    }
+  }
+  two.maps = {};
+  for (std::size_t i = 0; i < two.now.n_vertices(); ++i) {
+    two.maps.old_vertices.push_back(i < 4 ? VertexHandle(i) : VertexHandle());
+    two.maps.sources.push_back(VertexHandle(i < 4 ? i : 0));
+    if (i < 4) two.maps.vertices.push_back(VertexHandle(i));
+  }
+  two.maps.cells.assign(1, {});
+  two.maps.old_cells.assign(two.now.n_cells(), {});
+  const Edits edits = two.edits();
+  ASSERT_EQ(edits.created_vertices.size(), 5U);
+  bool any_among_new_ones = false;
+  for (const PlacedVertex& v : edits.created_vertices) {
+    EXPECT_TRUE(v.near_vertex.is_valid());
+    EXPECT_TRUE(v.inside);
+    EXPECT_EQ(v.old_cell, CellHandle(0));
+    bool has_old_one = false;
+    for (VertexHandle u : two.now.vertex_vertices(v.vertex)) has_old_one = has_old_one || u.idx() < 4;
+    any_among_new_ones = any_among_new_ones || !has_old_one;
+  }
+  EXPECT_TRUE(any_among_new_ones);
 }
 
 TEST(Edits, SharesOfTheParentsOfACreatedCellAddUpToOneTheLargestFirst) {
