@@ -137,6 +137,9 @@ function(hfr_test_flags TARGET)
   endif()
 endfunction()
 
+# How tests with threads run: several at once, so that threads with nothing to do sleep, and leave the cores to others.
+set(HFR_TEST_ENVIRONMENT ENVIRONMENT OMP_WAIT_POLICY=passive)
+
 # hfr_test(FOLDER SOURCES ... [LIBRARIES ...]): one executable test_FOLDER of unittests/FOLDER, linked with the
 # layers up to and including FOLDER.
 function(hfr_test FOLDER)
@@ -160,7 +163,8 @@ function(hfr_test FOLDER)
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/unittests)
   hfr_test_flags(test_${FOLDER})
   target_compile_definitions(test_${FOLDER} PRIVATE HFR_TEST_MESHES="${HFR_TEST_MESHES}")
-  gtest_discover_tests(test_${FOLDER} TEST_PREFIX ${FOLDER}. DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(test_${FOLDER} TEST_PREFIX ${FOLDER}. DISCOVERY_TIMEOUT 60
+    PROPERTIES ${HFR_TEST_ENVIRONMENT})
 endfunction()
 
 # Files of the calling folder whose loops should become vector instructions. Nobody reads errno or the

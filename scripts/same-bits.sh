@@ -12,6 +12,9 @@ jobs=$("$root/scripts/jobs.sh")
 pch=ON
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || pch=OFF
 
+# More threads than cores, at times: those that wait for work sleep.
+export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
+
 expected=
 # compare VARIANT PROGRAM: exit 1 where it gives something else than the first program with its first number of threads.
 compare() {
