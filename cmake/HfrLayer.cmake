@@ -173,3 +173,9 @@ function(hfr_vector_sources)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math"
     SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
+
+# Files of the calling folder with names of their own, in an unnamed namespace, that other files there have, too: never
+# compiled together with those, as CMAKE_UNITY_BUILD would.
+function(hfr_sources_apart)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

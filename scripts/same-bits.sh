@@ -8,9 +8,9 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/scripts/install-deps.sh" --same-bits
 jobs=$("$root/scripts/jobs.sh")
-# ccache, where it is set, spares more than headers that are parsed once.
-pch=ON
-[ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || pch=OFF
+# ccache, where it is set, spares more than headers that are parsed once and sources compiled several at a time.
+once=ON
+[ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || once=OFF
 
 # More threads than cores, at times: those that wait for work sleep.
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
@@ -42,8 +42,8 @@ for variant in "${variants[@]}"; do
   read -r compiler level threads <<< "$variant"
   build=$root/build/same-bits/${compiler}${level}-$threads
   cmake -S "$root" -B "$build" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="$level -DNDEBUG" -DHFR_$threads=ON -DHFR_TOOL=OFF -DHFR_TESTS=ON -DHFR_PCH=$pch \
-    -DHFR_SURFACE=OFF -DHFR_OPENCL=OFF \
+    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="$level -DNDEBUG" -DHFR_$threads=ON -DHFR_TOOL=OFF -DHFR_TESTS=ON -DHFR_PCH=$once \
+    -DCMAKE_UNITY_BUILD=$once -DHFR_SURFACE=OFF -DHFR_OPENCL=OFF \
     > "$build.log" 2>&1 || { cat "$build.log" >&2; exit 1; }
   cmake --build "$build" --parallel "$jobs" --target same_bits >> "$build.log" 2>&1 \
     || { cat "$build.log" >&2; exit 1; }
