@@ -119,7 +119,6 @@ std::string reason_against(const RemesherOptions& options) {
   if (triggers.jacobian_ratio > 0) return "a trigger by the volume of cells";
   if (triggers.motion > 0) return "a trigger by motion";
   if (triggers.indicator || !triggers.indicator_field.empty()) return "triggers by an indicator";
-  if (options.on_inversion == OnInversion::kSubsteps) return "sub-steps";
   if (options.motion != Motion::kGiven) return "vertices that follow others";
   for (const FieldTransfer& field : options.fields)
     if (field.how == Transfer::kCallback) return "fields by callback";
@@ -164,30 +163,29 @@ void Remesher::rebuild(const RankArrays& arrays) {
   held_by_ = mesh_->held_by_others();
 }
 
-/// Where own vertices are, to the ranks that hold them.
-void Remesher::tell_points() {
+/// Where own vertices that move are at that fraction of their way, and that to the ranks that hold them.
+void Remesher::put_points(std::span<const Vec3> displacement, double fraction) {
   struct Moved {
     std::uint64_t number = 0;
     Vec3 point;
   };
   TetMesh& part = mesh_->part();
+  std::vector<std::uint8_t> moves(part.n_vertices(), 0);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const VertexHandle v = points_[i];
+    if (!mesh_->is_own(v) || displacement[i] == Vec3{}) continue;
+    moves[v.idx()] = 1;
+    part.set_point(v, was_[v.idx()] + fraction * displacement[i]);
+  }
   std::vector<Packer> to(comm_.n_ranks());
   for (std::size_t r = 0; r < to.size(); ++r)
     for (VertexHandle v : held_by_[r])
-      if (part.point(v) != was_[v.idx()]) to[r].put(Moved{mesh_->number(v), part.point(v)});
+      if (moves[v.idx()] != 0) to[r].put(Moved{mesh_->number(v), part.point(v)});
   for (const Comm::Message& message : comm_.exchange(to))
     for (Unpacker in(message.bytes); !in.at_end();) {
       const auto moved = in.get<Moved>();
       if (const VertexHandle v = mesh_->vertex_at(moved.number); v.is_valid()) part.set_point(v, moved.point);
     }
-}
-
-void Remesher::move_points(std::span<const Vec3> displacement) {
-  TetMesh& part = mesh_->part();
-  was_.assign(part.points().begin(), part.points().end());
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (mesh_->is_own(points_[i])) part.set_point(points_[i], part.point(points_[i]) + displacement[i]);
-  tell_points();
 }
 
 void Remesher::put_points_back() {
@@ -310,24 +308,103 @@ void Remesher::tell_values(Field& field) {
 
 // --- a step ---
 
+RepairCause Remesher::needs_repair() const {
+  if (watch_->cause() != RepairCause::kNone) return watch_->cause();
+  const int every = options_.triggers.every;
+  return every > 0 && steps_ >= every ? RepairCause::kSteps : RepairCause::kNone;
+}
+
 void Remesher::repair(PartsStep& result) {
+  if (result.repairs.empty()) result.cause = needs_repair();
+  PartsRepair& repair = result.repairs.emplace_back();
   std::vector<std::uint64_t> numbers;
   for (VertexHandle v : points_) numbers.push_back(mesh_->number(v));
   std::shared_ptr<const DistributedMesh> old;
   if (!fields_.empty()) old = mesh_->copy();
   std::vector<std::pair<std::uint64_t, std::uint64_t>> renumbered;
-  result.repair = improve(*mesh_, options_.improve, &renumbered);
-  result.changed = result.repair->changed;
-  if (result.changed && old) {
-    result.fields = bring_fields_along(std::move(old), renumbered);
-  } else if (result.changed) {
+  repair.run = improve(*mesh_, options_.improve, &renumbered);
+  if (repair.run.changed && old) {
+    repair.fields = bring_fields_along(std::move(old), renumbered);
+  } else if (repair.run.changed) {
     rebuild(own_arrays(*mesh_));
   } else {  // but vertices may have gone to other ranks and back
     std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
     held_by_ = mesh_->held_by_others();
   }
+  result.changed = result.changed || repair.run.changed;
   watch_->excuse(*mesh_);
   steps_ = 0;
+}
+
+/// As hfr::Remesher takes it.
+auto Remesher::take(std::span<const Vec3> displacement, OnInversion on_inversion) -> Move {
+  std::uint64_t n_moved = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    n_moved += mesh_->is_own(points_[i]) && displacement[i] != Vec3{} ? 1 : 0;
+  if (comm_.sum(n_moved) == 0) return {};
+  const std::vector<std::uint64_t> inverted_before = watch_->inverted(*mesh_);
+  // Cells of one move may come right and others go wrong, so that their number says nothing.
+  const auto inverts_none = [&] {
+    const std::vector<std::uint64_t> now = watch_->inverted(*mesh_);
+    return comm_.sum(std::ranges::includes(inverted_before, now) ? 0 : 1) == 0;
+  };
+  const Watch::Excuses excuses = watch_->excuses();
+  const auto put_at = [&](double fraction) {
+    put_points(displacement, fraction);
+    watch_->look(*mesh_);
+  };
+  was_.assign(mesh_->part().points().begin(), mesh_->part().points().end());
+  put_at(1);
+  if (on_inversion == OnInversion::kRepair || inverts_none()) return {};
+  if (on_inversion == OnInversion::kRefuse) {
+    const std::vector<std::uint64_t> mine = watch_->inverted(*mesh_);
+    Move move{0, comm_.all_gather(std::span<const std::uint64_t>(mine))};
+    std::ranges::sort(move.refused);
+    put_points_back();
+    watch_->set_excuses(excuses);
+    watch_->look(*mesh_);
+    return move;
+  }
+  double safe = 0, unsafe = 1;
+  for (int i = 0; i < kStepEffort.halvings; ++i) {
+    const double middle = 0.5 * (safe + unsafe);
+    put_at(middle);
+    (inverts_none() ? safe : unsafe) = middle;
+  }
+  put_at(safe);
+  return {safe, {}};
+}
+
+/// As hfr::Remesher has it: what is left of a displacement gets over a repair as a field does.
+void Remesher::run_step(std::span<const Vec3> displacement, PartsStep& result) {
+  std::vector<Vec3> rest;  // of the displacement, once a part of it was taken
+  double taken = 0;
+  for (int i = 0; taken < 1; ++i) {
+    const std::span<const Vec3> whole = i == 0 ? displacement : std::span<const Vec3>(rest);
+    const bool as_a_whole = options_.on_inversion == OnInversion::kSubsteps && i >= options_.max_substeps;
+    Move move = take(whole, as_a_whole ? OnInversion::kRepair : options_.on_inversion);
+    result.refused = std::move(move.refused);
+    result.fraction = taken += (1 - taken) * move.fraction;
+    if (!result.refused.empty()) return;
+    if (move.fraction == 1) break;
+    Field left{{.name = "hfr: rest of the displacement", .how = Transfer::kLinear}, 3, {}};
+    for (const Vec3& d : whole) {
+      const Vec3 one = (1 - move.fraction) * d;
+      left.values.insert(left.values.end(), {one.x, one.y, one.z});
+    }
+    fields_.push_back(std::move(left));
+    repair(result);
+    // The part that was taken inverts nothing; what is left of it would.
+    if (result.cause == RepairCause::kNone) result.cause = RepairCause::kInverted;
+    const std::vector<double> values = std::move(fields_.back().values);
+    fields_.pop_back();
+    rest.clear();
+    for (std::size_t k = 0; k < values.size(); k += 3)
+      rest.push_back({values[k], values[k + 1], values[k + 2]});
+    if (move.fraction == 0 && result.repairs.back().fields.empty()) i = options_.max_substeps - 1;
+  }
+  ++steps_;
+  if (needs_repair() != RepairCause::kNone) repair(result);
 }
 
 PartsStep Remesher::step(std::span<const Vec3> displacement) {
@@ -345,32 +422,7 @@ PartsStep Remesher::step(std::span<const Vec3> displacement) {
     n_moved += mesh_->is_own(points_[i]) && d != Vec3{} ? 1 : 0;
   }
   result.n_moved = comm_.sum(n_moved);
-  const std::vector<std::uint64_t> inverted_before = watch_->inverted(*mesh_);
-  const Watch::Excuses excuses = watch_->excuses();
-  if (result.n_moved > 0) {
-    move_points(displacement);
-    watch_->look(*mesh_);
-  }
-  if (options_.on_inversion == OnInversion::kRefuse) {
-    const std::vector<std::uint64_t> now = watch_->inverted(*mesh_);
-    const bool inverts_none = std::ranges::includes(inverted_before, now);
-    if (comm_.sum(inverts_none ? 0 : 1) > 0) {
-      result.refused = comm_.all_gather(std::span<const std::uint64_t>(now));
-      std::ranges::sort(result.refused);
-      result.fraction = 0;
-      put_points_back();
-      watch_->set_excuses(excuses);
-      watch_->look(*mesh_);
-    }
-  }
-  if (result.refused.empty()) {
-    ++steps_;
-    result.cause = watch_->cause();
-    const int every = options_.triggers.every;
-    if (result.cause == RepairCause::kNone && every > 0 && steps_ >= every)
-      result.cause = RepairCause::kSteps;
-  }
-  if (result.cause != RepairCause::kNone) repair(result);
+  run_step(displacement, result);
   result.min_dihedral = watch_->min_dihedral();
   result.n_inverted = watch_->n_inverted();
   return result;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
+
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,18 +18,23 @@
 /// hfr::Remesher over a mesh in parts: a mesh inside of a simulation on several ranks.
 namespace hfr::mpi {
 
+/// What a repair has done.
+struct PartsRepair {
+  PartsResult run;
+  std::vector<FieldReport> fields;  ///< one for each field; none where nothing has changed
+};
+
 /// What a step has done; the same on all ranks.
 struct PartsStep {
   bool changed = false;                    ///< by a repair: connectivity, or points beyond the displacement
-  RepairCause cause = RepairCause::kNone;  ///< of the repair
-  double fraction = 1;        ///< of the displacement that was taken: 1, or 0 where it was refused
-  std::uint64_t n_moved = 0;  ///< vertices
+  RepairCause cause = RepairCause::kNone;  ///< of the first repair
+  double fraction = 1;                     ///< of the displacement that was taken
+  std::uint64_t n_moved = 0;               ///< vertices that were to move
   /// With OnInversion::kRefuse: numbers of the cells that would be inverted or flat, ascending.
   std::vector<std::uint64_t> refused;
-  std::optional<PartsResult> repair;
-  std::vector<FieldReport> fields;  ///< of the repair, for each field; none where it has changed nothing
-  double min_dihedral = 0;          ///< after it, degrees
-  std::uint64_t n_inverted = 0;     ///< after it: cells that are inverted or flat
+  std::vector<PartsRepair> repairs;  ///< one, but for sub-steps
+  double min_dihedral = 0;           ///< after it, degrees
+  std::uint64_t n_inverted = 0;      ///< after it: cells that are inverted or flat
 };
 
 /// What of these options is not there in parts, as in "a Remesher in parts does not have …"; empty where all
@@ -41,8 +46,8 @@ std::string reason_against(const RemesherOptions& options);
 /// ranks call each function at the same time; where one throws, the others throw RankFailed with their next
 /// call, and the object is of no further use.
 ///
-/// There are the triggers min_dihedral, inverted and every, and OnInversion::kRepair and kRefuse. Throws
-/// InvalidInput for what reason_against() names: other triggers, sub-steps, vertices that follow, fields by
+/// There are the triggers min_dihedral, inverted and every. Throws
+/// InvalidInput for what reason_against() names: other triggers, vertices that follow, fields by
 /// callback, ids, what is fixed, time limits, cancelling, and what mpi::improve() does not have. A step looks
 /// at all cells of a rank.
 ///
@@ -83,9 +88,15 @@ class Remesher {
   class Watch;
 
   void rebuild(const RankArrays& arrays);
-  void move_points(std::span<const Vec3> displacement);
+  struct Move {
+    double fraction = 1;
+    std::vector<std::uint64_t> refused;
+  };
+  Move take(std::span<const Vec3> displacement, OnInversion on_inversion);
+  void put_points(std::span<const Vec3> displacement, double fraction);
   void put_points_back();
-  void tell_points();
+  void run_step(std::span<const Vec3> displacement, PartsStep& result);
+  RepairCause needs_repair() const;
   struct Field {
     FieldTransfer how;
     std::size_t n_components = 0;  ///< 0: has no values yet
@@ -107,7 +118,7 @@ class Remesher {
   std::vector<VertexHandle> points_;  // those of arrays()
   /// Own vertices that other ranks hold, by rank.
   std::vector<std::vector<VertexHandle>> held_by_;
-  std::vector<Vec3> was_;  // own points before the move, by vertex; others too
+  std::vector<Vec3> was_;  // points before the move, by vertex
   int steps_ = 0;          // since the last repair
 };
 
