@@ -21,17 +21,16 @@ std::vector<Labelled<N>> own_labelled(const DistributedMesh& mesh, const TupleMa
 }  // namespace
 
 Numbering::Numbering(DistributedMesh& mesh) : mesh_(mesh), slots_(mesh.free_slots()) {
-  std::vector<std::uint64_t> gone;
   for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i)
-    if (const VertexHandle v(i); mesh.is_own(v) && mesh.part().is_deleted(v)) gone.push_back(mesh.number(v));
-  gone = mesh.comm().all_gather(std::span<const std::uint64_t>(gone));
-  std::sort(gone.begin(), gone.end());
-  n_vertices_ = mesh.n_vertices() - gone.size();
+    if (const VertexHandle v(i); mesh.is_own(v) && mesh.part().is_deleted(v)) gone_.push_back(mesh.number(v));
+  gone_ = mesh.comm().all_gather(std::span<const std::uint64_t>(gone_));
+  std::sort(gone_.begin(), gone_.end());
+  n_vertices_ = mesh.n_vertices() - gone_.size();
   vertex_.reserve(mesh.part().n_vertices());
   std::size_t n_gone = 0;
   for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i) {  // in the order of numbers
     const std::uint64_t number = mesh.number(VertexHandle(i));
-    while (n_gone < gone.size() && gone[n_gone] < number) ++n_gone;
+    while (n_gone < gone_.size() && gone_[n_gone] < number) ++n_gone;
     vertex_.push_back(number - n_gone);
   }
   std::sort(slots_.begin(), slots_.end());

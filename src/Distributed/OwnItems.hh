@@ -23,6 +23,11 @@ class Numbering {
   std::uint64_t n_vertices() const { return n_vertices_; }
   std::uint64_t n_cells() const { return mesh_.n_cells(); }
   std::uint64_t operator()(VertexHandle v) const { return vertex_[v.idx()]; }
+  /// Of a vertex by its number in the parts, whoever has it.
+  std::uint64_t of_vertex(std::uint64_t number) const {
+    return number -
+           static_cast<std::uint64_t>(std::lower_bound(gone_.begin(), gone_.end(), number) - gone_.begin());
+  }
   std::uint64_t operator()(CellHandle c) const {
     const std::uint64_t number = mesh_.number(c);
     return number - static_cast<std::uint64_t>(std::lower_bound(slots_.begin(), slots_.end(), number) -
@@ -34,6 +39,7 @@ class Numbering {
   std::uint64_t n_vertices_ = 0;
   std::vector<std::uint64_t> vertex_;  // by vertex of the part: each is asked for by all its cells
   std::vector<std::uint64_t> slots_;   // that are gone, ascending
+  std::vector<std::uint64_t> gone_;    // vertices, likewise
 };
 
 std::vector<VertexHandle> own_vertices(const DistributedMesh& mesh);

@@ -8,10 +8,13 @@
 #include <utility>
 
 #include "Distributed/OwnItems.hh"
+#include "Distributed/PartFixes.hh"
 #include "Distributed/PartTransfer.hh"
 #include "HalfFace/Errors.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/FixedParts.hh"
+#include "Remesh/MeanEdge.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr::mpi {
@@ -39,7 +42,8 @@ class Remesher::Watch {
                       const CellHandle c(i);
                       if (part.is_deleted(c) || !mesh.is_own(c)) return;
                       mine.worst = std::min(mine.worst, value);
-                      if (!(value > 0) || value < trigger_) mine.bad.push_back({c, value});
+                      if (const unsigned bits = badness(part, c, value); bits != 0)
+                        mine.bad.push_back({c, value, bits});
                     });
       found[static_cast<std::size_t>(p)] = std::move(mine);
     });
@@ -47,17 +51,24 @@ class Remesher::Watch {
       worst = std::min(worst, one.worst);
       bad_.insert(bad_.end(), one.bad.begin(), one.bad.end());
     }
-    std::erase_if(excused_, [&](const auto& one) { return !is_still_excused(one.first, one.second); });
-    std::array<std::uint64_t, 3> sums{};  // inverted; bad by an inversion, and by the angle, and not excused
+    for (auto& one : excused_) narrow(one.first, one.second);
+    std::erase_if(excused_, [](const auto& one) { return one.second.bits == 0; });
+    std::array<std::uint64_t, 4>
+        sums{};  // inverted; and what calls for a repair: by an inversion, angle, metric
     for (const Bad& one : bad_) {
-      const bool is_inverted = !(one.value > 0);
-      sums[0] += is_inverted ? 1 : 0;
-      sums[1] += is_inverted && triggers_.inverted ? 1 : 0;
-      sums[2] += one.value < trigger_ && !excused_.contains(one.cell) ? 1 : 0;
+      const auto excuse = excused_.find(one.cell);
+      const unsigned active = excuse == excused_.end() ? one.bits : one.bits & ~excuse->second.bits;
+      sums[0] += (one.bits & kIsInverted) != 0 ? 1 : 0;
+      sums[1] += (active & kIsInverted) != 0 && triggers_.inverted ? 1 : 0;
+      sums[2] += (active & kIsBelow) != 0 ? 1 : 0;
+      sums[3] += (active & kHasMetric) != 0 ? 1 : 0;
     }
     worst_ = mesh.comm().sum_and_min(sums, worst);
     n_inverted_ = sums[0];
-    cause_ = sums[1] > 0 ? RepairCause::kInverted : sums[2] > 0 ? RepairCause::kAngle : RepairCause::kNone;
+    cause_ = sums[1] > 0   ? RepairCause::kInverted
+             : sums[2] > 0 ? RepairCause::kAngle
+             : sums[3] > 0 ? RepairCause::kMetric
+                           : RepairCause::kNone;
   }
 
   /// After a repair: what it had to leave. The cells have handles of their own by now.
@@ -66,7 +77,8 @@ class Remesher::Watch {
     look(mesh);
     if (cause_ == RepairCause::kNone) return;
     for (const Bad& one : bad_)
-      if (one.value < trigger_) excused_[one.cell] = one.value;
+      if (const unsigned bits = one.bits & ~static_cast<unsigned>(kIsInverted); bits != 0)
+        excused_[one.cell] = {bits, one.value};
     look(mesh);
   }
 
@@ -79,35 +91,55 @@ class Remesher::Watch {
   std::vector<std::uint64_t> inverted(const DistributedMesh& mesh) const {
     std::vector<std::uint64_t> numbers;
     for (const Bad& one : bad_)
-      if (!(one.value > 0)) numbers.push_back(mesh.number(one.cell));
+      if ((one.bits & kIsInverted) != 0) numbers.push_back(mesh.number(one.cell));
     std::sort(numbers.begin(), numbers.end());
     return numbers;
   }
-  using Excuses = std::map<CellHandle, double>;
+  struct Excuse {
+    unsigned bits = 0;
+    double left = 0;  ///< the value that the repair has left the cell with
+  };
+  using Excuses = std::map<CellHandle, Excuse>;
   const Excuses& excuses() const { return excused_; }
   void set_excuses(Excuses excuses) { excused_ = std::move(excuses); }
 
  private:
+  /// Why a cell is bad, a bit each.
+  enum Reason : unsigned { kIsInverted = 1, kIsBelow = 2, kHasMetric = 4 };
   struct Bad {
     CellHandle cell;
     double value = 0;
+    unsigned bits = 0;
   };
   struct Found {
     std::vector<Bad> bad;
     double worst = std::numeric_limits<double>::infinity();
   };
 
-  bool is_still_excused(CellHandle c, double left) const {
+  unsigned badness(const TetMesh& part, CellHandle c, double value) const {
+    unsigned bits = 0;
+    if (!(value > 0)) bits |= kIsInverted;
+    if (value < trigger_) bits |= kIsBelow;
+    const auto& v = part.cell(c).v;
+    for (const auto& [metric, bound] : triggers_.metrics) {
+      const double q =
+          reported_quality(metric, part.point(v[0]), part.point(v[1]), part.point(v[2]), part.point(v[3]));
+      if (metric == Metric::kMaxDihedral ? q > bound : q < bound) bits |= kHasMetric;
+    }
+    return bits;
+  }
+  /// Takes out of the excuse what it does not hold for any more.
+  void narrow(CellHandle c, Excuse& excuse) const {
     const auto at = std::ranges::lower_bound(bad_, c, {}, &Bad::cell);
-    return at != bad_.end() && at->cell == c && at->value < trigger_ &&
-           !kStepEffort.is_much_worse(at->value, left);
+    excuse.bits &= at != bad_.end() && at->cell == c ? at->bits : 0U;
+    if (excuse.bits != 0 && kStepEffort.is_much_worse(at->value, excuse.left)) excuse.bits = 0;
   }
 
   const RepairTriggers& triggers_;
   par::Policy policy_;
-  double trigger_;        // decision value of triggers_.min_dihedral
-  std::vector<Bad> bad_;  // ascending
-  Excuses excused_;       // cells below the trigger that the last repair has left, and their values then
+  double trigger_;                // decision value of triggers_.min_dihedral
+  std::vector<Bad> bad_;          // ascending
+  Excuses excused_;               // of cells that the last repair has left bad
   std::uint64_t n_inverted_ = 0;  // over all ranks
   double worst_ = 0;
   RepairCause cause_ = RepairCause::kNone;
@@ -115,18 +147,12 @@ class Remesher::Watch {
 
 std::string reason_against(const RemesherOptions& options) {
   const RepairTriggers& triggers = options.triggers;
-  if (!triggers.metrics.empty()) return "triggers by metrics";
   if (triggers.jacobian_ratio > 0) return "a trigger by the volume of cells";
-  if (triggers.motion > 0) return "a trigger by motion";
   if (triggers.indicator || !triggers.indicator_field.empty()) return "triggers by an indicator";
   if (options.motion != Motion::kGiven) return "vertices that follow others";
   for (const FieldTransfer& field : options.fields)
     if (field.how == Transfer::kCallback) return "fields by callback";
   if (options.ids) return "ids that never change";
-  const SurfaceOptions& surface = options.improve.surface;
-  if (!surface.fixed_vertices.empty() || !surface.fixed_edges.empty() || !surface.fixed_faces.empty() ||
-      !surface.fixed_patches.empty())
-    return "fixed patches, faces, edges and vertices";  // whose numbers change with a repair
   // A repair that is cut short would have to be undone.
   if (options.improve.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
   if (options.improve.cancel) return "repairs that may be cancelled";
@@ -148,8 +174,23 @@ Remesher::Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options
   kStepEffort.bound(options_.improve, static_cast<std::size_t>(mesh_->n_cells()));
   watch_ = std::make_unique<Watch>(options_.triggers, options_.improve.policy);
   watch_->look(*mesh_);
+  PartFixes(*mesh_, options_.improve.surface).release();  // are they all there?
+  if (options_.triggers.motion > 0) mean_edge_ = mean_edge();
 }
 Remesher::~Remesher() = default;
+
+double Remesher::mean_edge() const {
+  const TetMesh& part = mesh_->part();
+  const std::vector<CellHandle> cells = own_cells(*mesh_);
+  MeanEdge mean;
+  for (CellHandle c : cells) mean.find_longest(part, c);
+  const double longest = -comm_.min(-mean.longest());
+  mean.begin_sum(longest);
+  for (CellHandle c : cells) mean.add(part, c);
+  FixedSum all(longest);
+  for (const FixedSum& sum : comm_.all_gather(std::span<const FixedSum>(&mean.sum(), 1))) all.add(sum);
+  return MeanEdge::of(all, static_cast<std::size_t>(mesh_->n_cells()));
+}
 
 void Remesher::rebuild(const RankArrays& arrays) {
   std::map<std::pair<int, int>, std::string> names;
@@ -161,6 +202,7 @@ void Remesher::rebuild(const RankArrays& arrays) {
   points_.clear();
   for (std::uint64_t number : own_arrays(*mesh_).vertex_number) points_.push_back(mesh_->vertex_at(number));
   held_by_ = mesh_->held_by_others();
+  travelled_.assign(options_.triggers.motion > 0 ? points_.size() : 0, 0.0);
 }
 
 /// Where own vertices that move are at that fraction of their way, and that to the ranks that hold them.
@@ -257,7 +299,7 @@ std::vector<FieldReport> Remesher::bring_fields_along(
   std::vector<FieldReport> reports =
       transfer_in_parts(*old, *mesh_, renumbered, fields, options_.improve.policy);
   old.reset();
-  const RankArrays arrays = own_arrays(*mesh_);
+  const RankArrays arrays = renamed_arrays();
   std::vector<std::uint64_t> vertices_had, vertices_wanted, cells_wanted;
   for (std::size_t i = 0; i < arrays.points.size(); ++i)
     if (arrays.owner[i] == comm_.rank()) vertices_had.push_back(arrays.vertex_number[i]);
@@ -306,10 +348,20 @@ void Remesher::tell_values(Field& field) {
     }
 }
 
+/// The arrays of the mesh after a repair; what is fixed has their numbers from here on.
+RankArrays Remesher::renamed_arrays() {
+  const Numbering numbering(*mesh_);
+  for_each_fixed(options_.improve.surface,
+                 [&](VertexHandle& v) { v = VertexHandle(numbering.of_vertex(v.idx())); });
+  return own_arrays(*mesh_);
+}
+
 // --- a step ---
 
 RepairCause Remesher::needs_repair() const {
   if (watch_->cause() != RepairCause::kNone) return watch_->cause();
+  if (options_.triggers.motion > 0 && farthest_ > options_.triggers.motion * mean_edge_)
+    return RepairCause::kMotion;
   const int every = options_.triggers.every;
   return every > 0 && steps_ >= every ? RepairCause::kSteps : RepairCause::kNone;
 }
@@ -326,13 +378,15 @@ void Remesher::repair(PartsStep& result) {
   if (repair.run.changed && old) {
     repair.fields = bring_fields_along(std::move(old), renumbered);
   } else if (repair.run.changed) {
-    rebuild(own_arrays(*mesh_));
+    rebuild(renamed_arrays());
   } else {  // but vertices may have gone to other ranks and back
     std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
     held_by_ = mesh_->held_by_others();
   }
   result.changed = result.changed || repair.run.changed;
   watch_->excuse(*mesh_);
+  std::ranges::fill(travelled_, 0.0);
+  farthest_ = 0;
   steps_ = 0;
 }
 
@@ -355,7 +409,10 @@ auto Remesher::take(std::span<const Vec3> displacement, OnInversion on_inversion
   };
   was_.assign(mesh_->part().points().begin(), mesh_->part().points().end());
   put_at(1);
-  if (on_inversion == OnInversion::kRepair || inverts_none()) return {};
+  if (on_inversion == OnInversion::kRepair || inverts_none()) {
+    note_motion(displacement, 1);
+    return {};
+  }
   if (on_inversion == OnInversion::kRefuse) {
     const std::vector<std::uint64_t> mine = watch_->inverted(*mesh_);
     Move move{0, comm_.all_gather(std::span<const std::uint64_t>(mine))};
@@ -372,7 +429,18 @@ auto Remesher::take(std::span<const Vec3> displacement, OnInversion on_inversion
     (inverts_none() ? safe : unsafe) = middle;
   }
   put_at(safe);
+  note_motion(displacement, safe);
   return {safe, {}};
+}
+
+void Remesher::note_motion(std::span<const Vec3> displacement, double fraction) {
+  if (options_.triggers.motion <= 0) return;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (!mesh_->is_own(points_[i]) || displacement[i] == Vec3{}) continue;
+    travelled_[i] += fraction * norm(displacement[i]);
+    farthest_ = std::max(farthest_, travelled_[i]);
+  }
+  farthest_ = -comm_.min(-farthest_);
 }
 
 /// As hfr::Remesher has it: what is left of a displacement gets over a repair as a field does.

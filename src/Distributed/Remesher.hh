@@ -46,18 +46,18 @@ std::string reason_against(const RemesherOptions& options);
 /// ranks call each function at the same time; where one throws, the others throw RankFailed with their next
 /// call, and the object is of no further use.
 ///
-/// There are the triggers min_dihedral, inverted and every. Throws
-/// InvalidInput for what reason_against() names: other triggers, vertices that follow, fields by
-/// callback, ids, what is fixed, time limits, cancelling, and what mpi::improve() does not have. A step looks
-/// at all cells of a rank.
+/// There are the triggers min_dihedral, metrics, inverted, motion and every. What options.improve.surface
+/// fixes is named by numbers of vertices in the whole, and stays so when these change. Throws InvalidInput
+/// for what reason_against() names: other triggers, vertices that follow, fields by callback, ids, time
+/// limits, cancelling, and what mpi::improve() does not have. A step looks at all cells of a rank.
 ///
 /// Fields, of numbers of double precision, are not properties here: set_field() gives the values that a rank
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
 class Remesher {
  public:
-  /// Of what from_arrays() takes, which says what it throws; InvalidInput also for a field that is named
-  /// twice. Here and after each repair that has changed something, cells stay where they are if parts are
-  /// even (Keep::kIfEven).
+  /// Of what from_arrays() takes, which says what it throws;InvalidInput also for a field that is named
+  /// twice, and for what is named as fixed and not there.Here and after each repair that has changed
+  /// something, cells stay where they are if parts are even (Keep::kIfEven).
   Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options = {});
   ~Remesher();
   Remesher(const Remesher&) = delete;
@@ -97,6 +97,8 @@ class Remesher {
   void put_points_back();
   void run_step(std::span<const Vec3> displacement, PartsStep& result);
   RepairCause needs_repair() const;
+  double mean_edge() const;
+  void note_motion(std::span<const Vec3> displacement, double fraction);
   struct Field {
     FieldTransfer how;
     std::size_t n_components = 0;  ///< 0: has no values yet
@@ -105,6 +107,7 @@ class Remesher {
   const Field& named(std::string_view name) const;
   void require_fields() const;
   void tell_values(Field& field);
+  RankArrays renamed_arrays();
   void repair(PartsStep& result);
   std::vector<FieldReport> bring_fields_along(
       std::shared_ptr<const DistributedMesh> old,
@@ -118,8 +121,10 @@ class Remesher {
   std::vector<VertexHandle> points_;  // those of arrays()
   /// Own vertices that other ranks hold, by rank.
   std::vector<std::vector<VertexHandle>> held_by_;
-  std::vector<Vec3> was_;  // points before the move, by vertex
-  int steps_ = 0;          // since the last repair
+  std::vector<Vec3> was_;          // points before the move, by vertex
+  std::vector<double> travelled_;  // by own point since the last repair, where asked for
+  double mean_edge_ = 0, farthest_ = 0;
+  int steps_ = 0;  // since the last repair
 };
 
 }  // namespace hfr::mpi

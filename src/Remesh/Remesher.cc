@@ -14,6 +14,7 @@
 #include "Remesh/Coordinates.hh"
 #include "Remesh/FixedParts.hh"
 #include "Remesh/Improve.hh"
+#include "Remesh/MeanEdge.hh"
 #include "Remesh/MeshMotion.hh"
 #include "Remesh/MovedVertices.hh"
 #include "Remesh/RunMemory.hh"
@@ -26,13 +27,11 @@ namespace {
 constexpr const char* kRest = "hfr: rest of the displacement";
 
 double mean_edge(const TetMesh& mesh) {
-  double sum = 0;
-  for (CellHandle c : mesh.cells())
-    for (const auto& e : kEdgeCorners) {
-      const auto& v = mesh.cell_vertices(c);
-      sum += norm(mesh.point(v[e[1]]) - mesh.point(v[e[0]]));
-    }
-  return sum / (6.0 * static_cast<double>(std::max<std::size_t>(mesh.n_logical_cells(), 1)));
+  MeanEdge mean;
+  for (CellHandle c : mesh.cells()) mean.find_longest(mesh, c);
+  mean.begin_sum(mean.longest());
+  for (CellHandle c : mesh.cells()) mean.add(mesh, c);
+  return MeanEdge::of(mean.sum(), mean.n_cells());
 }
 
 }  // namespace

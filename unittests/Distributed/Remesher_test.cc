@@ -245,7 +245,34 @@ TEST(PartRemesher, MovesThatInvertAreRefusedOrMended) {
   EXPECT_LT(n_refused, 4);
 }
 
-/// A move is taken in parts, with repairs between them over which what is left of it has to get.
+TEST(PartRemesher, RepairsByMetricsAndMotionAreThoseOfSharedMemory) {
+  RemesherOptions options = towards(15, 0);
+  options.triggers.metrics = {{Metric::kVolumeLength, 0.35}, {Metric::kMaxDihedral, 155}};
+  const auto move = [](int, Vec3 p) { return swirl(p, 0.02); };
+  const int n = expect_same_steps(valid_box(6, 0.1, 2), options, 10, move);
+  EXPECT_GE(n, 2);
+  EXPECT_LT(n, 10);
+  options.triggers.metrics.clear();
+  options.triggers.motion = 0.2;
+  const int m = expect_same_steps(valid_box(6, 0.1, 2), options, 8, move);
+  EXPECT_GE(m, 2);
+  EXPECT_LT(m, 8);
+}
+
+/// By numbers, which change with repairs.
+TEST(PartRemesher, WhatIsFixedStaysSo) {
+  const TetMesh mesh = valid_box(6, 0.1, 5);
+  RemesherOptions options = towards(18, 15);
+  const auto corners = [&](std::size_t c) { return mesh.cell(CellHandle(c)).v; };
+  options.improve.surface.fixed_vertices = {V(40), V(170), V(300)};
+  options.improve.surface.fixed_edges = {{corners(400)[0], corners(400)[2]},
+                                         {corners(900)[1], corners(900)[3]}};
+  options.improve.surface.fixed_faces = {{corners(700)[0], corners(700)[1], corners(700)[2]}};
+  const auto move = [](int, Vec3 p) { return swirl(p, 0.03); };
+  EXPECT_GE(expect_same_steps(mesh, options, 16, move), 4);
+}
+
+/// A move is taken in parts, withrepairs between them over which what is left of it has to get.
 TEST(PartRemesher, SubstepsAreThoseOfSharedMemory) {
   RemesherOptions options = towards(15, 10);
   options.on_inversion = OnInversion::kSubsteps;
@@ -281,6 +308,11 @@ TEST(PartRemesher, WhatARepairHadToLeaveCallsForNoOther) {
   const int n = expect_same_steps(mesh, options, 5, flatten);
   EXPECT_GE(n, 2);
   EXPECT_LE(n, 3);
+  options.triggers.min_dihedral = 0;
+  options.triggers.metrics = {{Metric::kVolumeLength, 0.5}};
+  const int m = expect_same_steps(mesh, options, 5, flatten);
+  EXPECT_GE(m, 1);
+  EXPECT_LE(m, 3);
 }
 
 TEST(PartRemesher, RegionsStay) {
@@ -554,13 +586,9 @@ TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.fields = {{.name = "u", .how = Transfer::kCallback}}; }),
               testing::HasSubstr("fields by callback"));
 
-  EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.motion = 1; }), testing::HasSubstr("motion"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.jacobian_ratio = 0.5; }),
               testing::HasSubstr("volume"));
-  EXPECT_THAT(refusal([](RemesherOptions& o) {
-                o.triggers.metrics = {{Metric::kMinSine, 0.1}};
-              }),
-              testing::HasSubstr("metrics"));
+
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.indicator_field = "bad"; }),
               testing::HasSubstr("indicator"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.maps = true; }), testing::HasSubstr("maps"));
@@ -568,10 +596,8 @@ TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
               testing::HasSubstr("time limits"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.cancel = [] { return false; }; }),
               testing::HasSubstr("cancelled"));
-  EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.surface.fixed_vertices = {V(0)}; }),
-              testing::HasSubstr("fixed patches, faces, edges and vertices"));
-  EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.surface.fixed_patches = {9}; }),
-              testing::HasSubstr("fixed patches"));
+  EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.surface.fixed_vertices = {V(9999)}; }),
+              testing::HasSubstr("fix vertex:9999"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.min_dihedral = 20; }),
               testing::HasSubstr("must not be above the goal"));
 }
