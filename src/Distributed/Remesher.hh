@@ -55,8 +55,8 @@ std::string reason_against(const RemesherOptions& options);
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
 class Remesher {
  public:
-  /// Of what from_arrays() takes, which says what it throws;InvalidInput also for a field that is named
-  /// twice, and for what is named as fixed and not there.Here and after each repair that has changed
+  /// Of what from_arrays() takes, which says what it throws; InvalidInput also for a field that is named
+  /// twice, and for what is named as fixed and not there. Here and after each repair that has changed
   /// something, cells stay where they are if parts are even (Keep::kIfEven).
   Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options = {});
   ~Remesher();
@@ -65,8 +65,8 @@ class Remesher {
 
   /// `displacement`: of each point of arrays(), in its order and in the mesh's units; of a point that several
   /// ranks have, that which its owner gives counts. Throws InvalidInput, before anything is moved, for
-  /// another number of them, for one that is not finite, and
-  /// for fields that have no values or cannot be transferred (hfr::validate_fields()).
+  /// another number of them, for one that is not finite, and for fields that have no values or cannot be
+  /// transferred (hfr::validate_fields()).
   PartsStep step(std::span<const Vec3> displacement);
 
   /// What this rank has now: own_arrays(). Other cells and points only after a step that has `changed`.
