@@ -10,140 +10,13 @@
 #include "Distributed/OwnItems.hh"
 #include "Distributed/PartFixes.hh"
 #include "Distributed/PartTransfer.hh"
+#include "Distributed/PartWatch.hh"
 #include "HalfFace/Errors.hh"
-#include "Quality/Decisions.hh"
-#include "Quality/Metrics.hh"
 #include "Remesh/FixedParts.hh"
 #include "Remesh/MeanEdge.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr::mpi {
-
-/// What is known of own cells; as CellWatch, which has more triggers.
-class Remesher::Watch {
- public:
-  Watch(const RepairTriggers& triggers, par::Policy policy)
-      : triggers_(triggers),
-        policy_(policy),
-        trigger_(triggers.min_dihedral > 0 ? dihedral_decision(triggers.min_dihedral)
-                                           : -std::numeric_limits<double>::infinity()) {}
-
-  /// What was excused stays so as long as it is bad, and no worse than it was left.
-  void look(DistributedMesh& mesh) {
-    const TetMesh& part = mesh.part();
-    bad_.clear();
-    double worst = std::numeric_limits<double>::infinity();
-    const int n_parts = par::thread_count(policy_, part.n_cells());
-    std::vector<Found> found(static_cast<std::size_t>(n_parts));
-    par::parts(n_parts, [&](int p) {
-      Found mine;
-      for_decisions(part, MinDihedral{}, par::part_begin(part.n_cells(), n_parts, p),
-                    par::part_begin(part.n_cells(), n_parts, p + 1), [&](std::size_t i, double value) {
-                      const CellHandle c(i);
-                      if (part.is_deleted(c) || !mesh.is_own(c)) return;
-                      mine.worst = std::min(mine.worst, value);
-                      if (const unsigned bits = badness(part, c, value); bits != 0)
-                        mine.bad.push_back({c, value, bits});
-                    });
-      found[static_cast<std::size_t>(p)] = std::move(mine);
-    });
-    for (Found& one : found) {
-      worst = std::min(worst, one.worst);
-      bad_.insert(bad_.end(), one.bad.begin(), one.bad.end());
-    }
-    for (auto& one : excused_) narrow(one.first, one.second);
-    std::erase_if(excused_, [](const auto& one) { return one.second.bits == 0; });
-    std::array<std::uint64_t, 4>
-        sums{};  // inverted; and what calls for a repair: by an inversion, angle, metric
-    for (const Bad& one : bad_) {
-      const auto excuse = excused_.find(one.cell);
-      const unsigned active = excuse == excused_.end() ? one.bits : one.bits & ~excuse->second.bits;
-      sums[0] += (one.bits & kIsInverted) != 0 ? 1 : 0;
-      sums[1] += (active & kIsInverted) != 0 && triggers_.inverted ? 1 : 0;
-      sums[2] += (active & kIsBelow) != 0 ? 1 : 0;
-      sums[3] += (active & kHasMetric) != 0 ? 1 : 0;
-    }
-    worst_ = mesh.comm().sum_and_min(sums, worst);
-    n_inverted_ = sums[0];
-    cause_ = sums[1] > 0   ? RepairCause::kInverted
-             : sums[2] > 0 ? RepairCause::kAngle
-             : sums[3] > 0 ? RepairCause::kMetric
-                           : RepairCause::kNone;
-  }
-
-  /// After a repair: what it had to leave. The cells have handles of their own by now.
-  void excuse(DistributedMesh& mesh) {
-    excused_.clear();
-    look(mesh);
-    if (cause_ == RepairCause::kNone) return;
-    for (const Bad& one : bad_)
-      if (const unsigned bits = one.bits & ~static_cast<unsigned>(kIsInverted); bits != 0)
-        excused_[one.cell] = {bits, one.value};
-    look(mesh);
-  }
-
-  RepairCause cause() const { return cause_; }
-  std::uint64_t n_inverted() const { return n_inverted_; }
-  double min_dihedral() const {
-    return report_value(Metric::kMinDihedral, std::min(kRegularDihedral, worst_));
-  }
-  /// Own ones, by number.
-  std::vector<std::uint64_t> inverted(const DistributedMesh& mesh) const {
-    std::vector<std::uint64_t> numbers;
-    for (const Bad& one : bad_)
-      if ((one.bits & kIsInverted) != 0) numbers.push_back(mesh.number(one.cell));
-    std::sort(numbers.begin(), numbers.end());
-    return numbers;
-  }
-  struct Excuse {
-    unsigned bits = 0;
-    double left = 0;  ///< the value that the repair has left the cell with
-  };
-  using Excuses = std::map<CellHandle, Excuse>;
-  const Excuses& excuses() const { return excused_; }
-  void set_excuses(Excuses excuses) { excused_ = std::move(excuses); }
-
- private:
-  /// Why a cell is bad, a bit each.
-  enum Reason : unsigned { kIsInverted = 1, kIsBelow = 2, kHasMetric = 4 };
-  struct Bad {
-    CellHandle cell;
-    double value = 0;
-    unsigned bits = 0;
-  };
-  struct Found {
-    std::vector<Bad> bad;
-    double worst = std::numeric_limits<double>::infinity();
-  };
-
-  unsigned badness(const TetMesh& part, CellHandle c, double value) const {
-    unsigned bits = 0;
-    if (!(value > 0)) bits |= kIsInverted;
-    if (value < trigger_) bits |= kIsBelow;
-    const auto& v = part.cell(c).v;
-    for (const auto& [metric, bound] : triggers_.metrics) {
-      const double q =
-          reported_quality(metric, part.point(v[0]), part.point(v[1]), part.point(v[2]), part.point(v[3]));
-      if (metric == Metric::kMaxDihedral ? q > bound : q < bound) bits |= kHasMetric;
-    }
-    return bits;
-  }
-  /// Takes out of the excuse what it does not hold for any more.
-  void narrow(CellHandle c, Excuse& excuse) const {
-    const auto at = std::ranges::lower_bound(bad_, c, {}, &Bad::cell);
-    excuse.bits &= at != bad_.end() && at->cell == c ? at->bits : 0U;
-    if (excuse.bits != 0 && kStepEffort.is_much_worse(at->value, excuse.left)) excuse.bits = 0;
-  }
-
-  const RepairTriggers& triggers_;
-  par::Policy policy_;
-  double trigger_;                // decision value of triggers_.min_dihedral
-  std::vector<Bad> bad_;          // ascending
-  Excuses excused_;               // of cells that the last repair has left bad
-  std::uint64_t n_inverted_ = 0;  // over all ranks
-  double worst_ = 0;
-  RepairCause cause_ = RepairCause::kNone;
-};
 
 std::string reason_against(const RemesherOptions& options) {
   const RepairTriggers& triggers = options.triggers;
@@ -172,7 +45,7 @@ Remesher::Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options
   }
   rebuild(arrays);
   kStepEffort.bound(options_.improve, static_cast<std::size_t>(mesh_->n_cells()));
-  watch_ = std::make_unique<Watch>(options_.triggers, options_.improve.policy);
+  watch_ = std::make_unique<PartWatch>(options_.triggers, options_.improve.policy);
   watch_->look(*mesh_);
   PartFixes(*mesh_, options_.improve.surface).release();  // are they all there?
   if (options_.triggers.motion > 0) mean_edge_ = mean_edge();
@@ -402,7 +275,7 @@ auto Remesher::take(std::span<const Vec3> displacement, OnInversion on_inversion
     const std::vector<std::uint64_t> now = watch_->inverted(*mesh_);
     return comm_.sum(std::ranges::includes(inverted_before, now) ? 0 : 1) == 0;
   };
-  const Watch::Excuses excuses = watch_->excuses();
+  const PartWatch::Excuses excuses = watch_->excuses();
   const auto put_at = [&](double fraction) {
     put_points(displacement, fraction);
     watch_->look(*mesh_);

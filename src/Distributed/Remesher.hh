@@ -18,6 +18,8 @@
 /// hfr::Remesher over a mesh in parts: a mesh inside of a simulation on several ranks.
 namespace hfr::mpi {
 
+class PartWatch;
+
 /// What a repair has done.
 struct PartsRepair {
   PartsResult run;
@@ -85,8 +87,6 @@ class Remesher {
   DistributedMesh& mesh() { return *mesh_; }
 
  private:
-  class Watch;
-
   void rebuild(const RankArrays& arrays);
   struct Move {
     double fraction = 1;
@@ -116,7 +116,7 @@ class Remesher {
   Comm& comm_;
   RemesherOptions options_;
   std::unique_ptr<DistributedMesh> mesh_;
-  std::unique_ptr<Watch> watch_;
+  std::unique_ptr<PartWatch> watch_;
   std::vector<Field> fields_;
   std::vector<VertexHandle> points_;  // those of arrays()
   /// Own vertices that other ranks hold, by rank.
