@@ -18,8 +18,8 @@ class PartWatch {
   /// `triggers` have to stay.
   PartWatch(const RepairTriggers& triggers, par::Policy policy);
 
-  /// At own cells. What was excused stays so as long as it is bad for the same reason, and no worse than it
-  /// was left.
+  /// At own cells. What was excused stays so as long as it is bad for the same reason, and not much worse
+  /// than it was left.
   void look(DistributedMesh& mesh);
   /// After a repair: what it had to leave. The cells have handles of their own by now.
   void excuse(DistributedMesh& mesh);

@@ -339,10 +339,13 @@ void Remesher::run_step(std::span<const Vec3> displacement, PartsStep& result) {
     if (result.cause == RepairCause::kNone) result.cause = RepairCause::kInverted;
     const std::vector<double> values = std::move(fields_.back().values);
     fields_.pop_back();
+    std::vector<FieldReport>& reports = result.repairs.back().fields;
+    const bool has_changed = !reports.empty();  // in the end; there was a field at least
+    if (has_changed) reports.pop_back();
     rest.clear();
     for (std::size_t k = 0; k < values.size(); k += 3)
       rest.push_back({values[k], values[k + 1], values[k + 2]});
-    if (move.fraction == 0 && result.repairs.back().fields.empty()) i = options_.max_substeps - 1;
+    if (move.fraction == 0 && !has_changed) i = options_.max_substeps - 1;
   }
   ++steps_;
   if (needs_repair() != RepairCause::kNone) repair(result);

@@ -133,8 +133,12 @@ CellWatch::Totals CellWatch::totals_of(CellHandle c) const {
   const std::uint8_t bits = bad_[c.idx()];
   unsigned active = bits & ~static_cast<unsigned>(excused_[c.idx()]);
   if (!triggers_.inverted) active &= ~static_cast<unsigned>(kIsInverted);
-  return {static_cast<std::size_t>(active != 0 ? 1 : 0), static_cast<std::size_t>(bits & kIsInverted ? 1 : 0),
-          static_cast<std::uint8_t>(active), bits != 0};
+  Totals totals;
+  totals.active = active != 0 ? 1 : 0;
+  totals.inverted = (bits & kIsInverted) != 0 ? 1 : 0;
+  for (std::size_t i = 0; i < kReasons; ++i) totals.active_by[i] = active >> i & 1U;
+  totals.any = bits != 0;
+  return totals;
 }
 
 void CellWatch::find_indicator_field() {
@@ -258,7 +262,6 @@ void CellWatch::look_in_parts(std::size_t n, double nanoseconds, const auto& loo
   });
   for (const Part& part : parts_) totals_.change({}, part.totals);
   has_bad_ = has_bad_ || totals_.any;
-  if (totals_.active == 0) totals_.bits = 0;
 }
 
 void CellWatch::look_at(std::span<const CellHandle> cells) {
@@ -356,12 +359,13 @@ std::optional<Survey> CellWatch::survey() const {
 }
 
 RepairCause CellWatch::cause() const {
-  if (totals_.active == 0) return RepairCause::kNone;
-  if (totals_.bits & kIsInverted) return RepairCause::kInverted;
-  if (totals_.bits & kIsBelow) return RepairCause::kAngle;
-  if (totals_.bits & kHasMetric) return RepairCause::kMetric;
-  if (totals_.bits & kIsSqueezed) return RepairCause::kJacobian;
-  return RepairCause::kIndicator;
+  constexpr std::array<RepairCause, kReasons> kInOrder = {
+      // of Bad
+      RepairCause::kInverted, RepairCause::kAngle, RepairCause::kMetric, RepairCause::kJacobian,
+      RepairCause::kIndicator};
+  for (std::size_t i = 0; i < kReasons; ++i)
+    if (totals_.active_by[i] > 0) return kInOrder[i];
+  return RepairCause::kNone;
 }
 
 std::vector<CellHandle> CellWatch::inverted() const {

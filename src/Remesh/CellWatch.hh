@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_CELL_WATCH_HH
 #define HFR_REMESH_CELL_WATCH_HH
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -83,16 +84,17 @@ class CellWatch {
     kIsSqueezed = 8,
     kIsIndicated = 16
   };
+  static constexpr std::size_t kReasons = 5;
   struct Totals {
     std::size_t active = 0;  ///< bad cells that call for a repair
     std::size_t inverted = 0;
-    std::uint8_t bits = 0;  ///< of the active ones
-    bool any = false;       ///< bad cells, active or not
+    std::array<std::size_t, kReasons> active_by{};  ///< active ones by reason: entry i of bit i
+    bool any = false;                               ///< bad cells, active or not
 
     Totals& operator+=(const Totals& o) {
       active += o.active;
       inverted += o.inverted;
-      bits |= o.bits;
+      for (std::size_t i = 0; i < kReasons; ++i) active_by[i] += o.active_by[i];
       any = any || o.any;
       return *this;
     }
@@ -100,7 +102,7 @@ class CellWatch {
     void change(const Totals& was, const Totals& is) {
       active += is.active - was.active;
       inverted += is.inverted - was.inverted;
-      bits |= is.bits;
+      for (std::size_t i = 0; i < kReasons; ++i) active_by[i] += is.active_by[i] - was.active_by[i];
       any = any || is.any;
     }
   };

@@ -440,6 +440,7 @@ bool Remesher::State::repair_in_step(std::span<const FieldTransfer> fields, Step
   if (!repair.edits.empty()) {
     result.changed = true;
     repair.fields = transfer_fields(*before_, mesh_, repair.edits, fields, policy_);
+    repair.fields.resize(options_.fields.size());  // without that of what is left of the displacement
   }
   result.stop = repair.stop;
   result.repairs.push_back(std::move(repair));

@@ -257,6 +257,11 @@ TEST(PartRemesher, RepairsByMetricsAndMotionAreThoseOfSharedMemory) {
   const int m = expect_same_steps(valid_box(6, 0.1, 2), options, 8, move);
   EXPECT_GE(m, 2);
   EXPECT_LT(m, 8);
+  options.on_inversion = OnInversion::kRefuse;  // a move that is refused leads nowhere
+  int n_refused = 0;
+  const auto wild = [](int step, Vec3 p) { return swirl(p, step % 2 == 0 ? 0.4 : 0.02); };
+  expect_same_steps(valid_box(6, 0.1, 2), options, 8, wild, &n_refused);
+  EXPECT_GE(n_refused, 1);
 }
 
 /// By numbers, which change with repairs.
@@ -270,9 +275,13 @@ TEST(PartRemesher, WhatIsFixedStaysSo) {
   options.improve.surface.fixed_faces = {{corners(700)[0], corners(700)[1], corners(700)[2]}};
   const auto move = [](int, Vec3 p) { return swirl(p, 0.03); };
   EXPECT_GE(expect_same_steps(mesh, options, 16, move), 4);
+  options.fields = Fields::all();
+  options.on_inversion = OnInversion::kSubsteps;
+  const auto far = [](int, Vec3 p) { return swirl(p, 0.3); };
+  EXPECT_GE(expect_same_steps(mesh, options, 2, far), 2);
 }
 
-/// A move is taken in parts, withrepairs between them over which what is left of it has to get.
+/// A move is taken in parts, with repairs between them over which what is left of it has to get.
 TEST(PartRemesher, SubstepsAreThoseOfSharedMemory) {
   RemesherOptions options = towards(15, 10);
   options.on_inversion = OnInversion::kSubsteps;
@@ -281,6 +290,23 @@ TEST(PartRemesher, SubstepsAreThoseOfSharedMemory) {
   options.fields = Fields::all();
   options.max_substeps = 2;  // then the rest as a whole
   EXPECT_GE(expect_same_steps(valid_box(6, 0.1, 4), options, 2, move), 5);
+  // A few vertices, of which hfr::Remesher looks at the cells alone; what they travel, and what is fixed.
+  const auto few = [](int, Vec3 p) {
+    const double r = norm(p - Vec3{0.5, 0.5, 0.5});
+    return r < 0.25 ? Vec3{0.3, 0.1, 0} : Vec3{};
+  };
+  options.max_substeps = 16;
+  options.triggers.motion = 0.5;
+  options.improve.surface.fixed_vertices = {V(3), V(150)};
+  EXPECT_GE(expect_same_steps(valid_box(7, 0.1, 3), options, 3, few), 4);
+  // Nothing can be taken, and nothing be mended.
+  const TetMesh one =
+      build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, std::vector<std::array<Index, 4>>{{0, 1, 2, 3}});
+  const auto through = [](int, Vec3 p) { return p.z > 0.5 ? Vec3{0, 0, -1.5} : Vec3{}; };
+  EXPECT_GE(expect_same_steps(one, towards(15, 10), 2, through), 1);
+  RemesherOptions in_parts = towards(15, 10);
+  in_parts.on_inversion = OnInversion::kSubsteps;
+  EXPECT_GE(expect_same_steps(one, in_parts, 2, through), 1);
 }
 
 #ifdef HFR_HAS_SURFACE
@@ -598,6 +624,10 @@ TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
               testing::HasSubstr("cancelled"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.improve.surface.fixed_vertices = {V(9999)}; }),
               testing::HasSubstr("fix vertex:9999"));
+  EXPECT_THAT(refusal([](RemesherOptions& o) {
+                o.improve.surface.fixed_edges = {{V(0), V(99)}};
+              }),
+              testing::HasSubstr("fix edge:0-99"));
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.triggers.min_dihedral = 20; }),
               testing::HasSubstr("must not be above the goal"));
 }
