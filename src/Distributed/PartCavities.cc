@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "Distributed/AskOwners.hh"
 #include "Distributed/Buffer.hh"
 #include "HalfFace/Geometry.hh"
 #include "Parallel/DisjointSets.hh"
@@ -25,26 +26,6 @@ struct Tie {
   std::uint64_t number = 0;  ///< of the cell
   std::int64_t owner = 0;
 };
-
-/// The names of the sets that have these cells, as their owners know them; kNoNumber: it is in none there.
-template <class NameHere>
-std::vector<std::uint64_t> names_of(Comm& comm, std::span<const Tie> ties, NameHere&& name_here) {
-  std::vector<std::vector<std::uint64_t>> asked(comm.n_ranks());
-  for (const Tie& tie : ties) asked[static_cast<std::size_t>(tie.owner)].push_back(tie.number);
-  const auto answers = comm.ask(asked, [&](const std::vector<std::vector<std::uint64_t>>& questions) {
-    std::vector<std::vector<std::uint64_t>> names(questions.size());
-    for (std::size_t r = 0; r < questions.size(); ++r)
-      for (std::uint64_t number : questions[r]) names[r].push_back(name_here(number));
-    return names;
-  });
-  std::vector<std::size_t> next(comm.n_ranks(), 0);
-  std::vector<std::uint64_t> names;
-  for (const Tie& tie : ties) {
-    const auto r = static_cast<std::size_t>(tie.owner);
-    names.push_back(answers[r][next[r]++]);
-  }
-  return names;
-}
 
 /// For each name in these pairs the smallest one that it is tied to.
 std::map<std::uint64_t, std::uint64_t> least_names(const std::vector<std::array<std::uint64_t, 2>>& pairs) {
@@ -110,12 +91,13 @@ PartCavities::PartCavities(Comm& comm, const OldRegion& region, std::vector<Cell
     return name_of_set(comm.rank(), sets.find(static_cast<Index>(i)));
   };
   std::vector<std::array<std::uint64_t, 2>> pairs;
-  const auto add_pairs = [&](std::span<const Tie> ties, auto&& place, std::size_t n_places,
+  const auto add_pairs = [&](const std::vector<Tie>& ties, auto&& place, std::size_t n_places,
                              std::size_t first) {
-    const std::vector<std::uint64_t> names = names_of(comm, ties, [&](std::uint64_t number) {
+    const auto append_name = [&](std::uint64_t number, std::vector<std::uint64_t>& names) {
       const std::size_t i = place(number);
-      return i < n_places ? name_of(first + i) : kNoNumber;
-    });
+      names.push_back(i < n_places ? name_of(first + i) : kNoNumber);
+    };
+    const auto names = ask_owners<std::uint64_t>(comm, ties, 1, append_name);
     for (std::size_t t = 0; t < ties.size(); ++t)
       if (names[t] != kNoNumber) pairs.push_back({name_of(ties[t].mine), names[t]});
   };

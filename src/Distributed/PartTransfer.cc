@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 
+#include "Distributed/AskOwners.hh"
 #include "Distributed/Buffer.hh"
 #include "Distributed/OldRegion.hh"
 #include "Distributed/OwnItems.hh"
@@ -23,31 +25,6 @@ namespace {
 
 using Named = OldRegion::Named;
 constexpr Named kNobody = {kNoNumber, 0};
-
-/// Rows of values of these things, from the ranks that own them. `append_row(number, rows)`: of one that this
-/// rank owns.
-template <class AppendRow>
-std::vector<double> rows_of(Comm& comm, std::span<const Named> things, std::size_t width,
-                            AppendRow&& append_row) {
-  std::vector<std::vector<std::uint64_t>> asked(comm.n_ranks());
-  for (const Named& one : things) asked[static_cast<std::size_t>(one.owner)].push_back(one.number);
-  const auto answers = comm.ask(asked, [&](const std::vector<std::vector<std::uint64_t>>& questions) {
-    std::vector<std::vector<double>> rows(questions.size());
-    for (std::size_t r = 0; r < questions.size(); ++r)
-      for (std::uint64_t number : questions[r]) append_row(number, rows[r]);
-    return rows;
-  });
-  std::vector<std::size_t> next(comm.n_ranks(), 0);
-  std::vector<double> rows;
-  rows.reserve(width * things.size());
-  for (const Named& one : things) {
-    const auto r = static_cast<std::size_t>(one.owner);
-    const auto* row = answers[r].data() + next[r];
-    rows.insert(rows.end(), row, row + width);
-    next[r] += width;
-  }
-  return rows;
-}
 
 class PartTransfer {
  public:
@@ -83,6 +60,7 @@ class PartTransfer {
   }
 
  private:
+  static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
   /// A changed cell of this rank, and the old one that it is; invalid: created.
   struct Changed {
     CellHandle now, old;
@@ -109,9 +87,16 @@ class PartTransfer {
   void find_own() {
     own_vertices_ = own_vertices(now_);
     own_cells_ = own_cells(now_);
+    for (VertexHandle v : own_vertices(old_)) own_old_vertices_.push_back(old_.number(v));
+    for (CellHandle c : own_cells(old_)) own_old_cells_.push_back(old_.number(c));
+    for (VertexHandle v : own_vertices_) {
+      const std::uint64_t number = now_.number(v);
+      vertices_from_.push_back(changes_.is_old(number) ? own_place(own_old_vertices_, number) : kNowhere);
+    }
     for (CellHandle c : own_cells_) {
       const CellHandle was = changes_.old_cell(c);
       if (!was.is_valid() || changes_.has_moved(was, c)) changed_.push_back({c, was});
+      cells_from_.push_back(was.is_valid() ? own_place(own_old_cells_, old_.number(was)) : kNowhere);
     }
   }
 
@@ -270,14 +255,14 @@ class PartTransfer {
     for (VertexHandle v : needed) names.push_back(region_.name(v));
     const std::size_t width = width_of([](const PartField& f) { return is_of_vertices(f.how.how); });
     const std::vector<double> rows =
-        rows_of(comm_, names, width, [&](std::uint64_t n, std::vector<double>& out) {
-          append_row(own_place(own_old_vertices(), n), true, out);
+        ask_owners<double>(comm_, names, width, [&](std::uint64_t n, std::vector<double>& out) {
+          append_row(own_place(own_old_vertices_, n), true, out);
         });
     std::size_t first = 0;  // column of the field
     for (std::size_t f = 0; f < fields_.size(); ++f) {
       PartField& field = fields_[f];
       if (!is_of_vertices(field.how.how)) continue;
-      std::vector<double> values = carried(field, own_vertices_, own_old_vertices());
+      std::vector<double> values = carried(field, vertices_from_);
       const Gradients* const by = field.how.how == Transfer::kQuadratic ? &*gradients : nullptr;
       for (const PlacedVertex& v : placed) {
         const bool has_place = v.old_cell.is_valid();
@@ -310,14 +295,12 @@ class PartTransfer {
     std::vector<NewCell> cells;
     for (const Changed& c : changed_) cells.push_back(shape_of(c.now));
     Overlaps overlaps = find_overlaps(mesh, cells, old_cells, policy_);
-    std::vector<CellHandle> beside(cells.size());
-    std::vector<NewCell> uncovered;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (overlaps.of(i).empty()) uncovered.push_back(cells[i]);
-    const std::vector<CellHandle> near = old_cells_beside(mesh, uncovered, policy_);
-    for (std::size_t i = 0, k = 0; i < cells.size(); ++i)
-      if (overlaps.of(i).empty()) beside[i] = near[k++];
-
+    std::vector<CellHandle> beside =
+        old_cells_beside(mesh, overlaps, policy_, [&](std::span<const std::size_t> places) {
+          std::vector<NewCell> uncovered;
+          for (const std::size_t i : places) uncovered.push_back(cells[i]);
+          return uncovered;
+        });
     needed_cells_ = old_cells;
     for (CellHandle c : beside)
       if (c.is_valid()) needed_cells_.push_back(c);
@@ -326,9 +309,10 @@ class PartTransfer {
     std::vector<Named> names;
     for (CellHandle c : needed_cells_) names.push_back({region_.number(c), region_.owner(c)});
     cell_width_ = width_of([](const PartField& f) { return !is_of_vertices(f.how.how); });
-    cell_rows_ = rows_of(comm_, names, cell_width_, [&](std::uint64_t n, std::vector<double>& out) {
-      append_row(own_place(own_old_cells(), n), false, out);
-    });
+    cell_rows_ =
+        ask_owners<double>(comm_, names, cell_width_, [&](std::uint64_t n, std::vector<double>& out) {
+          append_row(own_place(own_old_cells_, n), false, out);
+        });
     inherit(cells, overlaps, beside);
     if (has([](const PartField& f) { return f.how.how == Transfer::kConserve; }))
       conserve_all(std::move(old_cells), std::move(overlaps), std::move(beside));
@@ -352,7 +336,7 @@ class PartTransfer {
     for (std::size_t f = 0; f < fields_.size(); ++f) {
       PartField& field = fields_[f];
       if (field.how.how != Transfer::kInherit) continue;
-      std::vector<double> values = carried(field, own_cells_, own_old_cells());
+      std::vector<double> values = carried(field, cells_from_);
       for (std::size_t i = 0; i < changed_.size(); ++i) {
         if (changed_[i].old.is_valid()) continue;
         const bool is_covered = !parents.of(i).empty();
@@ -406,7 +390,7 @@ class PartTransfer {
           old_density = column(by_name.at(field.how.density), 0);
           new_density = new_densities.at(field.how.density);
         }
-        std::vector<double> values = carried(field, own_cells_, own_old_cells());
+        std::vector<double> values = carried(field, cells_from_);
         reports_[f].n_changed = changed_.size();
         for (std::size_t i = 0; i < changed_.size(); ++i)
           reports_[f].n_outside += parts.cavities().is_outside(i) ? 1 : 0;
@@ -433,16 +417,6 @@ class PartTransfer {
     std::size_t width = 0;
     for (const PartField& field : fields_) width += of(field) ? field.n_components : 0;
     return width;
-  }
-  const std::vector<std::uint64_t>& own_old_vertices() {
-    if (own_old_vertices_.empty())
-      for (VertexHandle v : own_vertices(old_)) own_old_vertices_.push_back(old_.number(v));
-    return own_old_vertices_;
-  }
-  const std::vector<std::uint64_t>& own_old_cells() {
-    if (own_old_cells_.empty())
-      for (CellHandle c : own_cells(old_)) own_old_cells_.push_back(old_.number(c));
-    return own_old_cells_;
   }
   static std::size_t own_place(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
     const auto at = std::ranges::lower_bound(numbers, number);
@@ -471,30 +445,15 @@ class PartTransfer {
                                              [&](CellHandle c) { return now_.number(c); });
     return static_cast<std::size_t>(at - own_cells_.begin());
   }
-  std::uint64_t old_number(VertexHandle v) const {
-    return changes_.is_old(now_.number(v)) ? now_.number(v) : kNoNumber;
-  }
-  std::uint64_t old_number(CellHandle c) const {
-    const CellHandle was = changes_.old_cell(c);
-    return was.is_valid() ? old_.number(was) : kNoNumber;
-  }
-  /// The old values of what was there, and 0 for what was not.
-  template <class Handle>
-  std::vector<double> carried(const PartField& field, std::span<const Handle> now,
-                              const std::vector<std::uint64_t>& old_numbers) const {
-    std::vector<double> values(field.n_components * now.size(), 0.0);
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      const std::uint64_t number = old_number(now[i]);
-      if (number == kNoNumber) continue;
-      const auto* row = field.values.data() + field.n_components * own_place(old_numbers, number);
-      std::copy_n(row, field.n_components, values.data() + field.n_components * i);
-    }
+  /// The old values of what was there, and 0 for what was not. `from`: by thing of this rank, its place among
+  /// those that it had.
+  static std::vector<double> carried(const PartField& field, const std::vector<std::size_t>& from) {
+    std::vector<double> values(field.n_components * from.size(), 0.0);
+    for (std::size_t i = 0; i < from.size(); ++i)
+      if (from[i] != kNowhere)
+        std::copy_n(field.values.data() + field.n_components * from[i], field.n_components,
+                    values.data() + field.n_components * i);
     return values;
-  }
-  template <class Handle>
-  std::vector<double> carried(const PartField& field, const std::vector<Handle>& now,
-                              const std::vector<std::uint64_t>& old_numbers) const {
-    return carried(field, std::span<const Handle>(now), old_numbers);
   }
 
   const DistributedMesh& old_;
@@ -510,6 +469,7 @@ class PartTransfer {
   std::vector<Named> near_;                                      // by vertex of the part: the old one near it
   std::vector<Placed> placed_;                                   // ascending
   std::vector<std::uint64_t> own_old_vertices_, own_old_cells_;  // numbers
+  std::vector<std::size_t> vertices_from_, cells_from_;          // by own thing: which of those it was
   std::vector<CellHandle> needed_cells_;                         // of the region, ascending
   std::size_t cell_width_ = 0;
   std::vector<double> cell_rows_;  // of these: what all fields of cells have
@@ -555,7 +515,7 @@ std::vector<double> rows_where_wanted(Comm& comm, std::uint64_t n, std::span<con
     if (row_at(had, number) == had.size())
       asked.push_back({number, static_cast<std::int64_t>(keeper(number))});
   const std::vector<double> fetched =
-      rows_of(comm, asked, width, [&](std::uint64_t number, std::vector<double>& out) {
+      ask_owners<double>(comm, asked, width, [&](std::uint64_t number, std::vector<double>& out) {
         const auto at = kept.find(number);
         if (at == kept.end()) throw InternalError("nobody has a value that a rank wants");
         out.insert(out.end(), at->second.begin(), at->second.end());

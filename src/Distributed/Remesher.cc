@@ -14,6 +14,7 @@
 #include "HalfFace/Errors.hh"
 #include "Remesh/FixedParts.hh"
 #include "Remesh/MeanEdge.hh"
+#include "Remesh/SafeFraction.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr::mpi {
@@ -295,13 +296,7 @@ auto Remesher::take(std::span<const Vec3> displacement, OnInversion on_inversion
     watch_->look(*mesh_);
     return move;
   }
-  double safe = 0, unsafe = 1;
-  for (int i = 0; i < kStepEffort.halvings; ++i) {
-    const double middle = 0.5 * (safe + unsafe);
-    put_at(middle);
-    (inverts_none() ? safe : unsafe) = middle;
-  }
-  put_at(safe);
+  const double safe = put_at_safe_fraction(kStepEffort.halvings, put_at, inverts_none);
   note_motion(displacement, safe);
   return {safe, {}};
 }

@@ -18,6 +18,7 @@
 #include "Remesh/MeshMotion.hh"
 #include "Remesh/MovedVertices.hh"
 #include "Remesh/RunMemory.hh"
+#include "Remesh/SafeFraction.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr {
@@ -304,13 +305,7 @@ MoveResult Remesher::State::take(std::span<const Vec3> displacement, OnInversion
     moved_.put(mesh_, displacement, fraction, policy_);
     look_at_moved();
   };
-  double safe = 0, unsafe = 1;
-  for (int i = 0; i < kStepEffort.halvings; ++i) {
-    const double middle = 0.5 * (safe + unsafe);
-    put_at(middle);
-    (inverts_none() ? safe : unsafe) = middle;
-  }
-  put_at(safe);
+  const double safe = put_at_safe_fraction(kStepEffort.halvings, put_at, inverts_none);
   result.fraction = safe;
   note_motion(displacement, safe);
   return result;

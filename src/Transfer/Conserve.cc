@@ -48,13 +48,11 @@ Cavities::Cavities(const TetMesh& old, const TetMesh& now, const Edits& edits, p
       overlaps_(overlaps_of_changed(old, now, edits, new_cells_, old_cells_, policy)),
       old_volume_(volumes(old, old_cells_, policy)),
       new_volume_(volumes(now, new_cells_, policy)),
-      beside_(new_cells_.size()) {
-  std::vector<CellHandle> uncovered;
-  for (std::size_t i = 0; i < new_cells_.size(); ++i)
-    if (overlaps_.of(i).empty()) uncovered.push_back(new_cells_[i]);
-  const std::vector<CellHandle> near = old_cells_beside(old, shapes_of(now, edits, uncovered), policy);
-  for (std::size_t i = 0, k = 0; i < new_cells_.size(); ++i)
-    if (overlaps_.of(i).empty()) beside_[i] = near[k++];
+      beside_(old_cells_beside(old, overlaps_, policy, [&](std::span<const std::size_t> places) {
+        std::vector<CellHandle> cells;
+        for (const std::size_t i : places) cells.push_back(new_cells_[i]);
+        return shapes_of(now, edits, cells);
+      })) {
   const std::size_t n_old = old_cells_.size(), n = n_old + new_cells_.size();
   par::DisjointSets<Index> sets(n);
   for (std::size_t i = 0; i < n_old; ++i)

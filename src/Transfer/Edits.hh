@@ -18,9 +18,8 @@ namespace hfr {
 struct PlacedVertex {
   VertexHandle vertex;      ///< of the mesh as it is
   VertexHandle old_vertex;  ///< invalid: created
-
-  Vec3 point;           ///< where it is
-  CellHandle old_cell;  ///< of the mesh as it was; invalid where no cell with a volume is near
+  Vec3 point;               ///< where it is
+  CellHandle old_cell;      ///< of the mesh as it was; invalid where no cell with a volume is near
   /// They add up to 1. One below the -1e-10 that rounding leaves only where `inside` is false.
   std::array<double, 4> weights{};
   bool inside = true;  ///< false: it lies beyond the mesh as it was, and old_cell is the nearest

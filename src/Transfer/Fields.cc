@@ -121,24 +121,20 @@ void transfer_inherited(const TetMesh& old, TetMesh& now, const Edits& edits, co
   const DenseStored& from = required(old, name, Transfer::kInherit);
   DenseStored& to = required(now, name, Transfer::kInherit);
   const Parents& parents = edits.parents();
-  std::vector<std::size_t> outside;
-  const auto write = [&](std::size_t i, CellHandle parent) {
+  const auto shapes = [&](std::span<const std::size_t> places) {
+    std::vector<CellHandle> cells;
+    for (const std::size_t i : places) cells.push_back(edits.created_cells[i].cell);
+    return shapes_of(now, edits, cells);
+  };
+  const std::vector<CellHandle> beside = old_cells_beside(old, *overlaps_of_created(edits), policy, shapes);
+  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
+    const bool is_covered = !parents.of(i).empty();
+    report.n_outside += is_covered ? 0 : 1;
+    const CellHandle parent = is_covered ? parents.of(i).front().old_cell : beside[i];
+    if (!parent.is_valid()) continue;
     ++report.n_changed;
     to.copy_from(from, parent.idx(), edits.created_cells[i].cell.idx());
-  };
-  for (std::size_t i = 0; i < edits.created_cells.size(); ++i) {
-    if (parents.of(i).empty())
-      outside.push_back(i);
-    else
-      write(i, parents.of(i).front().old_cell);
   }
-  report.n_outside = outside.size();
-  if (outside.empty()) return;
-  std::vector<CellHandle> cells;
-  for (std::size_t i : outside) cells.push_back(edits.created_cells[i].cell);
-  const std::vector<CellHandle> beside = old_cells_beside(old, shapes_of(now, edits, cells), policy);
-  for (std::size_t k = 0; k < outside.size(); ++k)
-    if (beside[k].is_valid()) write(outside[k], beside[k]);
 }
 
 std::vector<double> component(const Values& values, std::span<const CellHandle> cells, int k) {

@@ -340,17 +340,23 @@ void add_starts(const Edits& edits, std::span<NewCell> cells) {
     }
 }
 
-std::vector<CellHandle> old_cells_beside(const TetMesh& old, std::span<const NewCell> cells,
-                                         par::Policy policy) {
+std::vector<CellHandle> old_cells_beside(
+    const TetMesh& old, const Overlaps& overlaps, par::Policy policy,
+    const std::function<std::vector<NewCell>(std::span<const std::size_t>)>& shapes) {
+  std::vector<CellHandle> beside(overlaps.first.size() - 1);
+  std::vector<std::size_t> uncovered;
+  for (std::size_t i = 0; i < beside.size(); ++i)
+    if (overlaps.of(i).empty()) uncovered.push_back(i);
+  if (uncovered.empty()) return beside;
+  const std::vector<NewCell> cells = shapes(uncovered);
   std::vector<VertexHandle> near;
   for (const NewCell& cell : cells) near.insert(near.end(), cell.near.begin(), cell.near.end());
   const Stars stars(old, near, policy);
-  std::vector<CellHandle> beside;
-  for (const NewCell& cell : cells) {
+  for (std::size_t k = 0; k < cells.size(); ++k) {
     VertexHandle nearest;
-    for (VertexHandle v : cell.near)
+    for (VertexHandle v : cells[k].near)
       if (!stars.of(v).empty() && (!nearest.is_valid() || v < nearest)) nearest = v;
-    beside.push_back(nearest.is_valid() ? stars.of(nearest).front() : CellHandle());
+    if (nearest.is_valid()) beside[uncovered[k]] = stars.of(nearest).front();
   }
   return beside;
 }

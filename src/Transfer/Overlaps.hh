@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,10 +51,12 @@ void add_starts(const Edits& edits, std::span<NewCell> cells);
 Overlaps find_overlaps(const TetMesh& old, std::span<const NewCell> new_cells,
                        std::span<const CellHandle> old_cells, par::Policy policy);
 
-/// For new cells that no old one covers: one of the old cells near them. That is the one with the smallest
-/// handle round the smallest of the old vertices near their corners; invalid where there is none.
-std::vector<CellHandle> old_cells_beside(const TetMesh& old, std::span<const NewCell> cells,
-                                         par::Policy policy);
+/// By new cell: where no old one covers it, an old cell near it, that with the smallest handle round the
+/// smallest of the old vertices near its corners; invalid where there is none, and of other cells.
+/// shapes(places): of those new cells, by their places among the overlaps; not called where all are covered.
+std::vector<CellHandle> old_cells_beside(
+    const TetMesh& old, const Overlaps& overlaps, par::Policy policy,
+    const std::function<std::vector<NewCell>(std::span<const std::size_t>)>& shapes);
 
 /// The largest share first; of equal ones the smaller handle.
 Parents parents_of(std::span<const NewCell> cells, const Overlaps& overlaps, par::Policy policy);
