@@ -459,6 +459,20 @@ TEST(Remesher, AStepOfPartsSaysWhyItHasRepaired) {
   EXPECT_EQ(step.cause, RepairCause::kInverted);
 }
 
+/// Cells that were inverted while it was looked for what may be taken are so no more when the repair begins.
+TEST(Remesher, CauseIsThatOfCellsAsTheRepairFindsThem) {
+  TetMesh mesh = box(5, 0);
+  RemesherOptions options = options_for(15, 10);
+  options.on_inversion = OnInversion::kSubsteps;
+  Remesher remesher(mesh, options);
+  VertexHandle inner;
+  for (VertexHandle v : mesh.vertices())
+    if (!mesh.is_boundary(v)) inner = v;
+  std::vector<Vec3> d(mesh.n_vertices());
+  d[inner.idx()] = {0.25, 0, 0};
+  EXPECT_EQ(remesher.step(d).cause, RepairCause::kAngle);
+}
+
 TEST(Remesher, FixedPartsThatAreNotThereAreRefusedAtOnce) {
   for (const Motion motion : {Motion::kGiven, Motion::kLaplace}) {
     TetMesh mesh = box(2, 0);
