@@ -96,11 +96,6 @@ void mend_and_improve_all(const Run& run) {
   improve_all(run, run.strategy.floor, run.strategy.targets.targets);
 }
 
-void run_default(const Run& run) {
-  mend_and_improve_all(run);
-  reach_claimed(run, run.findings.met_cell_bound);
-}
-
 /// Where a run stands: what begins from there again has the same bits.
 struct Beginning {
   Snapshot mesh;
@@ -112,6 +107,35 @@ struct Beginning {
     mesh.put_back(run);
   }
 };
+
+/// Where the worst angle that is claimed was not reached and the mesh is poor throughout all the same: the
+/// run that is asked for it, from the beginning, for there the order decides what the worst cells come to. If
+/// that reaches more, all cells are improved from there, and of all that the best mesh is kept.
+void run_towards_claim(const Run& run, Beginning from) {
+  const Strategy& strategy = *run.strategy.towards_claim;
+  const double before = smallest_that_may_rise(run, strategy.goal->degrees);
+  if (before >= strategy.goal->degrees || run.control.stopped() || !is_poor_throughout(run)) return;
+  Best best(run, strategy.goal->may_fall, Loss::kMadeUpFor);
+  from.put_back(run);
+  const Findings found = std::exchange(run.findings, {.is_folded = run.findings.is_folded});
+  run_towards_goal(run.with(strategy), *strategy.goal);
+  const double now = smallest_that_may_rise(run, strategy.goal->degrees);
+  if (now > before) {
+    best.note();
+    improve_all(run, now, run.strategy.targets.targets);
+  } else {
+    run.findings = found;
+  }
+  best.settle();
+}
+
+void run_default(const Run& run) {
+  std::optional<Beginning> beginning;
+  if (run.strategy.towards_claim && is_poor_throughout(run)) beginning.emplace(run);
+  mend_and_improve_all(run);
+  reach_claimed(run, run.findings.met_cell_bound);
+  if (beginning) run_towards_claim(run, std::move(*beginning));
+}
 
 Run with_frozen_surface(const Run& run) {
   Run part = run.with(*run.strategy.frozen);
@@ -154,7 +178,8 @@ void run_flat(const Run& run, Beginning from) {
 
 /// A default run, whatever the surface may do.
 void run_usual(const Run& run) {
-  const bool lacks = run.strategy.frozen && lacks_vertices(run);
+  if (!run.strategy.frozen) return run_default(run);
+  const bool lacks = lacks_vertices(run);
   std::optional<Beginning> beginning;
   if (lacks || run.strategy.flat) beginning.emplace(run);
   mend_and_improve_all(run);

@@ -317,12 +317,17 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     claimed->pass.first_edge_does = false;  // what is left by then is hard
     strategy.claimed = claimed;
   }
-  if (!strategy.claimed || asked.is_frozen()) return strategy;
+  if (!strategy.claimed) return strategy;
   const auto with = [&](auto&& change) {
     ImproveOptions other = options;
     change(other);
     return std::make_shared<const Strategy>(resolve(other, found, n_cells));
   };
+  if (asked.is_frozen()) {
+    if (!asked.has_goal())
+      strategy.towards_claim = with([](ImproveOptions& other) { other.min_dihedral = kClaimedGoal; });
+    return strategy;
+  }
   if (asked.has_goal()) {
     strategy.without_goal = with([](ImproveOptions& other) { other.min_dihedral.reset(); });
     return strategy;

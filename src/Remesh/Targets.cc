@@ -49,6 +49,10 @@ bool lacks_vertices(const Run& run) {
          run.strategy.throughout.share * static_cast<double>(vertices.n);
 }
 
+bool is_poor_throughout(const Run& run) {
+  return is_poor_throughout(run, run.share_below(run.strategy.throughout.below));
+}
+
 void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
   const TargetEffort& effort = run.strategy.targets;
   const ThroughoutEffort& throughout = run.strategy.throughout;
@@ -84,7 +88,7 @@ void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngl
   if (run.smallest_dihedral() < floor) polish(run, strategy.polish, floor);
   const ThroughoutEffort& poor = strategy.throughout;
   // Where the mesh is poor throughout, vertices go to the worst cells first.
-  const bool throughout = is_bounded(run) && is_poor_throughout(run, run.share_below(poor.below));
+  const bool throughout = is_bounded(run) && is_poor_throughout(run);
   if (strategy.refine && !throughout) refine(run, *strategy.refine);
   raise_to_targets(run, targets);
   // What was put in first is well connected by now, which shows where vertices are still missing.

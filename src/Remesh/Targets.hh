@@ -10,6 +10,8 @@ namespace hfr {
 
 /// Whether all but a few vertices stay where they are: inner ones are missing, whatever the angles are.
 bool lacks_vertices(const Run& run);
+/// Whether that is so, or too many of its cells are poor: see ThroughoutEffort.
+bool is_poor_throughout(const Run& run);
 /// Raises the worst angles from target to target; one that is missed is no reason to stop, because what holds
 /// a cell below it may give way on the next. Where most of a mesh misses one, it is worked for while that
 /// brings enough, and the next only if it has.

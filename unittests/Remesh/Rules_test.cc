@@ -212,6 +212,17 @@ TEST(Rules, DefaultRunReachesWhatAGoalReachesThatItClaims) {
   EXPECT_GE(n_below, 3U);
 }
 
+TEST(Rules, DefaultRunEndsNoLowerThanTheGoalItClaimsWhereTheMeshStaysPoorThroughout) {
+  for (double height : {0.05, 0.02}) {
+    for (double jitter : {0.1, 0.2, 0.3}) {
+      const TetMesh mesh = pressed(4, jitter, height);
+      const Outcome usual = outcome_of(mesh, serial());
+      EXPECT_LT(usual.p5, 15) << "good enough to be no case for this test";
+      EXPECT_GE(usual.worst, outcome_of(mesh, towards(15)).worst - kLeastRise) << height << ' ' << jitter;
+    }
+  }
+}
+
 TEST(Rules, GoalIsReachedThatTakesMoreCellsThanItsFirstBound) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const TetMesh star = star_of_sphere(std::nullopt, seed);
