@@ -174,8 +174,8 @@ function(hfr_vector_sources)
     SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# Files of the calling folder with names of their own, in an unnamed namespace, that other files there have, too: never
-# compiled together with those, as CMAKE_UNITY_BUILD would.
+# Files of the calling folder that CMAKE_UNITY_BUILD does not compile together with others: they have names of their own,
+# in an unnamed namespace, that other files there have, too, or their objects are asked for by name.
 function(hfr_sources_apart)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -34,7 +34,8 @@ tests=${HFR_BUILD:-$root/build/test}
 variants=("g++ -O1 OPENMP" "g++ -O3 TBB" "clang++ -O2 OPENMP")
 if [ -e "$tests/unittests/house/same_bits" ]; then
   cmake --build "$tests" --parallel "$jobs" --target same_bits > /dev/null
-  compare "scripts/test.sh" "$tests/unittests/house/same_bits"
+  expected=$("$tests/unittests/house/same_bits" 1)  # of other numbers of threads its test house.same_bits tells
+  echo "same-bits: scripts/test.sh is what the others are compared with"
   variants=("g++ -O3 TBB" "clang++ -O2 OPENMP")
 fi
 mkdir -p "$root/build/same-bits"

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +19,8 @@
 #include "IO/ReadGmsh.hh"
 
 namespace hfr::io::gmsh {
+
+constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();  ///< tag or number of items
 
 /// What elements have in common.
 struct ElementKind {

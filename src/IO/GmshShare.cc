@@ -17,8 +17,6 @@ namespace hfr::io {
 namespace gmsh {
 namespace {
 
-constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-
 /// Nodes whose tags ascend by one. Their numbers do so anyway, since those are their places in the file.
 struct TagRun {
   std::int64_t tag = 0;
@@ -35,9 +33,9 @@ struct TagRun {
 constexpr std::uint64_t kMostRuns = std::uint64_t{1} << 20;  // 25 MB on each process
 
 /// What some elements belong to.
-struct Group {
+struct SeenGroup {
   int dimension = 0, elementary = 0, physical = 0, in_several = 0;
-  auto operator<=>(const Group&) const = default;
+  auto operator<=>(const SeenGroup&) const = default;
 };
 
 class GmshShare : public MeshShare {
@@ -83,7 +81,7 @@ class GmshShare : public MeshShare {
   SharePoints points_;
   std::vector<TagRun> runs_;             // of all nodes, by tag: Gmsh writes one, or one for each entity
   std::uint64_t begin_ = 0, end_ = 0;    // elements of this process
-  std::set<Group> groups_;               // of the whole file
+  std::set<SeenGroup> groups_;           // of the whole file
   bool by_physical_ = false;             // what labels are
   std::array<bool, 4> is_labelled_{};    // by dimension
   std::array<std::uint64_t, 4> next_{};  // number of the next element of this process, by dimension
@@ -96,7 +94,7 @@ void GmshShare::read_points() {
   points_.points = std::move(points);
   std::vector<TagRun> mine;
   for (std::size_t i = 0; i < tags.size() && mine.size() <= kMostRuns; ++i)
-    if (i > 0 && tags[i - 1] != kMost && tags[i] == tags[i - 1] + 1)
+    if (i > 0 && tags[i - 1] != kLargest && tags[i] == tags[i - 1] + 1)
       ++mine.back().n;
     else
       mine.push_back({tags[i], points_.first + i, 1});
@@ -118,19 +116,19 @@ void GmshShare::survey() {
     std::array<std::uint64_t, 4> taken{};  // by dimension
     std::uint64_t left_out = 0;
   } mine;
-  std::optional<Group> last;
+  std::optional<SeenGroup> last;
   file_->survey(begin_, end_, [&](const ElementKind& kind, std::uint64_t n) {
     if (!is_simplex(kind.type)) {
       mine.left_out += n;
       return;
     }
     mine.taken[static_cast<std::size_t>(kind.type.dimension)] += n;
-    const Group group{kind.type.dimension, kind.group.elementary, kind.group.physical,
-                      static_cast<int>(kind.in_several_groups)};
+    const SeenGroup group{kind.type.dimension, kind.group.elementary, kind.group.physical,
+                          static_cast<int>(kind.in_several_groups)};
     if (last != group) groups_.insert(*(last = group));
   });
-  const std::vector<Group> seen(groups_.begin(), groups_.end());
-  for (const Group& group : processes_.gather(std::span<const Group>(seen))) groups_.insert(group);
+  const std::vector<SeenGroup> seen(groups_.begin(), groups_.end());
+  for (const SeenGroup& group : processes_.gather(std::span<const SeenGroup>(seen))) groups_.insert(group);
   const std::vector<Counts> all = processes_.gather(std::span<const Counts>(&mine, 1));
   std::uint64_t left_out = 0;
   for (std::size_t r = 0; r < all.size(); ++r) {
@@ -144,7 +142,7 @@ void GmshShare::survey() {
 
 /// Of version 2, where each element says by itself what it belongs to.
 void GmshShare::refuse_several_groups() const {
-  const auto of_one_entity = [](const Group& a, const Group& b) {
+  const auto of_one_entity = [](const SeenGroup& a, const SeenGroup& b) {
     return a.dimension == b.dimension && a.elementary == b.elementary;
   };
   const auto found = std::adjacent_find(groups_.begin(), groups_.end(), of_one_entity);
@@ -157,7 +155,7 @@ void GmshShare::refuse_several_groups() const {
 
 void GmshShare::note_several_groups() {
   const auto n =
-      std::count_if(groups_.begin(), groups_.end(), [](const Group& g) { return g.in_several != 0; });
+      std::count_if(groups_.begin(), groups_.end(), [](const SeenGroup& g) { return g.in_several != 0; });
   if (n > 0)
     notes_.push_back(std::to_string(n) + (n == 1 ? " entity is" : " entities are") +
                      " in several physical groups; the first is taken");
@@ -166,10 +164,11 @@ void GmshShare::note_several_groups() {
 /// Physical groups, or entities where the whole file has no group; one entity with the tag that writers give
 /// by default is no label.
 void GmshShare::decide_labels() {
-  by_physical_ = std::any_of(groups_.begin(), groups_.end(), [](const Group& g) { return g.physical != 0; });
+  by_physical_ =
+      std::any_of(groups_.begin(), groups_.end(), [](const SeenGroup& g) { return g.physical != 0; });
   for (int dimension = 0; dimension < 4; ++dimension) {
     std::set<int> labels;
-    for (const Group& g : groups_)
+    for (const SeenGroup& g : groups_)
       if (g.dimension == dimension) labels.insert(by_physical_ ? g.physical : g.elementary);
     is_labelled_[static_cast<std::size_t>(dimension)] = by_physical_ || labels != std::set<int>{1};
   }

@@ -10,8 +10,6 @@
 namespace hfr::io::gmsh {
 namespace {
 
-constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-
 /// Nodes that follow on one another.
 struct NodeBlock {
   std::uint64_t first = 0, n = 0;      ///< numbers
@@ -58,15 +56,15 @@ class TextRanges : public Ranges {
   /// The count with which a section of version 2 begins, whose lines follow.
   std::uint64_t count(std::uint64_t line, const char* what) {
     const auto n = static_cast<std::uint64_t>(text_.at_line(
-        line, [&](TextLine& in) { return in.integer_in(0, kMost, "number of " + std::string(what)); }));
+        line, [&](TextLine& in) { return in.integer_in(0, kLargest, "number of " + std::string(what)); }));
     require_lines(line + 1, n, what);
     return n;
   }
   /// How many blocks and items a section of version 4 has.
   std::pair<std::int64_t, std::uint64_t> totals(std::uint64_t line) {
     return text_.at_line(line, [](TextLine& in) {
-      const auto blocks = in.integer_in(0, kMost, "number of blocks");
-      return std::pair(blocks, static_cast<std::uint64_t>(in.integer_in(0, kMost, "number of items")));
+      const auto blocks = in.integer_in(0, kLargest, "number of blocks");
+      return std::pair(blocks, static_cast<std::uint64_t>(in.integer_in(0, kLargest, "number of items")));
     });
   }
   void require_all(std::uint64_t found, std::uint64_t announced, const char* what) const {
@@ -136,7 +134,7 @@ void TextRanges::read_text(std::size_t mark, Read&& read) {
 NodeBlock TextRanges::next_nodes(std::uint64_t line) {
   const auto n = static_cast<std::uint64_t>(text_.at_line(line, [](TextLine& in) {
     for (int k = 0; k < 3; ++k) in.integer();  // dimension, entity, whether points have parameters
-    return in.integer_in(0, kMost, "number of nodes");
+    return in.integer_in(0, kLargest, "number of nodes");
   }));
   require_lines(line + 1, n, "nodes");
   if (version_ == Version::k40) return {n_nodes_, n, line + 1, line + 1};
@@ -167,7 +165,7 @@ ElementBlock TextRanges::next_elements(std::uint64_t line, const Entities& entit
     int dimension = in.label(), entity = in.label();
     if (version_ == Version::k40) std::swap(dimension, entity);
     found.kind = kind_of(entities, first_order_type(in, in.integer()), dimension, entity);
-    found.n = static_cast<std::uint64_t>(in.integer_in(0, kMost, "number of elements"));
+    found.n = static_cast<std::uint64_t>(in.integer_in(0, kLargest, "number of elements"));
     return found;
   });
   block.first = n_elements_;

@@ -13,7 +13,7 @@
 namespace hfr::io {
 namespace {
 
-struct Format {
+struct FileFormat {
   std::string_view extension;
   MeshData (*read)(const InputFile&);
   Notes (*write)(const std::filesystem::path&, const MeshData&, const WriteOptions&);
@@ -26,7 +26,7 @@ struct Format {
 constexpr std::array<std::string_view, 3> kSolutions = {".sol", ".solb"};
 
 /// The formats that are built in. A new one is a row here, two declarations in Formats.hh, and its sources.
-constexpr Format kFormats[] = {
+constexpr FileFormat kFormats[] = {
     {".mesh", read_medit, write_medit, "", kSolutions},
     {".meshb", read_meditb, write_meditb, "", kSolutions},
     {".node", read_tetgen, write_tetgen, "", {".ele", ".face", ".edge"}, false},
@@ -49,17 +49,17 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 /// Nothing where the format is not known.
-const Format* find_format(const std::filesystem::path& path, const std::string& format) {
+const FileFormat* find_format(const std::filesystem::path& path, const std::string& format) {
   std::string extension = lower(format.empty() ? path.extension().string() : format);
   if (!extension.empty() && extension[0] != '.') extension.insert(0, 1, '.');
   const auto* const found = std::find_if(std::begin(kFormats), std::end(kFormats),
-                                         [&](const Format& f) { return f.extension == extension; });
+                                         [&](const FileFormat& f) { return f.extension == extension; });
   return found == std::end(kFormats) ? nullptr : found;
 }
 
-const Format& format_of(const std::filesystem::path& path, const std::string& format,
-                        const std::vector<std::string>& known) {
-  const Format* const found = find_format(path, format);
+const FileFormat& format_of(const std::filesystem::path& path, const std::string& format,
+                            const std::vector<std::string>& known) {
+  const FileFormat* const found = find_format(path, format);
   HFR_REQUIRE(found, path.string() + ": unknown file type '" +
                          (format.empty() ? path.extension().string() : format) + "'; known are " +
                          joined(known));
@@ -81,7 +81,7 @@ bool has_variant(std::string_view variants, std::string_view name) {
 
 std::vector<std::string> all_extensions() {
   std::vector<std::string> extensions;
-  for (const Format& format : kFormats) extensions.emplace_back(format.extension);
+  for (const FileFormat& format : kFormats) extensions.emplace_back(format.extension);
   return extensions;
 }
 
@@ -95,7 +95,7 @@ std::string one_line(std::string message) {
 }  // namespace
 
 MeshData read_mesh(const std::filesystem::path& path, const std::string& format) {
-  const Format& chosen = format_of(path, format, readable_extensions());
+  const FileFormat& chosen = format_of(path, format, readable_extensions());
   const InputFile file(path, std::string(chosen.extension));
   HFR_REQUIRE(!file.bytes().empty(), path.string() + ": the file is empty");
   MeshData mesh;
@@ -112,7 +112,7 @@ std::vector<std::string> write_mesh(const std::filesystem::path& path, const Mes
                                     const WriteOptions& options) {
   require_writable_format(path, options);
   validate(mesh, path.string());
-  const Format& format = *find_format(path, options.format);
+  const FileFormat& format = *find_format(path, options.format);
   WriteOptions chosen = options;
   chosen.format = format.extension;
   return format.write(path, mesh, chosen);
@@ -123,7 +123,7 @@ void require_readable_format(const std::filesystem::path& path, const std::strin
 }
 
 void require_writable_format(const std::filesystem::path& path, const WriteOptions& options) {
-  const Format& format = format_of(path, options.format, writable_extensions());
+  const FileFormat& format = format_of(path, options.format, writable_extensions());
   if (options.variant.empty() || has_variant(format.variants, options.variant)) return;
   const std::string extension(format.extension);
   throw InvalidInput(one_line(
@@ -132,14 +132,14 @@ void require_writable_format(const std::filesystem::path& path, const WriteOptio
 }
 
 bool holds_fields(const std::filesystem::path& path, const WriteOptions& options) {
-  const Format& format = format_of(path, options.format, writable_extensions());
+  const FileFormat& format = format_of(path, options.format, writable_extensions());
   const bool loses_solutions = path == kStandardOutput && format.beside == kSolutions;
   return format.has_fields && !loses_solutions;
 }
 
 std::vector<std::filesystem::path> files_of_mesh(const std::filesystem::path& path) {
   std::vector<std::filesystem::path> files = {path};
-  const Format* const format = find_format(path, {});
+  const FileFormat* const format = find_format(path, {});
   if (!format || path == kStandardInput || path == kStandardOutput) return files;
   for (const std::string_view extension : format->beside)
     if (!extension.empty()) files.push_back(file_beside(path, extension));

@@ -10,7 +10,7 @@ namespace {
 
 /// The first row that fits is the one to write. char and uchar are missing: they stand in the file as
 /// characters.
-constexpr OvmType kTypes[] = {
+constexpr OvmType kOvmTypes[] = {
     {"double", 1, false}, {"int", 1, true},    {"vec2d", 2, false}, {"vec2i", 2, true},  {"vec3d", 3, false},
     {"vec3i", 3, true},   {"vec4d", 4, false}, {"vec4i", 4, true},  {"float", 1, false}, {"bool", 1, true},
     {"short", 1, true},   {"long", 1, true},   {"uint", 1, true},   {"ulong", 1, true},  {"vec2f", 2, false},
@@ -19,8 +19,8 @@ constexpr OvmType kTypes[] = {
 
 template <class Condition>
 std::optional<OvmType> first_type(Condition condition) {
-  const auto* const found = std::find_if(std::begin(kTypes), std::end(kTypes), condition);
-  if (found == std::end(kTypes)) return std::nullopt;
+  const auto* const found = std::find_if(std::begin(kOvmTypes), std::end(kOvmTypes), condition);
+  if (found == std::end(kOvmTypes)) return std::nullopt;
   return *found;
 }
 

@@ -14,12 +14,12 @@
 namespace hfr::io {
 namespace {
 
-struct NamedType {
+struct PlyNumber {
   std::string_view name;
   NumberType type;
 };
 
-constexpr NamedType kTypes[] = {
+constexpr PlyNumber kPlyNumbers[] = {
     {"char", NumberType::kInt8},       {"int8", NumberType::kInt8},      {"uchar", NumberType::kUInt8},
     {"uint8", NumberType::kUInt8},     {"short", NumberType::kInt16},    {"int16", NumberType::kInt16},
     {"ushort", NumberType::kUInt16},   {"uint16", NumberType::kUInt16},  {"int", NumberType::kInt32},
@@ -71,7 +71,7 @@ void PlyReader::fail(const std::string& message) const {
 
 NumberType PlyReader::number_type() {
   const std::string_view name = in_.word();
-  for (const NamedType& type : kTypes)
+  for (const PlyNumber& type : kPlyNumbers)
     if (type.name == name) return type.type;
   in_.fail("unknown data type '" + std::string(name.substr(0, 20)) + "'");
 }

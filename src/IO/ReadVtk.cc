@@ -45,12 +45,12 @@ struct ValueType {
   bool is_real() const { return kind == Kind::kNumber && !is_integer(number); }
 };
 
-struct NamedType {
+struct VtkNumber {
   std::string_view name;
   ValueType type;
 };
 
-constexpr NamedType kTypes[] = {
+constexpr VtkNumber kVtkNumbers[] = {
     {"bit", {ValueType::Kind::kBit, NumberType::kUInt8}},
     {"char", {ValueType::Kind::kNumber, NumberType::kInt8}},
     {"signed_char", {ValueType::Kind::kNumber, NumberType::kInt8}},
@@ -166,7 +166,7 @@ std::size_t LegacyReader::count(std::string_view what) {
 ValueType LegacyReader::value_type() {
   const std::string_view text = word("a data type");
   const std::string name = lower(text);
-  for (const NamedType& type : kTypes)
+  for (const VtkNumber& type : kVtkNumbers)
     if (type.name == name) return type.type;
   fail("unknown data type " + in_quotes(text));
 }

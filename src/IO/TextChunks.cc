@@ -5,14 +5,14 @@
 #include <cstring>
 #include <limits>
 
+#include "IO/Words.hh"
+
 namespace hfr::io {
 namespace {
 
 constexpr std::uint64_t kLargestChunk = std::uint64_t{1} << 20, kSmallestChunk = 256;
 constexpr std::uint64_t kChunksEach = 64;  // of a process, in a small file
 constexpr std::uint64_t kLongestLine = std::uint64_t{1} << 16;
-
-bool is_space(char c) { return c == ' ' || static_cast<unsigned char>(c - '\t') < 5; }
 
 }  // namespace
 

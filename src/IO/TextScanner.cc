@@ -13,13 +13,6 @@
 #include "IO/Words.hh"
 
 namespace hfr::io {
-namespace {
-
-/// Blank, tab, line feed, vertical tab, form feed, carriage return. Bytes are compared unsigned, so that
-/// nothing beyond ASCII counts as space.
-constexpr bool is_space(char c) { return c == ' ' || static_cast<unsigned char>(c - '\t') < 5; }
-
-}  // namespace
 
 TextScanner::TextScanner(std::string_view text, std::string name, char comment)
     : begin_(text.data()),

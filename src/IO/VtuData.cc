@@ -10,6 +10,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "IO/TextScanner.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -36,8 +37,6 @@ void convert_from(bool swap, std::string_view bytes, T* out) {
   for (std::size_t i = 0; i < n; ++i)
     out[i] = static_cast<T>(loaded<Stored>(from + i * sizeof(Stored), true));
 }
-
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
 constexpr std::size_t base64_length(std::size_t n_bytes) { return (n_bytes + 2) / 3 * 4; }
 

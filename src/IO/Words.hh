@@ -7,6 +7,10 @@
 
 namespace hfr::io {
 
+/// Blank, tab, line feed, vertical tab, form feed, carriage return. Bytes are compared unsigned, so that
+/// nothing beyond ASCII counts as space.
+constexpr bool is_space(char c) { return c == ' ' || static_cast<unsigned char>(c - '\t') < 5; }
+
 /// A to Z as a to z, and every other byte as it is, in any locale.
 std::string lower(std::string_view text);
 

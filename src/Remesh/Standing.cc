@@ -11,9 +11,9 @@ namespace hfr {
 namespace {
 
 /// Relative: sums of volumes and angles that are nothing but rounded otherwise are the same.
-constexpr double kRounding = 1e-12;
+constexpr double kSmallestGain = 1e-12;
 
-bool is_more(double a, double b) { return a > b + kRounding * std::abs(b); }
+bool is_more(double a, double b) { return a > b + kSmallestGain * std::abs(b); }
 
 }  // namespace
 

@@ -18,22 +18,6 @@ namespace {
 /// changes the volume by no more than that length times the area.
 constexpr double kCoplanar = 1e-13;
 
-double diagonal(const Arrays& arrays) {
-  if (arrays.faces.empty()) return 0;
-  Vec3 low = arrays.points[arrays.faces[0][0].idx()];
-  Vec3 high = low;
-  for (const auto& f : arrays.faces) {
-    for (VertexHandle v : f) {
-      const Vec3 p = arrays.points[v.idx()];
-      for (int d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], p[d]);
-        high[d] = std::max(high[d], p[d]);
-      }
-    }
-  }
-  return norm(high - low);
-}
-
 /// Planar facets: grown from the largest face that is in none yet, over edges where the surface does not turn
 /// back, as long as all corners lie in the plane.
 std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<Edge>& edges, double tolerance,
@@ -402,6 +386,22 @@ std::vector<Edge> find_edges(const Arrays& arrays) {
     i = end;
   }
   return edges;
+}
+
+double diagonal(const Arrays& arrays) {
+  if (arrays.faces.empty()) return 0;
+  Vec3 low = arrays.points[arrays.faces[0][0].idx()];
+  Vec3 high = low;
+  for (const auto& f : arrays.faces) {
+    for (VertexHandle v : f) {
+      const Vec3 p = arrays.points[v.idx()];
+      for (int d = 0; d < 3; ++d) {
+        low[d] = std::min(low[d], p[d]);
+        high[d] = std::max(high[d], p[d]);
+      }
+    }
+  }
+  return norm(high - low);
 }
 
 double mean_edge(const Arrays& arrays) {

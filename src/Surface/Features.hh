@@ -62,6 +62,8 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
 /// Largest distance from the input that the options allow; 0 but in free mode. Unless they say it, three
 /// tenths of the mean edge, but no more than 0.005 of the diagonal of the bounding box.
 double allowed_distance(const Arrays& arrays, const SurfaceOptions& options);
+/// Diagonal of the bounding box of all corners; 0 without any.
+double diagonal(const Arrays& arrays);
 /// Mean length of the triangles' edges; 0 without any.
 double mean_edge(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.

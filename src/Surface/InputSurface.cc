@@ -10,17 +10,19 @@
 #include <limits>
 #include <unsupported/Eigen/BVH>
 
+#include "Surface/Features.hh"
 #include "Surface/NearTriangle.hh"
 
 namespace hfr {
+
+using surface::scaled_normal;
+
 namespace {
 
 using Box = Eigen::AlignedBox<double, 3>;
 using Tree = Eigen::KdBVH<double, 3, int>;
 
 Eigen::Vector3d eigen(Vec3 p) { return {p.x, p.y, p.z}; }
-
-Vec3 scaled_normal(const std::array<Vec3, 3>& t) { return cross(t[1] - t[0], t[2] - t[0]); }
 
 /// Height over the longest edge below which nearest_point() loses too many digits to differences of products.
 constexpr double kThin = 1e-2;

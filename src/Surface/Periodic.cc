@@ -7,6 +7,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "Parallel/DisjointSets.hh"
+#include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
 
 namespace hfr::surface {
@@ -35,18 +36,6 @@ Patch patch_of(const Arrays& arrays, int label) {
   for (VertexHandle v : patch.vertices) patch.centre = patch.centre + arrays.points[v.idx()];
   patch.centre = (1.0 / static_cast<double>(patch.vertices.size())) * patch.centre;
   return patch;
-}
-
-double diagonal(const Arrays& arrays) {
-  Vec3 low = arrays.points[arrays.faces[0][0].idx()];
-  Vec3 high = low;
-  for (const auto& f : arrays.faces)
-    for (VertexHandle v : f)
-      for (int d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], arrays.points[v.idx()][d]);
-        high[d] = std::max(high[d], arrays.points[v.idx()][d]);
-      }
-  return norm(high - low);
 }
 
 std::string names(const Patch& a, const Patch& b) {

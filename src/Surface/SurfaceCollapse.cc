@@ -10,8 +10,6 @@
 namespace hfr {
 namespace {
 
-constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
-
 /// The cells that a collapse may write. In two regions those of the smaller number come first; within a
 /// region, the cells behind the star.
 struct Cluster {
@@ -136,7 +134,7 @@ bool meets_twice(const TetMesh& mesh, const Star& star, const Faces& faces, Vert
 template <class Metric>
 bool SurfaceCollapse<Metric>::may_gain(const TetMesh& mesh, VertexHandle v) const {
   Star star;
-  FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
+  FixedVector<std::array<VertexHandle, 3>, kMaxFacesOfVertex> faces;
   if (!mesh.gather_star(v, star) || !gather_faces(mesh, v, star, faces)) return false;
   const auto n = static_cast<std::size_t>(star.size);
   RawArray<std::array<VertexHandle, 3>, Star::kCapacity> link;
@@ -145,7 +143,7 @@ bool SurfaceCollapse<Metric>::may_gain(const TetMesh& mesh, VertexHandle v) cons
     link[k] = mesh.halfface_vertices(halfface_of(star.cells[k], star.corners[k]));
     old_worst = std::min(old_worst, quality[star.cells[k].idx()]);
   }
-  FixedVector<VertexHandle, 3 * kMaxFaces> asked;
+  FixedVector<VertexHandle, 3 * kMaxFacesOfVertex> asked;
   const auto gains = [&](VertexHandle onto) {
     const Vec3 p = mesh.point(onto);
     bool has_created = false;
@@ -187,7 +185,7 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
   if (cells.empty()) return std::nullopt;
   const auto n = static_cast<std::size_t>(star.size);
   const std::size_t n_behind = cells.size() - n;
-  FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
+  FixedVector<std::array<VertexHandle, 3>, kMaxFacesOfVertex> faces;
   if (!gather_faces(mesh, v, star, faces)) return std::nullopt;
 
   double old_worst = std::numeric_limits<double>::infinity();
@@ -212,7 +210,7 @@ auto SurfaceCollapse<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) co
       worst = std::min(worst, metric(mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2]), p));
     }
     if (!(worst > plan.new_worst) || n_created == 0) continue;
-    FixedVector<Triangle, kMaxFaces> removed, created;
+    FixedVector<Triangle, kMaxFacesOfVertex> removed, created;
     for (const auto& f : faces) {
       Triangle t = {mesh.point(f[0]), mesh.point(f[1]), mesh.point(f[2])};
       removed.push_back(t);

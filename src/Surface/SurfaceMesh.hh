@@ -46,6 +46,8 @@ struct MotionConstraint {
 
 /// Corners of a triangle, counter-clockwise seen from outside.
 using Triangle = std::array<Vec3, 3>;
+/// Of the surface round a vertex, for operators that take these: one with more is left alone.
+constexpr std::size_t kMaxFacesOfVertex = 64;
 
 /// The boundary of a tetrahedral mesh and the interfaces between its regions as an OpenMesh triangle mesh,
 /// which decides what may become of the surface, and the shape that must be kept. Vertices are those of the

@@ -18,14 +18,13 @@ using surface::TangentSteps;
 
 namespace {
 
-constexpr std::size_t kMaxFaces = 64;  // of the surface round a vertex
 static_assert(2 * TangentSteps::kMost <= StarForm::kTrials);
 
 /// The surface round a vertex, before and after a move.
 struct Patch {
-  FixedVector<std::array<VertexHandle, 3>, kMaxFaces> faces;
-  FixedVector<Triangle, kMaxFaces> removed;
-  FixedVector<std::uint8_t, kMaxFaces> corner;  // of the vertex
+  FixedVector<std::array<VertexHandle, 3>, kMaxFacesOfVertex> faces;
+  FixedVector<Triangle, kMaxFacesOfVertex> removed;
+  FixedVector<std::uint8_t, kMaxFacesOfVertex> corner;  // of the vertex
   bool has_interface = false;
 
   /// The faces of the surface at v. False when they are too many.
@@ -46,7 +45,7 @@ struct Patch {
     return true;
   }
   bool keeps_shape(const SurfaceMesh& surface, Vec3 x) const {
-    FixedVector<Triangle, kMaxFaces> created = removed;
+    FixedVector<Triangle, kMaxFacesOfVertex> created = removed;
     for (std::size_t i = 0; i < created.size(); ++i) created[i][corner[i]] = x;
     return surface.keeps_shape(faces, removed, created);
   }

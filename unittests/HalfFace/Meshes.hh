@@ -14,7 +14,12 @@ namespace hfr::test {
 
 using Corners = std::array<Index, 4>;
 
-inline TetMesh built(const generate::Arrays& arrays) { return build(arrays.points, arrays.cells); }
+inline TetMesh built(const generate::Arrays& arrays) {
+  TetMesh mesh = build(arrays.points, arrays.cells);
+  for (std::size_t i = 0; i < arrays.regions.size(); ++i)
+    mesh.set_region(CellHandle(static_cast<Index>(i)), arrays.regions[i]);
+  return mesh;
+}
 
 inline TetMesh single_cell() {
   return build({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, std::vector<Corners>{{0, 1, 2, 3}});

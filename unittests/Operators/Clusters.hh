@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "HalfFace/Generate.hh"
+#include "HalfFace/Meshes.hh"
 #include "HalfFace/TetMesh.hh"
 #include "Operators/Operator.hh"
 #include "Operators/Replace.hh"
@@ -77,12 +78,6 @@ inline TetMesh octahedron(Vec3 centre = {}) {
       for (Index z = 5; z <= 6; ++z)
         cells.push_back((x + y + z) % 2 == 1 ? Corners{0, x, y, z} : Corners{0, y, x, z});
   return build({centre, {1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}, cells);
-}
-
-inline TetMesh built(const generate::Arrays& arrays) {
-  TetMesh mesh = build(arrays.points, arrays.cells);
-  for (std::size_t i = 0; i < arrays.regions.size(); ++i) mesh.set_region(C(i), arrays.regions[i]);
-  return mesh;
 }
 
 inline TetMesh jittered(Index n, double jitter, std::uint64_t seed) {
