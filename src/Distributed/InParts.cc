@@ -18,6 +18,7 @@
 #include "Distributed/CommonBox.hh"
 #include "Distributed/Order.hh"
 #include "Distributed/OwnItems.hh"
+#include "Distributed/PartCoordinates.hh"
 #include "Distributed/PartFixes.hh"
 #include "Distributed/PartPasses.hh"
 #include "Distributed/PartPatchSearch.hh"
@@ -345,6 +346,7 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options,
   const std::string reason = reason_against(options);
   HFR_REQUIRE(reason.empty(), "meshes in parts do not have " + reason + " yet");
   const par::Policy policy = options.policy;
+  require_sound_coordinates(mesh, policy);
   const double goal = options.min_dihedral.value_or(0);
   PartFixes fixes(mesh, options.surface);
   PartsResult result;

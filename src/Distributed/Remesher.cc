@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "Distributed/OwnItems.hh"
+#include "Distributed/PartCoordinates.hh"
 #include "Distributed/PartFixes.hh"
 #include "Distributed/PartTransfer.hh"
 #include "Distributed/PartWatch.hh"
@@ -46,6 +47,7 @@ Remesher::Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options
   }
   rebuild(arrays);
   kStepEffort.bound(options_.improve, static_cast<std::size_t>(mesh_->n_cells()));
+  require_sound_coordinates(*mesh_, options_.improve.policy);
   watch_ = std::make_unique<PartWatch>(options_.triggers, options_.improve.policy);
   watch_->look(*mesh_);
   PartFixes(*mesh_, options_.improve.surface).release();  // are they all there?

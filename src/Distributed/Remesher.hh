@@ -56,9 +56,10 @@ std::string reason_against(const RemesherOptions& options);
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
 class Remesher {
  public:
-  /// Of what from_arrays() takes, which says what it throws; InvalidInput also for a field that is named
-  /// twice, and for what is named as fixed and not there. Here and after each repair that has changed
-  /// something, cells stay where they are if parts are even (Keep::kIfEven).
+  /// Of what from_arrays() takes, which says what it throws; `options` are the same on all ranks.
+  /// InvalidInput also for a field that is named twice, for what is named as fixed and not there, and for
+  /// coordinates that nothing can be decided from, which hfr::improve() refuses. Here and after each repair
+  /// that has changed something, cells stay where they are if parts are even (Keep::kIfEven).
   Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options = {});
   ~Remesher();
   Remesher(const Remesher&) = delete;

@@ -2,6 +2,9 @@
 #ifndef HFR_REMESH_COORDINATES_HH
 #define HFR_REMESH_COORDINATES_HH
 
+#include <cstddef>
+#include <functional>
+
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
 #include "Surface/TriangleMesh.hh"
@@ -17,6 +20,20 @@ namespace hfr {
 void require_sound_coordinates(const TetMesh& mesh, par::Policy policy);
 /// The same for triangles, whose vertices exist.
 void require_sound_coordinates(const TriangleMesh& mesh);
+
+// What these ask, for a mesh that lies in parts.
+
+/// Bounds of coordinates; one that is no number stays in them.
+struct CoordinateBox {
+  Vec3 low, high;
+};
+/// Of the vertices that have cells; without any, infinity to minus infinity.
+CoordinateBox coordinate_box(const TetMesh& mesh, par::Policy policy);
+CoordinateBox joined(CoordinateBox a, const CoordinateBox& b);
+/// Of a mesh of n_cells, at least one. n_shorter(least): how many of them have a longest_edge() below that.
+void require_sound_coordinates(const CoordinateBox& box, std::size_t n_cells,
+                               const std::function<std::size_t(double least)>& n_shorter);
+double longest_edge(const TetMesh& mesh, CellHandle c);
 
 }  // namespace hfr
 

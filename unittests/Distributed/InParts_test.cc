@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -112,6 +113,39 @@ TEST(InParts, ThePolishHasTheBitsOfSharedMemory) {
       EXPECT_EQ(result.after.n_vertices, mesh.n_vertices());
       EXPECT_EQ(result.after.n_below_goal, hfr::n_below(mesh, goal, {}));
     }
+}
+
+TEST(InParts, CoordinatesThatNothingCanBeDecidedFromAreRefusedAsInSharedMemory) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const mpi::GridOptions grid_options = grid({4, 4, 4}, 0.1);
+  const auto place_all = [](TetMesh& mesh, auto&& place) {
+    for (VertexHandle v : mesh.vertices()) mesh.set_point(v, place(mesh.point(v)));
+  };
+  const auto refusal = [](auto&& improve) -> std::string {
+    try {
+      improve();
+    } catch (const InvalidInput& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const auto expect_refused = [&](const char* words, auto&& place) {
+    TetMesh mesh = whole_of(grid_options);
+    place_all(mesh, place);
+    const std::string expected = refusal([&] { hfr::improve(mesh, polish_towards(15)); });
+    EXPECT_THAT(expected, testing::HasSubstr(words));
+    mpi::DistributedMesh parts(comm);
+    mpi::generate_in_parts(parts, grid_options);
+    place_all(parts.part(), place);
+    EXPECT_EQ(refusal([&] { mpi::improve(parts, polish_towards(15)); }), expected);
+  };
+  const auto is_last = [](Vec3 p) {
+    return p.x == 1 && p.y == 1 && p.z == 1;
+  };  // of one rank and its near ones
+  expect_refused("beyond 1e30", [&](Vec3 p) { return is_last(p) ? 2e30 * p : p; });
+  expect_refused("no numbers", [&](Vec3 p) { return is_last(p) ? Vec3{p.x, std::nan(""), p.z} : p; });
+  expect_refused("below 1e-25", [](Vec3 p) { return 1e-26 * p; });
+  expect_refused("too coarse", [](Vec3 p) { return p + Vec3{1e14, 0, 0}; });
 }
 
 TEST(InParts, WhatIsNotThereIsNamed) {
