@@ -279,8 +279,10 @@ std::vector<Row> make_rows() {
       stage("claimed",
             [](Strategy& s) {
               s.claimed.reset();
+              s.towards_claim.reset();
               s.frozen.reset();  // which goes on below what is claimed
             }),
+      stage("towards_claim", [](Strategy& s) { s.towards_claim.reset(); }),
       number("goal.many_miss", &G::many_miss, kOffToo),
       number("goal.few_miss", &G::few_miss, kOffToo),
       stage("goal.goes_on",
@@ -308,6 +310,7 @@ Strategy changed(Strategy strategy) {
   strategy.plain = changed(strategy.plain);
   strategy.usual = changed(strategy.usual);
   strategy.claimed = changed(strategy.claimed);
+  strategy.towards_claim = changed(strategy.towards_claim);
   strategy.frozen = changed(strategy.frozen);
   strategy.flat = changed(strategy.flat);
   strategy.without_goal = changed(strategy.without_goal);

@@ -106,7 +106,7 @@ function(hfr_layer NAME)
     endif()
     string(REGEX REPLACE "\\.cc$" ".hh" header ${source})
     file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/${source} first REGEX "^#include" LIMIT_COUNT 1)
-    if(first MATCHES "/${header}\"$" AND NOT HFR_PCH_OF_LIBRARY)
+    if(first MATCHES "/${header}\"$" AND NOT HFR_PCH_OF_LIBRARY AND NOT CMAKE_UNITY_BUILD)
       set_property(GLOBAL APPEND PROPERTY HFR_VERIFIED_HEADERS ${CMAKE_CURRENT_SOURCE_DIR}/${header}
         ${PROJECT_BINARY_DIR}/include/hfremesh/${NAME}/${header})
     endif()

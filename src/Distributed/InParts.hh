@@ -74,8 +74,9 @@ std::string reason_against(const ImproveOptions& options);
 /// back to; where the mesh has invalid cells, or a boundary that lies on itself, rank 0 selects the winners
 /// of rounds, and where it has pinched vertices, those of rounds with a candidate that has two of them.
 /// Throws InvalidInput for what reason_against() names: another metric than volume-length for all cells,
-/// periodic patches, published pipelines, devices, maps, other smoothers; and where the mesh lacks what
-/// options.surface names as fixed, by the numbers of the whole.
+/// periodic patches, published pipelines, devices, maps, other smoothers; where the mesh lacks what
+/// options.surface names as fixed, by the numbers of the whole; and for coordinates that hfr::improve()
+/// refuses.
 ///
 /// Towards a goal, ranks may own vertices of others while it runs (docs/distributed.md, "Damage in one
 /// place"); whose they were is as before afterwards, but handles of a part's vertices may be others.

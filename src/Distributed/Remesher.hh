@@ -68,7 +68,8 @@ class Remesher {
   /// `displacement`: of each point of arrays(), in its order and in the mesh's units; of a point that several
   /// ranks have, that which its owner gives counts. Throws InvalidInput, before anything is moved, for
   /// another number of them, for one that is not finite, and for fields that have no values or cannot be
-  /// transferred (hfr::validate_fields()).
+  /// transferred (hfr::validate_fields()). A repair throws it for coordinates that a move has taken too far,
+  /// and the object is of no further use then.
   PartsStep step(std::span<const Vec3> displacement);
 
   /// What this rank has now: own_arrays(). Other cells and points only after a step that has `changed`.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <compare>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <set>

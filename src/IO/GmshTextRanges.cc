@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // .msh of text in ranges: nodes and elements are lines, which TextChunks counts.
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "IO/GmshRanges.hh"

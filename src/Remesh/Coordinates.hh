@@ -29,6 +29,7 @@ struct CoordinateBox {
 };
 /// Of the vertices that have cells; without any, infinity to minus infinity.
 CoordinateBox coordinate_box(const TetMesh& mesh, par::Policy policy);
+/// Round both.
 CoordinateBox joined(CoordinateBox a, const CoordinateBox& b);
 /// Of a mesh of n_cells, at least one. n_shorter(least): how many of them have a longest_edge() below that.
 void require_sound_coordinates(const CoordinateBox& box, std::size_t n_cells,

@@ -116,19 +116,21 @@ void run_towards_claim(const Run& run, Beginning from) {
   const double before = smallest_that_may_rise(run, strategy.goal->degrees);
   if (before >= strategy.goal->degrees || run.control.stopped() || !is_poor_throughout(run)) return;
   Best best(run, strategy.goal->may_fall, Loss::kMadeUpFor);
+  const Revision usual = run.control.revision();
   from.put_back(run);
   const Findings found = std::exchange(run.findings, {.is_folded = run.findings.is_folded});
   run_towards_goal(run.with(strategy), *strategy.goal);
-  const double now = smallest_that_may_rise(run, strategy.goal->degrees);
-  if (now > before) {
+  if (smallest_that_may_rise(run, strategy.goal->degrees) > before + kLeastRise) {
     best.note();
-    improve_all(run, now, run.strategy.targets.targets);
-  } else {
-    run.findings = found;
+    CellBounds bounds = run.bounds;
+    if (bounds.max > 0) bounds.max = std::max(bounds.max, run.n_cells());
+    improve_all(run.within(bounds), run.smallest_dihedral(), run.strategy.targets.targets);
   }
   best.settle();
+  if (run.control.revision() == usual) run.findings = found;
 }
 
+/// With a frozen surface. A mesh that is poor throughout is kept as it came in until the end.
 void run_default(const Run& run) {
   std::optional<Beginning> beginning;
   if (run.strategy.towards_claim && is_poor_throughout(run)) beginning.emplace(run);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Strategy.hh"
 
+#include <cmath>
 #include <string>
 
 #include "HalfFace/Errors.hh"
@@ -324,8 +325,14 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     return std::make_shared<const Strategy>(resolve(other, found, n_cells));
   };
   if (asked.is_frozen()) {
-    if (!asked.has_goal())
-      strategy.towards_claim = with([](ImproveOptions& other) { other.min_dihedral = kClaimedGoal; });
+    if (asked.has_goal()) return strategy;
+    ImproveOptions other = options;
+    other.min_dihedral = kClaimedGoal;
+    Strategy towards = resolve(other, found, n_cells);
+    if (options.max_cells == 0)  // no more than what is claimed may take
+      towards.bounds_asked.max = static_cast<std::size_t>(
+          static_cast<double>(n_cells) * std::pow(towards.goal->more_cells, towards.goal->turns));
+    strategy.towards_claim = std::make_shared<const Strategy>(std::move(towards));
     return strategy;
   }
   if (asked.has_goal()) {

@@ -445,7 +445,7 @@ struct Strategy {
   /// That of kClaimedGoal, or of the goal where that is smaller, for what is left below it.
   std::shared_ptr<const Strategy> claimed;
   /// With a frozen surface and no goal, for what is left below that of `claimed`: that of the run which is
-  /// asked for it.
+  /// asked for it. Shown by bench/claim.py.
   std::shared_ptr<const Strategy> towards_claim;
   /// Where the surface may change, for what is left below the goal of `claimed`: that of the run without a
   /// goal, or without one that of the run with a frozen surface, and where it may change its shape, of the

@@ -139,9 +139,8 @@ TEST(InParts, CoordinatesThatNothingCanBeDecidedFromAreRefusedAsInSharedMemory) 
     place_all(parts.part(), place);
     EXPECT_EQ(refusal([&] { mpi::improve(parts, polish_towards(15)); }), expected);
   };
-  const auto is_last = [](Vec3 p) {
-    return p.x == 1 && p.y == 1 && p.z == 1;
-  };  // of one rank and its near ones
+  // One vertex, which not all ranks have.
+  const auto is_last = [](Vec3 p) { return p.x == 1 && p.y == 1 && p.z == 1; };
   expect_refused("beyond 1e30", [&](Vec3 p) { return is_last(p) ? 2e30 * p : p; });
   expect_refused("no numbers", [&](Vec3 p) { return is_last(p) ? Vec3{p.x, std::nan(""), p.z} : p; });
   expect_refused("below 1e-25", [](Vec3 p) { return 1e-26 * p; });

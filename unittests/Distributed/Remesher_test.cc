@@ -594,7 +594,7 @@ TEST(PartRemesher, FieldsThatAreNotThereAreRefused) {
 
 TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
   mpi::Comm comm(MPI_COMM_WORLD);
-  const RankArrays arrays = slab_of(valid_box(4, 0.1, 1), comm);
+  RankArrays arrays = slab_of(valid_box(4, 0.1, 1), comm);
   const auto refusal = [&](auto&& change) {
     RemesherOptions options = towards(15, 10);
     change(options);
@@ -606,6 +606,10 @@ TEST(PartRemesher, WhatIsNotThereIsRefusedByName) {
     return std::string();
   };
   EXPECT_EQ(refusal([](RemesherOptions&) {}), "");
+  const RankArrays arrays_as_they_are = arrays;
+  for (Vec3& p : arrays.points) p = 1e31 * p;
+  EXPECT_THAT(refusal([](RemesherOptions&) {}), testing::HasSubstr("beyond 1e30"));
+  arrays = arrays_as_they_are;
   EXPECT_EQ(refusal([](RemesherOptions& o) { o.ids = true; }),
             "a Remesher in parts does not have ids that never change yet");
   EXPECT_THAT(refusal([](RemesherOptions& o) { o.motion = Motion::kLaplace; }), testing::HasSubstr("follow"));

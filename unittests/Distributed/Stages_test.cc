@@ -152,7 +152,8 @@ TEST_F(StagesInParts, PoorMeshesHaveTheBytesOfSharedMemory) {
 /// The searches for the last cells as well.
 TEST_F(StagesInParts, WholeRunsHaveTheBytesOfSharedMemory) {
   std::vector<TetMesh> meshes = {cavity({6, 6, 6}, 0.3, 0), cavity({2, 9, 9}, 0.3, 0.05),
-                                 valid_box(7, 0.34, 3), plate(8, 5)};
+                                 valid_box(7, 0.34, 3), plate(8, 5),
+                                 stretched(valid_box(4, 0.1, 7), {1, 1, 0.05})};
   Stages all;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     SCOPED_TRACE(i);

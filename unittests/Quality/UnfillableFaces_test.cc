@@ -4,16 +4,13 @@
 #include <gtest/gtest.h>
 
 #include "HalfFace/Generate.hh"
+#include "HalfFace/Meshes.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
 #include "Quality/Statistics.hh"
 
 namespace hfr::test {
 namespace {
-
-using Corners = std::array<Index, 4>;
-
-TetMesh built(const generate::Arrays& arrays) { return build(arrays.points, arrays.cells); }
 
 std::vector<HalfFaceHandle> boundary(const TetMesh& mesh) {
   std::vector<HalfFaceHandle> faces;

@@ -69,6 +69,9 @@ int main(int argc, char** argv) {
   const generate::Arrays cavity = generate::cavity(deformed);
   run("default, jittered box", tangled, {}, threads);
   run("default, cavity", cavity, {}, threads);
+  generate::Arrays pressed = generate::jittered_box({3, 3, 3}, 0.3, 7);
+  for (Vec3& p : pressed.points) p.z *= 0.05;
+  run("default, poor throughout", pressed, {}, threads);
   ImproveOptions options;
   options.min_dihedral = 18;
   run("goal, cavity", cavity, options, threads);
