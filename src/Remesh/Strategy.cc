@@ -328,11 +328,11 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     if (asked.has_goal()) return strategy;
     ImproveOptions other = options;
     other.min_dihedral = kClaimedGoal;
-    Strategy towards = resolve(other, found, n_cells);
+    Strategy claim = resolve(other, found, n_cells);
     if (options.max_cells == 0)  // no more than what is claimed may take
-      towards.bounds_asked.max = static_cast<std::size_t>(
-          static_cast<double>(n_cells) * std::pow(towards.goal->more_cells, towards.goal->turns));
-    strategy.towards_claim = std::make_shared<const Strategy>(std::move(towards));
+      claim.bounds_asked.max = static_cast<std::size_t>(static_cast<double>(n_cells) *
+                                                        std::pow(claim.goal->more_cells, claim.goal->turns));
+    strategy.towards_claim = std::make_shared<const Strategy>(std::move(claim));
     return strategy;
   }
   if (asked.has_goal()) {
