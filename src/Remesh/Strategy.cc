@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/Strategy.hh"
 
-#include <cmath>
 #include <string>
 
 #include "HalfFace/Errors.hh"
@@ -325,14 +324,8 @@ Strategy resolve(const ImproveOptions& options, const Survey& found, std::size_t
     return std::make_shared<const Strategy>(resolve(other, found, n_cells));
   };
   if (asked.is_frozen()) {
-    if (asked.has_goal()) return strategy;
-    ImproveOptions other = options;
-    other.min_dihedral = kClaimedGoal;
-    Strategy claim = resolve(other, found, n_cells);
-    if (options.max_cells == 0)  // no more than what is claimed may take
-      claim.bounds_asked.max = static_cast<std::size_t>(static_cast<double>(n_cells) *
-                                                        std::pow(claim.goal->more_cells, claim.goal->turns));
-    strategy.towards_claim = std::make_shared<const Strategy>(std::move(claim));
+    if (!asked.has_goal())
+      strategy.towards_claim = with([](ImproveOptions& other) { other.min_dihedral = kClaimedGoal; });
     return strategy;
   }
   if (asked.has_goal()) {
