@@ -444,9 +444,10 @@ TEST(Remesher, AMoveThatRightsACellAndInvertsAnotherIsRefused) {
   EXPECT_EQ(mesh.point(VertexHandle(3)).z, -1);
 }
 
-TEST(Remesher, AStepOfPartsSaysWhyItHasRepaired) {
+/// Moves one inner vertex of a good box so far that cells would be inverted, in sub-steps.
+RepairCause cause_of_sub_steps(const RemesherOptions& triggers) {
   TetMesh mesh = box(5, 0);
-  RemesherOptions options = options_for(15, 0);
+  RemesherOptions options = triggers;
   options.on_inversion = OnInversion::kSubsteps;
   Remesher remesher(mesh, options);
   VertexHandle inner;
@@ -455,22 +456,17 @@ TEST(Remesher, AStepOfPartsSaysWhyItHasRepaired) {
   std::vector<Vec3> d(mesh.n_vertices());
   d[inner.idx()] = {0.25, 0, 0};
   const StepResult step = remesher.step(d);
-  ASSERT_FALSE(step.repairs.empty());
-  EXPECT_EQ(step.cause, RepairCause::kInverted);
+  EXPECT_FALSE(step.repairs.empty());
+  return step.cause;
+}
+
+TEST(Remesher, AStepOfPartsSaysWhyItHasRepaired) {
+  EXPECT_EQ(cause_of_sub_steps(options_for(15, 0)), RepairCause::kInverted);
 }
 
 /// Cells that were inverted while it was looked for what may be taken are so no more when the repair begins.
 TEST(Remesher, CauseIsThatOfCellsAsTheRepairFindsThem) {
-  TetMesh mesh = box(5, 0);
-  RemesherOptions options = options_for(15, 10);
-  options.on_inversion = OnInversion::kSubsteps;
-  Remesher remesher(mesh, options);
-  VertexHandle inner;
-  for (VertexHandle v : mesh.vertices())
-    if (!mesh.is_boundary(v)) inner = v;
-  std::vector<Vec3> d(mesh.n_vertices());
-  d[inner.idx()] = {0.25, 0, 0};
-  EXPECT_EQ(remesher.step(d).cause, RepairCause::kAngle);
+  EXPECT_EQ(cause_of_sub_steps(options_for(15, 10)), RepairCause::kAngle);
 }
 
 TEST(Remesher, FixedPartsThatAreNotThereAreRefusedAtOnce) {
