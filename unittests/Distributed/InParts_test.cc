@@ -117,7 +117,7 @@ TEST(InParts, ThePolishHasTheBitsOfSharedMemory) {
 
 TEST(InParts, CoordinatesThatNothingCanBeDecidedFromAreRefusedAsInSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);
-  const mpi::GridOptions grid_options = grid({4, 4, 4}, 0.1);
+  const mpi::GridOptions grid_options = grid({3, 3, 24}, 0.1);
   const auto place_all = [](TetMesh& mesh, auto&& place) {
     for (VertexHandle v : mesh.vertices()) mesh.set_point(v, place(mesh.point(v)));
   };
@@ -139,10 +139,12 @@ TEST(InParts, CoordinatesThatNothingCanBeDecidedFromAreRefusedAsInSharedMemory) 
     place_all(parts.part(), place);
     EXPECT_EQ(refusal([&] { mpi::improve(parts, polish_towards(15)); }), expected);
   };
-  // One vertex, which not all ranks have.
-  const auto is_last = [](Vec3 p) { return p.x == 1 && p.y == 1 && p.z == 1; };
-  expect_refused("beyond 1e30", [&](Vec3 p) { return is_last(p) ? 2e30 * p : p; });
-  expect_refused("no numbers", [&](Vec3 p) { return is_last(p) ? Vec3{p.x, std::nan(""), p.z} : p; });
+  // One vertex at either end: no rank of several has both.
+  for (const double end : {0.0, 1.0}) {
+    const auto is_it = [&](Vec3 p) { return p.x == 1 && p.y == 1 && p.z == end; };
+    expect_refused("beyond 1e30", [&](Vec3 p) { return is_it(p) ? 2e30 * p : p; });
+    expect_refused("no numbers", [&](Vec3 p) { return is_it(p) ? Vec3{p.x, std::nan(""), p.z} : p; });
+  }
   expect_refused("below 1e-25", [](Vec3 p) { return 1e-26 * p; });
   expect_refused("too coarse", [](Vec3 p) { return p + Vec3{1e14, 0, 0}; });
 }
