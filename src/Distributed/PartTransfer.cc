@@ -26,6 +26,32 @@ namespace {
 using Named = OldRegion::Named;
 constexpr Named kNobody = {kNoNumber, 0};
 
+std::vector<std::uint64_t> numbers_of(const DistributedMesh& mesh, const auto& things) {
+  std::vector<std::uint64_t> numbers;
+  for (auto thing : things) numbers.push_back(mesh.number(thing));
+  return numbers;
+}
+
+std::size_t own_place(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
+  const auto at = std::ranges::lower_bound(numbers, number);
+  if (at == numbers.end() || *at != number)
+    throw InternalError("a rank was asked for a value that it does not own");
+  return static_cast<std::size_t>(at - numbers.begin());
+}
+
+OldPlaces places_before(const DistributedMesh& old, const DistributedMesh& now, const PartChanges& changes) {
+  OldPlaces places;
+  const std::vector<std::uint64_t> vertices = numbers_of(old, own_vertices(old));
+  for (std::uint64_t number : numbers_of(now, own_vertices(now)))
+    places.vertices.push_back(changes.is_old(number) ? own_place(vertices, number) : OldPlaces::kCreated);
+  const std::vector<std::uint64_t> cells = numbers_of(old, own_cells(old));
+  for (CellHandle c : own_cells(now)) {
+    const CellHandle was = changes.old_cell(c);
+    places.cells.push_back(was.is_valid() ? own_place(cells, old.number(was)) : OldPlaces::kCreated);
+  }
+  return places;
+}
+
 class PartTransfer {
  public:
   PartTransfer(const DistributedMesh& old, DistributedMesh& now,
@@ -60,7 +86,6 @@ class PartTransfer {
   }
 
  private:
-  static constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
   /// A changed cell of this rank, and the old one that it is; invalid: created.
   struct Changed {
     CellHandle now, old;
@@ -87,17 +112,12 @@ class PartTransfer {
   void find_own() {
     own_vertices_ = own_vertices(now_);
     own_cells_ = own_cells(now_);
-    for (VertexHandle v : own_vertices(old_)) own_old_vertices_.push_back(old_.number(v));
-    for (CellHandle c : own_cells(old_)) own_old_cells_.push_back(old_.number(c));
-    for (VertexHandle v : own_vertices_) {
-      const std::uint64_t number = now_.number(v);
-      vertices_from_.push_back(changes_.is_old(number) ? own_place(own_old_vertices_, number) : kNowhere);
-    }
-    for (CellHandle c : own_cells_) {
-      const CellHandle was = changes_.old_cell(c);
-      if (!was.is_valid() || changes_.has_moved(was, c)) changed_.push_back({c, was});
-      cells_from_.push_back(was.is_valid() ? own_place(own_old_cells_, old_.number(was)) : kNowhere);
-    }
+    own_old_vertices_ = numbers_of(old_, own_vertices(old_));
+    own_old_cells_ = numbers_of(old_, own_cells(old_));
+    from_ = places_before(old_, now_, changes_);
+    for (CellHandle c : own_cells_)
+      if (const CellHandle was = changes_.old_cell(c); !was.is_valid() || changes_.has_moved(was, c))
+        changed_.push_back({c, was});
   }
 
   /// As find_near_vertices() of Edits.cc; after each layer others learn of it.
@@ -262,7 +282,7 @@ class PartTransfer {
     for (std::size_t f = 0; f < fields_.size(); ++f) {
       PartField& field = fields_[f];
       if (!is_of_vertices(field.how.how)) continue;
-      std::vector<double> values = carried(field, vertices_from_);
+      std::vector<double> values = carried(field, from_.vertices);
       const Gradients* const by = field.how.how == Transfer::kQuadratic ? &*gradients : nullptr;
       for (const PlacedVertex& v : placed) {
         const bool has_place = v.old_cell.is_valid();
@@ -336,7 +356,7 @@ class PartTransfer {
     for (std::size_t f = 0; f < fields_.size(); ++f) {
       PartField& field = fields_[f];
       if (field.how.how != Transfer::kInherit) continue;
-      std::vector<double> values = carried(field, cells_from_);
+      std::vector<double> values = carried(field, from_.cells);
       for (std::size_t i = 0; i < changed_.size(); ++i) {
         if (changed_[i].old.is_valid()) continue;
         const bool is_covered = !parents.of(i).empty();
@@ -390,7 +410,7 @@ class PartTransfer {
           old_density = column(by_name.at(field.how.density), 0);
           new_density = new_densities.at(field.how.density);
         }
-        std::vector<double> values = carried(field, cells_from_);
+        std::vector<double> values = carried(field, from_.cells);
         reports_[f].n_changed = changed_.size();
         for (std::size_t i = 0; i < changed_.size(); ++i)
           reports_[f].n_outside += parts.cavities().is_outside(i) ? 1 : 0;
@@ -418,12 +438,6 @@ class PartTransfer {
     for (const PartField& field : fields_) width += of(field) ? field.n_components : 0;
     return width;
   }
-  static std::size_t own_place(const std::vector<std::uint64_t>& numbers, std::uint64_t number) {
-    const auto at = std::ranges::lower_bound(numbers, number);
-    if (at == numbers.end() || *at != number)
-      throw InternalError("a rank was asked for a value that it does not own");
-    return static_cast<std::size_t>(at - numbers.begin());
-  }
   /// What the fields that are not transferred yet have of one thing; of vertices, or of cells.
   void append_row(std::size_t at, bool of_vertices, std::vector<double>& out) const {
     for (const PartField& field : fields_) {
@@ -450,7 +464,7 @@ class PartTransfer {
   static std::vector<double> carried(const PartField& field, const std::vector<std::size_t>& from) {
     std::vector<double> values(field.n_components * from.size(), 0.0);
     for (std::size_t i = 0; i < from.size(); ++i)
-      if (from[i] != kNowhere)
+      if (from[i] != OldPlaces::kCreated)
         std::copy_n(field.values.data() + field.n_components * from[i], field.n_components,
                     values.data() + field.n_components * i);
     return values;
@@ -469,7 +483,7 @@ class PartTransfer {
   std::vector<Named> near_;                                      // by vertex of the part: the old one near it
   std::vector<Placed> placed_;                                   // ascending
   std::vector<std::uint64_t> own_old_vertices_, own_old_cells_;  // numbers
-  std::vector<std::size_t> vertices_from_, cells_from_;          // by own thing: which of those it was
+  OldPlaces from_;                                               // which of those each was
   std::vector<CellHandle> needed_cells_;                         // of the region, ascending
   std::size_t cell_width_ = 0;
   std::vector<double> cell_rows_;  // of these: what all fields of cells have
@@ -486,10 +500,16 @@ std::vector<FieldReport> transfer_in_parts(
   return PartTransfer(old, now, renumbered, fields, policy).run();
 }
 
+OldPlaces old_places(const DistributedMesh& old, const DistributedMesh& now,
+                     std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered) {
+  return places_before(old, now, PartChanges(old, now, renumbered));
+}
+
 /// By way of the rank that keeps that stretch of the numbers.
-std::vector<double> rows_where_wanted(Comm& comm, std::uint64_t n, std::span<const std::uint64_t> had,
-                                      std::span<const double> rows, std::size_t width,
-                                      std::span<const std::uint64_t> wanted) {
+template <class T>
+std::vector<T> rows_where_wanted(Comm& comm, std::uint64_t n, std::span<const std::uint64_t> had,
+                                 std::span<const T> rows, std::size_t width,
+                                 std::span<const std::uint64_t> wanted) {
   const std::uint64_t stretch = std::max<std::uint64_t>(1, (n + comm.n_ranks() - 1) / comm.n_ranks());
   const auto keeper = [&](std::uint64_t number) { return static_cast<std::size_t>(number / stretch); };
   const auto row_at = [&](std::span<const std::uint64_t> numbers, std::uint64_t number) {
@@ -504,31 +524,38 @@ std::vector<double> rows_where_wanted(Comm& comm, std::uint64_t n, std::span<con
     out.put(had[i]);
     for (std::size_t k = 0; k < width; ++k) out.put(rows[width * i + k]);
   }
-  std::map<std::uint64_t, std::vector<double>> kept;
+  std::map<std::uint64_t, std::vector<T>> kept;
   for (const Comm::Message& message : comm.exchange(to))
     for (Unpacker in(message.bytes); !in.at_end();) {
-      std::vector<double>& row = kept[in.get<std::uint64_t>()];
-      for (std::size_t k = 0; k < width; ++k) row.push_back(in.get<double>());
+      std::vector<T>& row = kept[in.get<std::uint64_t>()];
+      for (std::size_t k = 0; k < width; ++k) row.push_back(in.get<T>());
     }
   std::vector<Named> asked;
   for (std::uint64_t number : wanted)
     if (row_at(had, number) == had.size())
       asked.push_back({number, static_cast<std::int64_t>(keeper(number))});
-  const std::vector<double> fetched =
-      ask_owners<double>(comm, asked, width, [&](std::uint64_t number, std::vector<double>& out) {
+  const std::vector<T> fetched =
+      ask_owners<T>(comm, asked, width, [&](std::uint64_t number, std::vector<T>& out) {
         const auto at = kept.find(number);
         if (at == kept.end()) throw InternalError("nobody has a value that a rank wants");
         out.insert(out.end(), at->second.begin(), at->second.end());
       });
-  std::vector<double> all;
+  std::vector<T> all;
   all.reserve(width * wanted.size());
   std::size_t next = 0;
   for (std::uint64_t number : wanted) {
     const std::size_t i = row_at(had, number);
-    const double* row = i < had.size() ? rows.data() + width * i : fetched.data() + width * next++;
+    const T* row = i < had.size() ? rows.data() + width * i : fetched.data() + width * next++;
     all.insert(all.end(), row, row + width);
   }
   return all;
 }
+
+template std::vector<double> rows_where_wanted(Comm&, std::uint64_t, std::span<const std::uint64_t>,
+                                               std::span<const double>, std::size_t,
+                                               std::span<const std::uint64_t>);
+template std::vector<std::uint64_t> rows_where_wanted(Comm&, std::uint64_t, std::span<const std::uint64_t>,
+                                                      std::span<const std::uint64_t>, std::size_t,
+                                                      std::span<const std::uint64_t>);
 
 }  // namespace hfr::mpi

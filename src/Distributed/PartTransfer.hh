@@ -33,12 +33,23 @@ std::vector<FieldReport> transfer_in_parts(
     std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered, std::span<PartField> fields,
     par::Policy policy);
 
+/// Own vertices and own cells as they are, in the order of numbers: which of the own ones in `old` each was,
+/// counted in their order.
+struct OldPlaces {
+  static constexpr std::size_t kCreated = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> vertices, cells;
+};
+/// `old` and `renumbered` as transfer_in_parts() has them. Each rank by itself.
+OldPlaces old_places(const DistributedMesh& old, const DistributedMesh& now,
+                     std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered);
+
 /// Rows of `width` values, by number, from the ranks that have them to those that want them. Each number is
 /// had by one rank, and wanted by one; both lists ascend. `n`: there are so many numbers, from 0. All take
-/// part.
-std::vector<double> rows_where_wanted(Comm& comm, std::uint64_t n, std::span<const std::uint64_t> had,
-                                      std::span<const double> rows, std::size_t width,
-                                      std::span<const std::uint64_t> wanted);
+/// part. There are those of double and std::uint64_t.
+template <class T>
+std::vector<T> rows_where_wanted(Comm& comm, std::uint64_t n, std::span<const std::uint64_t> had,
+                                 std::span<const T> rows, std::size_t width,
+                                 std::span<const std::uint64_t> wanted);
 
 }  // namespace hfr::mpi
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "Distributed/OwnItems.hh"
+#include "HalfFace/Geometry.hh"
 #include "Quality/Decisions.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Strategy.hh"
@@ -17,6 +19,13 @@ PartWatch::PartWatch(const RepairTriggers& triggers, par::Policy policy)
       policy_(policy),
       trigger_(triggers.min_dihedral > 0 ? dihedral_decision(triggers.min_dihedral)
                                          : -std::numeric_limits<double>::infinity()) {}
+
+void PartWatch::set_rest_volumes(const DistributedMesh& mesh, std::span<const double> volumes) {
+  if (triggers_.jacobian_ratio <= 0) return;
+  rest_volume_.assign(mesh.part().n_cells(), 0.0);
+  const std::vector<CellHandle> cells = own_cells(mesh);
+  for (std::size_t i = 0; i < cells.size(); ++i) rest_volume_[cells[i].idx()] = volumes[i];
+}
 
 void PartWatch::look(DistributedMesh& mesh) {
   const TetMesh& part = mesh.part();
@@ -42,8 +51,8 @@ void PartWatch::look(DistributedMesh& mesh) {
   }
   for (auto& one : excused_) narrow(one.first, one.second);
   std::erase_if(excused_, [](const auto& one) { return one.second.bits == 0; });
-  std::array<std::uint64_t, 4>
-      sums{};  // inverted; and what calls for a repair: by an inversion, angle, metric
+  // Inverted; and what calls for a repair: by an inversion, angle, metric, volume.
+  std::array<std::uint64_t, 5> sums{};
   for (const Bad& one : bad_) {
     const auto excuse = excused_.find(one.cell);
     const unsigned active = excuse == excused_.end() ? one.bits : one.bits & ~excuse->second.bits;
@@ -51,19 +60,21 @@ void PartWatch::look(DistributedMesh& mesh) {
     sums[1] += (active & kIsInverted) != 0 && triggers_.inverted ? 1 : 0;
     sums[2] += (active & kIsBelow) != 0 ? 1 : 0;
     sums[3] += (active & kHasMetric) != 0 ? 1 : 0;
+    sums[4] += (active & kIsSqueezed) != 0 ? 1 : 0;
   }
   worst_ = mesh.comm().sum_and_min(sums, worst);
   n_inverted_ = sums[0];
   cause_ = sums[1] > 0   ? RepairCause::kInverted
            : sums[2] > 0 ? RepairCause::kAngle
            : sums[3] > 0 ? RepairCause::kMetric
+           : sums[4] > 0 ? RepairCause::kJacobian
                          : RepairCause::kNone;
 }
 
-void PartWatch::excuse(DistributedMesh& mesh) {
+void PartWatch::follow(DistributedMesh& mesh, bool was_cut_short) {
   excused_.clear();
   look(mesh);
-  if (cause_ == RepairCause::kNone) return;
+  if (was_cut_short || cause_ == RepairCause::kNone) return;
   for (const Bad& one : bad_)
     if (const unsigned bits = one.bits & ~static_cast<unsigned>(kIsInverted); bits != 0)
       excused_[one.cell] = {bits, one.value};
@@ -92,6 +103,8 @@ unsigned PartWatch::badness(const TetMesh& part, CellHandle c, double value) con
         reported_quality(metric, part.point(v[0]), part.point(v[1]), part.point(v[2]), part.point(v[3]));
     if (metric == Metric::kMaxDihedral ? q > bound : q < bound) bits |= kHasMetric;
   }
+  if (triggers_.jacobian_ratio > 0 && volume(part, c) < triggers_.jacobian_ratio * rest_volume_[c.idx()])
+    bits |= kIsSqueezed;
   return bits;
 }
 

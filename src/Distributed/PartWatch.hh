@@ -3,7 +3,10 @@
 #define HFR_DISTRIBUTED_PART_WATCH_HH
 
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "Distributed/DistributedMesh.hh"
@@ -11,18 +14,22 @@
 
 namespace hfr::mpi {
 
-/// What is known of the cells of a rank, and of all: as CellWatch, which has more triggers. All ranks look at
-/// the same time.
+/// What is known of the cells of a rank, and of all: as CellWatch, which has triggers by an indicator, too.
+/// All ranks look at the same time.
 class PartWatch {
  public:
   /// `triggers` have to stay.
   PartWatch(const RepairTriggers& triggers, par::Policy policy);
 
+  /// Volumes at rest of own cells, in the order of numbers, where triggers.jacobian_ratio asks for them.
+  /// Before the first look at a mesh, and at one whose cells have other handles.
+  void set_rest_volumes(const DistributedMesh& mesh, std::span<const double> volumes);
   /// At own cells. What was excused stays so as long as it is bad for the same reason, and not much worse
   /// than it was left.
   void look(DistributedMesh& mesh);
-  /// After a repair: what it had to leave. The cells have handles of their own by now.
-  void excuse(DistributedMesh& mesh);
+  /// After a repair: looks at all, and what is bad and not inverted was left by it, unless it was cut short.
+  /// The cells have handles of their own by now.
+  void follow(DistributedMesh& mesh, bool was_cut_short);
 
   RepairCause cause() const { return cause_; }
   std::uint64_t n_inverted() const { return n_inverted_; }  ///< of all ranks
@@ -40,7 +47,7 @@ class PartWatch {
 
  private:
   /// Why a cell is bad, a bit each.
-  enum Reason : unsigned { kIsInverted = 1, kIsBelow = 2, kHasMetric = 4 };
+  enum Reason : unsigned { kIsInverted = 1, kIsBelow = 2, kHasMetric = 4, kIsSqueezed = 8 };
   struct Bad {
     CellHandle cell;
     double value = 0;
@@ -56,10 +63,11 @@ class PartWatch {
 
   const RepairTriggers& triggers_;
   par::Policy policy_;
-  double trigger_;                // decision value of triggers_.min_dihedral
-  std::vector<Bad> bad_;          // ascending
-  Excuses excused_;               // of cells that the last repair has left bad
-  std::uint64_t n_inverted_ = 0;  // over all ranks
+  double trigger_;                   // decision value of triggers_.min_dihedral
+  std::vector<Bad> bad_;             // ascending
+  std::vector<double> rest_volume_;  // by cell of the part, where asked for
+  Excuses excused_;                  // of cells that the last repair has left bad
+  std::uint64_t n_inverted_ = 0;     // over all ranks
   double worst_ = 0;
   RepairCause cause_ = RepairCause::kNone;
 };

@@ -7,30 +7,51 @@
 #include <map>
 #include <utility>
 
+#include "Distributed/Order.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/PartCoordinates.hh"
 #include "Distributed/PartFixes.hh"
 #include "Distributed/PartTransfer.hh"
 #include "Distributed/PartWatch.hh"
 #include "HalfFace/Errors.hh"
+#include "HalfFace/Geometry.hh"
 #include "Remesh/FixedParts.hh"
 #include "Remesh/MeanEdge.hh"
 #include "Remesh/SafeFraction.hh"
 #include "Remesh/Strategy.hh"
 
 namespace hfr::mpi {
+namespace {
+
+std::vector<std::uint64_t> numbers_of_own(const RankArrays& arrays, int rank) {
+  std::vector<std::uint64_t> numbers;
+  for (std::size_t i = 0; i < arrays.points.size(); ++i)
+    if (arrays.owner[i] == rank) numbers.push_back(arrays.vertex_number[i]);
+  return numbers;
+}
+
+}  // namespace
+
+struct Remesher::Before {
+  PartWatch::Excuses excuses;
+  std::vector<double> travelled;
+  double farthest = 0;
+  int steps = 0;
+  // From here on as the first repair has found it; the mesh has moved by then.
+  std::shared_ptr<const DistributedMesh> mesh;
+  std::vector<VertexHandle> points;
+  std::vector<Vec3> was;
+  std::vector<Field> fields;
+  Kept kept;
+  SurfaceOptions surface;
+};
 
 std::string reason_against(const RemesherOptions& options) {
   const RepairTriggers& triggers = options.triggers;
-  if (triggers.jacobian_ratio > 0) return "a trigger by the volume of cells";
   if (triggers.indicator || !triggers.indicator_field.empty()) return "triggers by an indicator";
   if (options.motion != Motion::kGiven) return "vertices that follow others";
   for (const FieldTransfer& field : options.fields)
     if (field.how == Transfer::kCallback) return "fields by callback";
-  if (options.ids) return "ids that never change";
-  // A repair that is cut short would have to be undone.
-  if (options.improve.time_limit < std::numeric_limits<double>::infinity()) return "time limits";
-  if (options.improve.cancel) return "repairs that may be cancelled";
   return reason_against(options.improve);
 }
 
@@ -49,9 +70,13 @@ Remesher::Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options
   kStepEffort.bound(options_.improve, static_cast<std::size_t>(mesh_->n_cells()));
   require_sound_coordinates(*mesh_, options_.improve.policy);
   watch_ = std::make_unique<PartWatch>(options_.triggers, options_.improve.policy);
+  begin_to_keep();
   watch_->look(*mesh_);
   PartFixes(*mesh_, options_.improve.surface).release();  // are they all there?
   if (options_.triggers.motion > 0) mean_edge_ = mean_edge();
+  const ImproveOptions& run = options_.improve;
+  const bool mine = run.cancel || run.time_limit < std::numeric_limits<double>::infinity();
+  may_be_cut_short_ = comm_.sum(mine ? 1 : 0) > 0;
 }
 Remesher::~Remesher() = default;
 
@@ -135,7 +160,7 @@ void Remesher::set_field(std::string_view name, std::span<const double> values, 
                                  " components on this rank, and another number of them elsewhere");
   field.n_components = n_components;
   field.values = std::vector<double>(values.begin(), values.end());  // which may be its own
-  if (of_vertices) tell_values(field);
+  if (of_vertices) tell_values(field.values, n_components);
 }
 
 /// As hfr::validate_fields() has it, of a mesh with properties of these names.
@@ -156,60 +181,37 @@ void Remesher::require_fields() const {
   validate_fields(named, transfers);
 }
 
-/// After a repair that has changed something: over it, and to the ranks that have the cells then.
-std::vector<FieldReport> Remesher::bring_fields_along(
-    std::shared_ptr<const DistributedMesh> old,
-    std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered) {
-  std::vector<PartField> fields;
-  for (const Field& field : fields_) {
-    PartField& own = fields.emplace_back(PartField{field.how, field.n_components, {}});
-    if (!is_of_vertices(field.how.how)) {
-      own.values = field.values;
-      continue;
-    }
-    for (std::size_t i = 0; i < points_.size(); ++i)
-      if (old->is_own(points_[i]))
-        own.values.insert(own.values.end(), field.values.data() + field.n_components * i,
-                          field.values.data() + field.n_components * (i + 1));
-  }
-  std::vector<FieldReport> reports =
-      transfer_in_parts(*old, *mesh_, renumbered, fields, options_.improve.policy);
-  old.reset();
-  const RankArrays arrays = renamed_arrays();
-  std::vector<std::uint64_t> vertices_had, vertices_wanted, cells_wanted;
-  for (std::size_t i = 0; i < arrays.points.size(); ++i)
-    if (arrays.owner[i] == comm_.rank()) vertices_had.push_back(arrays.vertex_number[i]);
-  rebuild(arrays);
-  for (VertexHandle v : points_)
-    if (mesh_->is_own(v)) vertices_wanted.push_back(mesh_->number(v));
-  for (CellHandle c : own_cells(*mesh_)) cells_wanted.push_back(mesh_->number(c));
-  for (std::size_t f = 0; f < fields.size(); ++f) {
-    const std::size_t width = fields[f].n_components;
-    if (!is_of_vertices(fields[f].how.how)) {
-      fields_[f].values = rows_where_wanted(comm_, mesh_->n_cells(), arrays.cell_number, fields[f].values,
-                                            width, cells_wanted);
-      continue;
-    }
-    const std::vector<double> own =
-        rows_where_wanted(comm_, mesh_->n_vertices(), vertices_had, fields[f].values, width, vertices_wanted);
-    fields_[f].values.assign(width * points_.size(), 0.0);
-    for (std::size_t i = 0, k = 0; i < points_.size(); ++i)
-      if (mesh_->is_own(points_[i]))
-        std::copy_n(own.data() + width * k++, width, fields_[f].values.data() + width * i);
-    tell_values(fields_[f]);
-  }
-  return reports;
+/// Of own vertices, in the order of their numbers, of what there is of all points. `mesh`: with their
+/// handles.
+template <class T>
+std::vector<T> Remesher::of_own_points(const DistributedMesh& mesh, const std::vector<T>& values,
+                                       std::size_t width) const {
+  std::vector<T> own;
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (mesh.is_own(points_[i]))
+      own.insert(own.end(), values.data() + width * i, values.data() + width * (i + 1));
+  return own;
+}
+
+/// The way back.
+template <class T>
+std::vector<T> Remesher::to_points(const std::vector<T>& own, std::size_t width) {
+  std::vector<T> values(width * points_.size());
+  for (std::size_t i = 0, k = 0; i < points_.size(); ++i)
+    if (mesh_->is_own(points_[i])) std::copy_n(own.data() + width * k++, width, values.data() + width * i);
+  tell_values(values, width);
+  return values;
 }
 
 /// Of own points, to the ranks that have them as well.
-void Remesher::tell_values(Field& field) {
-  const std::size_t width = field.n_components;
+template <class T>
+void Remesher::tell_values(std::vector<T>& values, std::size_t width) {
   const auto place = [&](VertexHandle v) { return std::ranges::lower_bound(points_, v) - points_.begin(); };
   std::vector<Packer> to(comm_.n_ranks());
   for (std::size_t r = 0; r < to.size(); ++r)
     for (VertexHandle v : held_by_[r]) {
       to[r].put(mesh_->number(v));
-      const double* row = field.values.data() + width * static_cast<std::size_t>(place(v));
+      const T* const row = values.data() + width * static_cast<std::size_t>(place(v));
       for (std::size_t k = 0; k < width; ++k) to[r].put(row[k]);
     }
   for (const Comm::Message& message : comm_.exchange(to))
@@ -218,10 +220,95 @@ void Remesher::tell_values(Field& field) {
       const auto at = static_cast<std::size_t>(place(v));
       const bool is_here = at < points_.size() && points_[at] == v;
       for (std::size_t k = 0; k < width; ++k) {
-        const auto value = in.get<double>();
-        if (is_here) field.values[width * at + k] = value;
+        const auto value = in.get<T>();
+        if (is_here) values[width * at + k] = value;
       }
     }
+}
+
+void Remesher::begin_to_keep() {
+  const std::vector<CellHandle> cells = own_cells(*mesh_);
+  if (options_.triggers.jacobian_ratio > 0)
+    for (CellHandle c : cells) kept_.rest_volume.push_back(volume(mesh_->part(), c));
+  watch_->set_rest_volumes(*mesh_, kept_.rest_volume);
+  if (!options_.ids) return;
+  for (VertexHandle v : points_) kept_.vertex_ids.push_back(mesh_->number(v));
+  for (CellHandle c : cells) kept_.cell_ids.push_back(mesh_->number(c));
+  next_vertex_id_ = mesh_->n_vertices();
+  next_cell_id_ = mesh_->n_cells();
+}
+
+/// Over a repair; of own vertices and cells. `now`: the arrays of the mesh after it.
+auto Remesher::kept_over(const DistributedMesh& old, Renumbered renumbered, const RankArrays& now) -> Kept {
+  const OldPlaces from = old_places(old, *mesh_, renumbered);
+  Kept kept;
+  if (options_.triggers.jacobian_ratio > 0) {
+    const std::vector<CellHandle> cells = own_cells(*mesh_);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      kept.rest_volume.push_back(from.cells[i] == OldPlaces::kCreated ? volume(mesh_->part(), cells[i])
+                                                                      : kept_.rest_volume[from.cells[i]]);
+  }
+  if (!options_.ids) return kept;
+  // What is created gets the next ones in the order of its numbers.
+  const auto ids_over = [&](const std::vector<std::uint64_t>& had, const std::vector<std::size_t>& places,
+                            const std::vector<std::uint64_t>& numbers, std::uint64_t& next) {
+    std::vector<OrderKey> created;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (places[i] == OldPlaces::kCreated) created.push_back({numbers[i], 0, 0, 0});
+    const std::vector<std::uint64_t> order = places_in_order(comm_, created);
+    std::vector<std::uint64_t> ids;
+    std::size_t k = 0;
+    for (const std::size_t place : places)
+      ids.push_back(place == OldPlaces::kCreated ? next + order[k++] : had[place]);
+    next += comm_.sum(created.size());
+    return ids;
+  };
+  kept.vertex_ids = ids_over(of_own_points(old, kept_.vertex_ids, 1), from.vertices,
+                             numbers_of_own(now, comm_.rank()), next_vertex_id_);
+  kept.cell_ids = ids_over(kept_.cell_ids, from.cells, now.cell_number, next_cell_id_);
+  return kept;
+}
+
+/// Fields, and what is kept, after a repair that has changed something: over it, and to the ranks that have
+/// the points and cells then. Makes the parts anew.
+std::vector<FieldReport> Remesher::bring_along(std::shared_ptr<const DistributedMesh> old,
+                                               Renumbered renumbered) {
+  std::vector<PartField> fields;
+  for (const Field& field : fields_)
+    fields.push_back({field.how, field.n_components,
+                      is_of_vertices(field.how.how) ? of_own_points(*old, field.values, field.n_components)
+                                                    : field.values});
+  std::vector<FieldReport> reports;
+  if (!fields.empty()) reports = transfer_in_parts(*old, *mesh_, renumbered, fields, options_.improve.policy);
+  const RankArrays arrays = renamed_arrays();
+  Kept kept;
+  if (keeps_values()) kept = kept_over(*old, renumbered, arrays);
+  old.reset();
+  const std::vector<std::uint64_t> vertices_had = numbers_of_own(arrays, comm_.rank());
+  rebuild(arrays);
+  std::vector<std::uint64_t> vertices_wanted, cells_wanted;
+  for (VertexHandle v : points_)
+    if (mesh_->is_own(v)) vertices_wanted.push_back(mesh_->number(v));
+  for (CellHandle c : own_cells(*mesh_)) cells_wanted.push_back(mesh_->number(c));
+  const auto of_vertices = [&]<class T>(const std::vector<T>& own, std::size_t width) {
+    return to_points(rows_where_wanted(comm_, mesh_->n_vertices(), vertices_had, std::span<const T>(own),
+                                       width, vertices_wanted),
+                     width);
+  };
+  const auto of_cells = [&]<class T>(const std::vector<T>& own, std::size_t width) {
+    return rows_where_wanted(comm_, mesh_->n_cells(), arrays.cell_number, std::span<const T>(own), width,
+                             cells_wanted);
+  };
+  for (std::size_t f = 0; f < fields.size(); ++f)
+    fields_[f].values = is_of_vertices(fields[f].how.how)
+                            ? of_vertices(fields[f].values, fields[f].n_components)
+                            : of_cells(fields[f].values, fields[f].n_components);
+  if (options_.triggers.jacobian_ratio > 0) kept_.rest_volume = of_cells(kept.rest_volume, 1);
+  if (options_.ids) {
+    kept_.vertex_ids = of_vertices(kept.vertex_ids, 1);
+    kept_.cell_ids = of_cells(kept.cell_ids, 1);
+  }
+  return reports;
 }
 
 /// The arrays of the mesh after a repair; what is fixed has their numbers from here on.
@@ -242,17 +329,27 @@ RepairCause Remesher::needs_repair() const {
   return every > 0 && steps_ >= every ? RepairCause::kSteps : RepairCause::kNone;
 }
 
-void Remesher::repair(PartsStep& result) {
+/// False where the run was cut short.
+bool Remesher::repair(PartsStep& result) {
   if (result.repairs.empty()) result.cause = needs_repair();
   PartsRepair& repair = result.repairs.emplace_back();
   std::vector<std::uint64_t> numbers;
   for (VertexHandle v : points_) numbers.push_back(mesh_->number(v));
   std::shared_ptr<const DistributedMesh> old;
-  if (!fields_.empty()) old = mesh_->copy();
+  const bool is_first = before_ && !before_->mesh;
+  if (!fields_.empty() || keeps_values() || is_first) old = mesh_->copy();
+  if (is_first) {
+    before_->mesh = old;
+    before_->points = points_;
+    before_->was = was_;
+    before_->fields.assign(fields_.begin(), fields_.begin() + std::ssize(options_.fields));
+    before_->kept = kept_;
+    before_->surface = options_.improve.surface;
+  }
   std::vector<std::pair<std::uint64_t, std::uint64_t>> renumbered;
   repair.run = improve(*mesh_, options_.improve, &renumbered);
   if (repair.run.changed && old) {
-    repair.fields = bring_fields_along(std::move(old), renumbered);
+    repair.fields = bring_along(std::move(old), renumbered);
   } else if (repair.run.changed) {
     rebuild(renamed_arrays());
   } else {  // but vertices may have gone to other ranks and back
@@ -260,10 +357,33 @@ void Remesher::repair(PartsStep& result) {
     held_by_ = mesh_->held_by_others();
   }
   result.changed = result.changed || repair.run.changed;
-  watch_->excuse(*mesh_);
+  result.stop = repair.run.stop;
+  const bool was_cut_short = result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled;
+  watch_->set_rest_volumes(*mesh_, kept_.rest_volume);
+  watch_->follow(*mesh_, was_cut_short);
   std::ranges::fill(travelled_, 0.0);
   farthest_ = 0;
   steps_ = 0;
+  return !was_cut_short;
+}
+
+/// As it was before the step, in which there was a repair.
+void Remesher::undo() {
+  Before before = std::move(*before_);
+  mesh_->put_back(*before.mesh);
+  points_ = std::move(before.points);
+  held_by_ = mesh_->held_by_others();
+  was_ = std::move(before.was);
+  put_points_back();
+  fields_ = std::move(before.fields);
+  kept_ = std::move(before.kept);
+  options_.improve.surface = std::move(before.surface);
+  travelled_ = std::move(before.travelled);
+  farthest_ = before.farthest;
+  steps_ = before.steps;
+  watch_->set_rest_volumes(*mesh_, kept_.rest_volume);
+  watch_->set_excuses(std::move(before.excuses));
+  watch_->look(*mesh_);
 }
 
 /// As hfr::Remesher takes it.
@@ -331,7 +451,7 @@ void Remesher::run_step(std::span<const Vec3> displacement, PartsStep& result) {
       left.values.insert(left.values.end(), {one.x, one.y, one.z});
     }
     fields_.push_back(std::move(left));
-    repair(result);
+    const bool finished = repair(result);
     // The part that was taken inverts nothing; what is left of it would.
     if (result.cause == RepairCause::kNone) result.cause = RepairCause::kInverted;
     const std::vector<double> values = std::move(fields_.back().values);
@@ -342,6 +462,7 @@ void Remesher::run_step(std::span<const Vec3> displacement, PartsStep& result) {
     rest.clear();
     for (std::size_t k = 0; k < values.size(); k += 3)
       rest.push_back({values[k], values[k + 1], values[k + 2]});
+    if (!finished) return;
     if (move.fraction == 0 && !has_changed) i = options_.max_substeps - 1;
   }
   ++steps_;
@@ -363,7 +484,25 @@ PartsStep Remesher::step(std::span<const Vec3> displacement) {
     n_moved += mesh_->is_own(points_[i]) && d != Vec3{} ? 1 : 0;
   }
   result.n_moved = comm_.sum(n_moved);
+  const std::uint64_t inverted_before = watch_->n_inverted();
+  was_.clear();
+  if (may_be_cut_short_) {
+    before_ = std::make_unique<Before>();
+    before_->excuses = watch_->excuses();
+    before_->travelled = travelled_;
+    before_->farthest = farthest_;
+    before_->steps = steps_;
+  }
   run_step(displacement, result);
+  const bool was_cut_short = result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled;
+  if (was_cut_short && watch_->n_inverted() > inverted_before) {
+    undo();
+    result.undone = true;
+    result.changed = false;
+    result.fraction = 0;
+    result.repairs.clear();
+  }
+  before_.reset();
   result.min_dihedral = watch_->min_dihedral();
   result.n_inverted = watch_->n_inverted();
   return result;

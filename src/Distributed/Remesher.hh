@@ -36,6 +36,10 @@ struct PartsStep {
   std::vector<PartsRepair> repairs;  ///< one, but for sub-steps
   double min_dihedral = 0;           ///< after it, degrees
   std::uint64_t n_inverted = 0;      ///< after it: cells that are inverted or flat
+  Stop stop = Stop::kNoProgress;     ///< of the last repair; kTimeLimit and kCancelled end the step
+  /// The step was ended by a time limit or a caller while there were more inverted cells than before it, so
+  /// mesh, parts and fields are as they were then.
+  bool undone = false;
 };
 
 /// What of these options is not there in parts, as in "a Remesher in parts does not have …"; empty where all
@@ -47,10 +51,11 @@ std::string reason_against(const RemesherOptions& options);
 /// ranks call each function at the same time; where one throws, the others throw RankFailed with their next
 /// call, and the object is of no further use.
 ///
-/// There are the triggers min_dihedral, metrics, inverted, motion and every. What options.improve.surface
-/// fixes is named by numbers of vertices in the whole, and stays so when these change. Throws InvalidInput
-/// for what reason_against() names: other triggers, vertices that follow, fields by callback, ids, time
-/// limits, cancelling, and what mpi::improve() does not have. A step looks at all cells of a rank.
+/// There are all triggers but those by an indicator. What options.improve.surface fixes is named by numbers
+/// of vertices in the whole, and stays so when these change. Time limits and callbacks may be others on each
+/// rank (see mpi::improve()); where one has any, a step that repairs keeps a copy to go back to. Throws
+/// InvalidInput for what reason_against() names: triggers by an indicator, vertices that follow, fields by
+/// callback, and what mpi::improve() does not have. A step looks at all cells of a rank.
 ///
 /// Fields, of numbers of double precision, are not properties here: set_field() gives the values that a rank
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
@@ -84,6 +89,10 @@ class Remesher {
   /// again or a step has `changed`. Throws InvalidInput for a field that the options do not name. Each rank
   /// may call it by itself.
   std::span<const double> field(std::string_view name) const;
+  /// With RemesherOptions::ids: of each point of arrays(), and of each of its cells, the ids that
+  /// hfr::Remesher gives. In the beginning they are the numbers. Good until a step has `changed`.
+  std::span<const std::uint64_t> vertex_ids() const { return kept_.vertex_ids; }
+  std::span<const std::uint64_t> cell_ids() const { return kept_.cell_ids; }
   /// The parts as they are, to be written or checked.
   DistributedMesh& mesh() { return *mesh_; }
 
@@ -105,24 +114,46 @@ class Remesher {
     std::size_t n_components = 0;  ///< 0: has no values yet
     std::vector<double> values;    ///< as arrays() has points, or cells
   };
+  /// What is kept of each thing over repairs, where asked for.
+  struct Kept {
+    std::vector<double> rest_volume;        ///< by own cell
+    std::vector<std::uint64_t> vertex_ids;  ///< by point of arrays()
+    std::vector<std::uint64_t> cell_ids;    ///< by own cell
+  };
+  /// All that a step may have to take back.
+  struct Before;
+  using Renumbered = std::span<const std::pair<std::uint64_t, std::uint64_t>>;
+
   const Field& named(std::string_view name) const;
   void require_fields() const;
-  void tell_values(Field& field);
+  template <class T>
+  void tell_values(std::vector<T>& values, std::size_t width);
+  template <class T>
+  std::vector<T> of_own_points(const DistributedMesh& mesh, const std::vector<T>& values,
+                               std::size_t width) const;
+  template <class T>
+  std::vector<T> to_points(const std::vector<T>& own, std::size_t width);
+  bool keeps_values() const { return options_.triggers.jacobian_ratio > 0 || options_.ids; }
+  void begin_to_keep();
+  Kept kept_over(const DistributedMesh& old, Renumbered renumbered, const RankArrays& now);
   RankArrays renamed_arrays();
-  void repair(PartsStep& result);
-  std::vector<FieldReport> bring_fields_along(
-      std::shared_ptr<const DistributedMesh> old,
-      std::span<const std::pair<std::uint64_t, std::uint64_t>> renumbered);
+  bool repair(PartsStep& result);
+  std::vector<FieldReport> bring_along(std::shared_ptr<const DistributedMesh> old, Renumbered renumbered);
+  void undo();
 
   Comm& comm_;
   RemesherOptions options_;
   std::unique_ptr<DistributedMesh> mesh_;
   std::unique_ptr<PartWatch> watch_;
   std::vector<Field> fields_;
+  Kept kept_;
+  std::uint64_t next_vertex_id_ = 0, next_cell_id_ = 0;
+  bool may_be_cut_short_ = false;     // on any rank
+  std::unique_ptr<Before> before_;    // the step in progress, where it may be
   std::vector<VertexHandle> points_;  // those of arrays()
   /// Own vertices that other ranks hold, by rank.
   std::vector<std::vector<VertexHandle>> held_by_;
-  std::vector<Vec3> was_;          // points before the move, by vertex
+  std::vector<Vec3> was_;          // points before the move, by vertex; none where nothing has moved
   std::vector<double> travelled_;  // by own point since the last repair, where asked for
   double mean_edge_ = 0, farthest_ = 0;
   int steps_ = 0;  // since the last repair
