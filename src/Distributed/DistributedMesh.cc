@@ -102,7 +102,8 @@ void DistributedMesh::complete_rim() {
       if (!mesh_.incident_cell(v).is_valid()) writer.set_incident_cell(v, CellHandle(c));
 }
 
-Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells) {
+Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells,
+                                 Inverted inverted) {
   n_slots_ = n_cells;
   n_vertices_ = n_vertices;
   free_.clear();
@@ -125,7 +126,7 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
   work_.claim.assign(mesh_.n_cells(), kUnclaimed);
   start_zone();
   find_pinched();
-  return orient(*this, std::move(piece.turned));
+  return orient(*this, std::move(piece.turned), inverted);
 }
 
 /// Of vertices further away a part does not hold all cells. Where any rank has a pinched one, all keep bytes.

@@ -45,6 +45,10 @@ struct Turned {
   std::uint64_t n_alone = 0;  ///< cells that were turned and not with the whole, or the other way round
 };
 
+/// Whether what hangs together and has more negative cells than positive ones is turned, as build() does, or
+/// stays inverted.
+enum class Inverted : std::uint8_t { kTurn, kKeep };
+
 /// A mesh that is cut among the ranks. Each vertex has an owner, the same in all passes; a cell belongs to
 /// the owner of its vertex with the smallest number. A rank holds the cells with a vertex of its own and two
 /// layers of cells round them: all that have a vertex within two edges of its own ones. That is what it takes
@@ -82,7 +86,8 @@ class DistributedMesh : private detail::PartState {
   };
   /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
   /// qualities yet. Cells are turned as build() does; throws InvalidInput for a mesh that cannot be oriented.
-  Turned assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells);
+  Turned assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells,
+                  Inverted inverted = Inverted::kTurn);
   /// After assemble(), for what a file says of vertices, edges and faces: each on the rank that owns its
   /// smallest vertex, with its place in the file as its number, maybe several times. Of several labels of a
   /// vertex the first one counts, of an edge or a face the last one, which has the place and the order of the
@@ -107,7 +112,8 @@ class DistributedMesh : private detail::PartState {
   /// Of this part, to come back to: some 50 bytes a cell. It answers no questions on what lies near.
   std::shared_ptr<const DistributedMesh> copy() const;
   /// Makes it what the copy is, all cells pending, without qualities, and all vertices changed now. What the
-  /// workspace has of the run goes on: clock, floor, and whether damage is held. All take part.
+  /// workspace has of the run goes on: clock, floor, and whether damage is held. The copy may be one of
+  /// another mesh of the same ranks. All take part.
   void put_back(const DistributedMesh& copy);
 
   /// Gives cells other numbers, to[slot] for each slot, and the slots the order of these; see is_dense().

@@ -396,7 +396,8 @@ void Incoming::hand_to_owners(Incoming& to) {
   if (&to == this) keep_near(0);
 }
 
-std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::filesystem::path& file) {
+std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::filesystem::path& file,
+                                              Inverted inverted) {
   unite();
   for (int edges = 1; edges <= 2; ++edges) {
     const Sets near = near_own(edges);
@@ -408,7 +409,7 @@ std::vector<std::string> Incoming::make_parts(DistributedMesh& mesh, const std::
   }
   std::vector<std::string> notes;
   try {
-    const Turned turned = mesh.assemble(piece(), n_points_, n_cells_);
+    const Turned turned = mesh.assemble(piece(), n_points_, n_cells_, inverted);
     if (turned.whole) notes.push_back("orders all cells the other way round; they were flipped as a whole");
     if (turned.n_alone > 0)
       notes.push_back(std::to_string(turned.n_alone) +

@@ -64,7 +64,8 @@ class Incoming {
   void hand_to_owners(Incoming& to);
   /// From what owners have to the parts. Returns notes on labels. All take part. Throws InvalidInput, which
   /// names `file`, for what a mesh in parts cannot have.
-  std::vector<std::string> make_parts(DistributedMesh& mesh, const std::filesystem::path& file);
+  std::vector<std::string> make_parts(DistributedMesh& mesh, const std::filesystem::path& file,
+                                      Inverted inverted = Inverted::kTurn);
 
  private:
   /// A cell by the places of its corners in points_, or in those of a message.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -115,9 +114,11 @@ class PartTransfer {
     own_old_vertices_ = numbers_of(old_, own_vertices(old_));
     own_old_cells_ = numbers_of(old_, own_cells(old_));
     from_ = places_before(old_, now_, changes_);
-    for (CellHandle c : own_cells_)
-      if (const CellHandle was = changes_.old_cell(c); !was.is_valid() || changes_.has_moved(was, c))
-        changed_.push_back({c, was});
+    for (std::size_t i = 0; i < own_cells_.size(); ++i) {
+      const bool is_new = from_.cells[i] == OldPlaces::kCreated;
+      const CellHandle was = is_new ? CellHandle() : old_.cell_at(own_old_cells_[from_.cells[i]]);
+      if (is_new || changes_.has_moved(was, own_cells_[i])) changed_.push_back({own_cells_[i], was});
+    }
   }
 
   /// As find_near_vertices() of Edits.cc; after each layer others learn of it.

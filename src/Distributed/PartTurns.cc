@@ -199,7 +199,7 @@ double six_volume(const TetMesh& part, CellHandle c) {
 
 }  // namespace
 
-Turned orient(DistributedMesh& parts, Flags turned) {
+Turned orient(DistributedMesh& parts, Flags turned, Inverted inverted) {
   TetMesh& part = parts.part();
   Comm& comm = parts.comm();
   const auto count_own = [&](auto&& counts) {
@@ -211,7 +211,11 @@ Turned orient(DistributedMesh& parts, Flags turned) {
     return comm.sum(n);
   };
   const bool conflict = comm.sum(std::count(turned.begin(), turned.end(), 1) > 0 ? 1 : 0) > 0;
-  if (!conflict && count_own([&](CellHandle c) { return six_volume(part, c) < 0; }) == 0) return {};
+  const auto has_none_to_turn = [&] {
+    return inverted == Inverted::kKeep ||
+           count_own([&](CellHandle c) { return six_volume(part, c) < 0; }) == 0;
+  };
+  if (!conflict && has_none_to_turn()) return {};
   const Components components(parts, turned);
   Flags now(part.n_cells(), 0), turns(part.n_cells(), 0);  // beside what was read; beside what is there
   if (conflict) {
@@ -228,8 +232,7 @@ Turned orient(DistributedMesh& parts, Flags turned) {
     }
     turn(part, turns);
   }
-  if (count_own([&](CellHandle c) { return six_volume(part, c) < 0; }) == 0)
-    return {false, count_own([&](CellHandle c) { return now[c.idx()] != 0; })};
+  if (has_none_to_turn()) return {false, count_own([&](CellHandle c) { return now[c.idx()] != 0; })};
   const Decision negative =
       decide_turns(comm, own_sides(parts, components, [&](CellHandle c) {
                      const double volume = six_volume(part, c);

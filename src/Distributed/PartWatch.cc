@@ -81,6 +81,16 @@ void PartWatch::follow(DistributedMesh& mesh, bool was_cut_short) {
   look(mesh);
 }
 
+std::uint64_t PartWatch::count_inverted(const DistributedMesh& mesh) {
+  const TetMesh& part = mesh.part();
+  std::uint64_t n = 0;
+  for_decisions(part, MinDihedral{}, 0, part.n_cells(), [&](std::size_t i, double value) {
+    const CellHandle c(i);
+    n += !(value > 0) && !part.is_deleted(c) && mesh.is_own(c) ? 1 : 0;
+  });
+  return mesh.comm().sum(n);
+}
+
 double PartWatch::min_dihedral() const {
   return report_value(Metric::kMinDihedral, std::min(kRegularDihedral, worst_));
 }

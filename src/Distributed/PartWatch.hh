@@ -31,6 +31,9 @@ class PartWatch {
   /// The cells have handles of their own by now.
   void follow(DistributedMesh& mesh, bool was_cut_short);
 
+  /// Inverted and flat cells of all ranks, by the same measure, whatever handles they have.
+  static std::uint64_t count_inverted(const DistributedMesh& mesh);
+
   RepairCause cause() const { return cause_; }
   std::uint64_t n_inverted() const { return n_inverted_; }  ///< of all ranks
   double min_dihedral() const;                              ///< of all ranks, degrees

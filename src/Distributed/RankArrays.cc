@@ -109,7 +109,8 @@ void add_labels(Comm& comm, const RankArrays& arrays, Incoming& incoming) {
 
 }  // namespace
 
-std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays, Keep keep) {
+std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays, Keep keep,
+                                     Inverted inverted) {
   Comm& comm = mesh.comm();
   const Comm::InPhase phase(comm, Phase::kHandOut);
   require_sound(arrays);
@@ -122,7 +123,7 @@ std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& ar
   if (keep == Keep::kIfEven) incoming.even_out();
   add_labels(comm, arrays, incoming);
   incoming.hand_to_owners(incoming);
-  return incoming.make_parts(mesh, "the arrays");
+  return incoming.make_parts(mesh, "the arrays", inverted);
 }
 
 RankArrays own_arrays(DistributedMesh& mesh) {

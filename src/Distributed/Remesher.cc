@@ -30,9 +30,12 @@ std::vector<std::uint64_t> numbers_of_own(const RankArrays& arrays, int rank) {
   return numbers;
 }
 
+bool was_cut_short(Stop stop) { return stop == Stop::kTimeLimit || stop == Stop::kCancelled; }
+
 }  // namespace
 
 struct Remesher::Before {
+  std::uint64_t n_inverted = 0;
   PartWatch::Excuses excuses;
   std::vector<double> travelled;
   double farthest = 0;
@@ -66,7 +69,7 @@ Remesher::Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options
                   "field '" + field.name + "' is named twice: in parts each name stands for one");
     fields_.push_back({field, 0, {}});
   }
-  rebuild(arrays);
+  rebuild(arrays, Inverted::kTurn);
   kStepEffort.bound(options_.improve, static_cast<std::size_t>(mesh_->n_cells()));
   require_sound_coordinates(*mesh_, options_.improve.policy);
   watch_ = std::make_unique<PartWatch>(options_.triggers, options_.improve.policy);
@@ -93,12 +96,12 @@ double Remesher::mean_edge() const {
   return MeanEdge::of(all, static_cast<std::size_t>(mesh_->n_cells()));
 }
 
-void Remesher::rebuild(const RankArrays& arrays) {
+void Remesher::rebuild(const RankArrays& arrays, Inverted inverted) {
   std::map<std::pair<int, int>, std::string> names;
   if (mesh_) names = std::move(mesh_->part().labels().names);
   mesh_.reset();
   mesh_ = std::make_unique<DistributedMesh>(comm_);
-  from_arrays(*mesh_, arrays, Keep::kIfEven);
+  from_arrays(*mesh_, arrays, Keep::kIfEven, inverted);
   mesh_->part().labels().names = std::move(names);
   points_.clear();
   for (std::uint64_t number : own_arrays(*mesh_).vertex_number) points_.push_back(mesh_->vertex_at(number));
@@ -285,7 +288,7 @@ std::vector<FieldReport> Remesher::bring_along(std::shared_ptr<const Distributed
   if (keeps_values()) kept = kept_over(*old, renumbered, arrays);
   old.reset();
   const std::vector<std::uint64_t> vertices_had = numbers_of_own(arrays, comm_.rank());
-  rebuild(arrays);
+  rebuild(arrays, Inverted::kKeep);
   std::vector<std::uint64_t> vertices_wanted, cells_wanted;
   for (VertexHandle v : points_)
     if (mesh_->is_own(v)) vertices_wanted.push_back(mesh_->number(v));
@@ -329,47 +332,54 @@ RepairCause Remesher::needs_repair() const {
   return every > 0 && steps_ >= every ? RepairCause::kSteps : RepairCause::kNone;
 }
 
-/// False where the run was cut short.
-bool Remesher::repair(PartsStep& result) {
+/// False where the run was cut short; then the step may be undone. `is_last`: of the step.
+bool Remesher::repair(PartsStep& result, bool is_last) {
   if (result.repairs.empty()) result.cause = needs_repair();
   PartsRepair& repair = result.repairs.emplace_back();
   std::vector<std::uint64_t> numbers;
   for (VertexHandle v : points_) numbers.push_back(mesh_->number(v));
-  std::shared_ptr<const DistributedMesh> old;
+  const bool brings_along = !fields_.empty() || keeps_values();
   const bool is_first = before_ && !before_->mesh;
-  if (!fields_.empty() || keeps_values() || is_first) old = mesh_->copy();
+  std::shared_ptr<const DistributedMesh> old;
+  if (brings_along || is_first) old = mesh_->copy();
   if (is_first) {
     before_->mesh = old;
     before_->points = points_;
-    before_->was = was_;
+    before_->was = std::move(was_);
     before_->fields.assign(fields_.begin(), fields_.begin() + std::ssize(options_.fields));
     before_->kept = kept_;
     before_->surface = options_.improve.surface;
   }
   std::vector<std::pair<std::uint64_t, std::uint64_t>> renumbered;
   repair.run = improve(*mesh_, options_.improve, &renumbered);
-  if (repair.run.changed && old) {
+  result.stop = repair.run.stop;
+  const bool is_cut_short = was_cut_short(result.stop);
+  if (is_cut_short && PartWatch::count_inverted(*mesh_) > before_->n_inverted) {
+    undo(result);
+    return false;
+  }
+  if (is_cut_short || is_last) before_.reset();
+  if (repair.run.changed && brings_along) {
     repair.fields = bring_along(std::move(old), renumbered);
   } else if (repair.run.changed) {
-    rebuild(renamed_arrays());
+    rebuild(renamed_arrays(), Inverted::kKeep);
   } else {  // but vertices may have gone to other ranks and back
     std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
     held_by_ = mesh_->held_by_others();
   }
   result.changed = result.changed || repair.run.changed;
-  result.stop = repair.run.stop;
-  const bool was_cut_short = result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled;
   watch_->set_rest_volumes(*mesh_, kept_.rest_volume);
-  watch_->follow(*mesh_, was_cut_short);
+  watch_->follow(*mesh_, is_cut_short);
   std::ranges::fill(travelled_, 0.0);
   farthest_ = 0;
   steps_ = 0;
-  return !was_cut_short;
+  return !is_cut_short;
 }
 
-/// As it was before the step, in which there was a repair.
-void Remesher::undo() {
+/// All is as it was before the step.
+void Remesher::undo(PartsStep& result) {
   Before before = std::move(*before_);
+  before_.reset();
   mesh_->put_back(*before.mesh);
   points_ = std::move(before.points);
   held_by_ = mesh_->held_by_others();
@@ -384,6 +394,10 @@ void Remesher::undo() {
   watch_->set_rest_volumes(*mesh_, kept_.rest_volume);
   watch_->set_excuses(std::move(before.excuses));
   watch_->look(*mesh_);
+  result.undone = true;
+  result.changed = false;
+  result.fraction = 0;
+  result.repairs.clear();
 }
 
 /// As hfr::Remesher takes it.
@@ -451,9 +465,10 @@ void Remesher::run_step(std::span<const Vec3> displacement, PartsStep& result) {
       left.values.insert(left.values.end(), {one.x, one.y, one.z});
     }
     fields_.push_back(std::move(left));
-    const bool finished = repair(result);
+    const bool finished = repair(result, false);
     // The part that was taken inverts nothing; what is left of it would.
     if (result.cause == RepairCause::kNone) result.cause = RepairCause::kInverted;
+    if (result.undone) return;
     const std::vector<double> values = std::move(fields_.back().values);
     fields_.pop_back();
     std::vector<FieldReport>& reports = result.repairs.back().fields;
@@ -466,7 +481,7 @@ void Remesher::run_step(std::span<const Vec3> displacement, PartsStep& result) {
     if (move.fraction == 0 && !has_changed) i = options_.max_substeps - 1;
   }
   ++steps_;
-  if (needs_repair() != RepairCause::kNone) repair(result);
+  if (needs_repair() != RepairCause::kNone) repair(result, true);
 }
 
 PartsStep Remesher::step(std::span<const Vec3> displacement) {
@@ -484,24 +499,16 @@ PartsStep Remesher::step(std::span<const Vec3> displacement) {
     n_moved += mesh_->is_own(points_[i]) && d != Vec3{} ? 1 : 0;
   }
   result.n_moved = comm_.sum(n_moved);
-  const std::uint64_t inverted_before = watch_->n_inverted();
   was_.clear();
   if (may_be_cut_short_) {
     before_ = std::make_unique<Before>();
+    before_->n_inverted = watch_->n_inverted();
     before_->excuses = watch_->excuses();
     before_->travelled = travelled_;
     before_->farthest = farthest_;
     before_->steps = steps_;
   }
   run_step(displacement, result);
-  const bool was_cut_short = result.stop == Stop::kTimeLimit || result.stop == Stop::kCancelled;
-  if (was_cut_short && watch_->n_inverted() > inverted_before) {
-    undo();
-    result.undone = true;
-    result.changed = false;
-    result.fraction = 0;
-    result.repairs.clear();
-  }
   before_.reset();
   result.min_dihedral = watch_->min_dihedral();
   result.n_inverted = watch_->n_inverted();

@@ -38,7 +38,7 @@ struct PartsStep {
   std::uint64_t n_inverted = 0;      ///< after it: cells that are inverted or flat
   Stop stop = Stop::kNoProgress;     ///< of the last repair; kTimeLimit and kCancelled end the step
   /// The step was ended by a time limit or a caller while there were more inverted cells than before it, so
-  /// mesh, parts and fields are as they were then.
+  /// mesh, parts, fields and ids are as they were then. Ids that it gave are not given again.
   bool undone = false;
 };
 
@@ -47,13 +47,15 @@ struct PartsStep {
 std::string reason_against(const RemesherOptions& options);
 
 /// Moves a mesh in parts, looks at what has become of it, and repairs it where a trigger calls for that: step
-/// by step the mesh that hfr::Remesher makes, to the last bit, for each number of ranks and threads. All
+/// by step the mesh that hfr::Remesher makes, to the last bit, for each number of ranks and threads, unless a
+/// clock ends one of them earlier. All
 /// ranks call each function at the same time; where one throws, the others throw RankFailed with their next
 /// call, and the object is of no further use.
 ///
 /// There are all triggers but those by an indicator. What options.improve.surface fixes is named by numbers
-/// of vertices in the whole, and stays so when these change. Time limits and callbacks may be others on each
-/// rank (see mpi::improve()); where one has any, a step that repairs keeps a copy to go back to. Throws
+/// of vertices in the whole, and stays so when these change. Each rank may have a time limit and callbacks of
+/// its own, or none (see mpi::improve()); where one has any, a step that repairs keeps a copy of part, fields
+/// and ids to go back to. Throws
 /// InvalidInput for what reason_against() names: triggers by an indicator, vertices that follow, fields by
 /// callback, and what mpi::improve() does not have. A step looks at all cells of a rank.
 ///
@@ -61,10 +63,11 @@ std::string reason_against(const RemesherOptions& options);
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
 class Remesher {
  public:
-  /// Of what from_arrays() takes, which says what it throws; `options` are the same on all ranks.
-  /// InvalidInput also for a field that is named twice, for what is named as fixed and not there, and for
-  /// coordinates that nothing can be decided from, which hfr::improve() refuses. Here and after each repair
-  /// that has changed something, cells stay where they are if parts are even (Keep::kIfEven).
+  /// Of what from_arrays() takes, which says what it throws; `options` are the same on all ranks, but for
+  /// time limits and callbacks. InvalidInput also for a field that is named twice, for what is named as fixed
+  /// and not there, and for coordinates that nothing can be decided from, which hfr::improve() refuses. Here
+  /// and after each repair that has changed something, cells stay where they are if parts are even
+  /// (Keep::kIfEven).
   Remesher(Comm& comm, const RankArrays& arrays, RemesherOptions options = {});
   ~Remesher();
   Remesher(const Remesher&) = delete;
@@ -86,18 +89,19 @@ class Remesher {
   /// components than other ranks give.
   void set_field(std::string_view name, std::span<const double> values, std::size_t n_components = 1);
   /// The same as it is now, also of points of others; none before set_field(). Good until that is called
-  /// again or a step has `changed`. Throws InvalidInput for a field that the options do not name. Each rank
-  /// may call it by itself.
+  /// again or a step has `changed` or was `undone`. Throws InvalidInput for a field that the options do not
+  /// name. Each rank may call it by itself.
   std::span<const double> field(std::string_view name) const;
   /// With RemesherOptions::ids: of each point of arrays(), and of each of its cells, the ids that
-  /// hfr::Remesher gives. In the beginning they are the numbers. Good until a step has `changed`.
+  /// hfr::Remesher gives. In the beginning they are the numbers. Good until a step has `changed` or was
+  /// `undone`.
   std::span<const std::uint64_t> vertex_ids() const { return kept_.vertex_ids; }
   std::span<const std::uint64_t> cell_ids() const { return kept_.cell_ids; }
-  /// The parts as they are, to be written or checked.
+  /// The parts as they are, to be written or checked. Good until a step has `changed` or was `undone`.
   DistributedMesh& mesh() { return *mesh_; }
 
  private:
-  void rebuild(const RankArrays& arrays);
+  void rebuild(const RankArrays& arrays, Inverted inverted);
   struct Move {
     double fraction = 1;
     std::vector<std::uint64_t> refused;
@@ -137,9 +141,9 @@ class Remesher {
   void begin_to_keep();
   Kept kept_over(const DistributedMesh& old, Renumbered renumbered, const RankArrays& now);
   RankArrays renamed_arrays();
-  bool repair(PartsStep& result);
+  bool repair(PartsStep& result, bool is_last);
   std::vector<FieldReport> bring_along(std::shared_ptr<const DistributedMesh> old, Renumbered renumbered);
-  void undo();
+  void undo(PartsStep& result);
 
   Comm& comm_;
   RemesherOptions options_;

@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -173,13 +174,14 @@ void expect_same_ids(const Remesher& alone, const mpi::Remesher& together, const
 /// Returns how many steps have repaired.
 template <class Displacement>
 int expect_same_steps(const TetMesh& input, const RemesherOptions& options, int n_steps,
-                      Displacement&& displacement, int* n_refused = nullptr, int* n_undone = nullptr) {
+                      Displacement&& displacement, int* n_refused = nullptr, int* n_undone = nullptr,
+                      const RemesherOptions* in_parts = nullptr, const std::function<void()>& between = {}) {
   mpi::Comm comm(MPI_COMM_WORLD);
   TetMesh whole = input;
   std::optional<Fields> fields;
   if (!options.fields.empty()) fields.emplace(whole);
   Remesher alone(whole, options);
-  mpi::Remesher together(comm, slab_of(input, comm), options);
+  mpi::Remesher together(comm, slab_of(input, comm), in_parts ? *in_parts : options);
   RankArrays mine = together.arrays();
   const bool is_manifold = mpi::check(together.mesh()).is_good;
   if (fields) fields->give(together, mine, comm.rank());
@@ -191,6 +193,7 @@ int expect_same_steps(const TetMesh& input, const RemesherOptions& options, int 
     for (std::size_t i = 0; i < of_mine.size(); ++i)
       if (mine.owner[i] != comm.rank()) of_mine[i] = {9, 9, 9};  // which does not count
     const StepResult a = alone.step(of_whole);
+    if (between) between();
     const mpi::PartsStep b = together.step(of_mine);
     EXPECT_EQ(a.cause, b.cause) << "step " << step;
     EXPECT_EQ(a.changed, b.changed) << "step " << step;
@@ -292,9 +295,18 @@ TEST(PartRemesher, RepairsByVolumeAreThoseOfSharedMemory) {
   const int n = expect_same_steps(valid_box(6, 0.1, 2), options, 12, move);
   EXPECT_GE(n, 3);
   EXPECT_LT(n, 12);
-  options.improve.min_dihedral.reset();  // over all cells, which are scattered
+  options.improve.min_dihedral.reset();  // over all cells
   options.ids = true;
   EXPECT_GE(expect_same_steps(valid_box(5, 0.1, 2), options, 8, move), 2);
+}
+
+/// Made while the box is drawn out: let go again, they have less volume than then, and others as much as
+/// ever.
+TEST(PartRemesher, CellsThatARepairHasMadeHaveTheirOwnVolumesAtRest) {
+  RemesherOptions options = towards(20, 15);
+  options.triggers.jacobian_ratio = 0.5;
+  const auto move = [](int step, Vec3 p) { return Vec3{0, 0, step == 0 ? 3 * p.z : -0.75 * p.z}; };
+  EXPECT_EQ(expect_same_steps(valid_box(6, 0.1, 2), options, 2, move), 2);
 }
 
 TEST(PartRemesher, IdsAreThoseOfSharedMemory) {
@@ -329,7 +341,85 @@ TEST(PartRemesher, StepsThatAreCutShortAreThoseOfSharedMemory) {
   EXPECT_GE(n_undone, 1);
   options.improve.cancel = {};
   options.improve.time_limit = 1e-9;
-  expect_same_steps(valid_box(6, 0.1, 3), options, 4, move, nullptr, &n_undone);
+  options.on_inversion = OnInversion::kRepair;
+  n_undone = 0;
+  const auto fold = [&](int i, Vec3 p) { return swirl(p, i == 1 ? 0.5 : 0.04); };
+  expect_same_steps(valid_box(6, 0.1, 3), options, 2, fold, nullptr, &n_undone);
+  EXPECT_EQ(n_undone, 1);
+}
+
+/// At each question that a run of shared memory and of the parts asks; one rank cancels, and the others have
+/// not been told how.
+TEST(PartRemesher, StepsThatAreCutShortAnywhereAreThoseOfSharedMemory) {
+  const mpi::Comm comm(MPI_COMM_WORLD);
+  RemesherOptions options = towards(15, 12);
+  options.ids = true;
+  options.on_inversion = OnInversion::kSubsteps;
+  options.max_substeps = 2;
+  options.triggers.jacobian_ratio = 0.2;
+  options.improve.surface.fixed_vertices = {V(40), V(170), V(300)};
+  int step = 0, n_asked = 0, n_undone = 0, n_cut = 0;
+  const auto move = [&](int i, Vec3 p) {
+    if (step != i) n_asked = 0;
+    step = i;
+    return swirl(p, i == 1 ? 2.0 : 0.05);
+  };
+  for (int at = 1; at < 46; at += 4) {
+    SCOPED_TRACE(at);
+    const auto cancel = [&] {
+      n_cut += step == 1 && ++n_asked == at ? 1 : 0;
+      return step == 1 && n_asked >= at;
+    };
+    options.improve.cancel = cancel;
+    RemesherOptions in_parts = options;
+    if (comm.rank() != comm.size() - 1) in_parts.improve.cancel = nullptr;
+    step = n_asked = 0;
+    // Whoever has gone over the whole begins to count anew.
+    expect_same_steps(valid_box(6, 0.1, 3), options, 4, move, nullptr, &n_undone, &in_parts,
+                      [&] { n_asked = 0; });
+    if (HasFailure()) return;
+  }
+  EXPECT_GE(n_undone, 2);
+  EXPECT_GE(n_cut, 10);
+}
+
+/// Whatever is inverted: no rank turns it, as if it had been written the other way round.
+TEST(PartRemesher, BodyThatIsTurnedInsideOutStaysSo) {
+  const TetMesh box = valid_box(5, 0.1, 3);
+  std::vector<Vec3> points(box.points().begin(), box.points().end());
+  std::vector<std::array<Index, 4>> cells;
+  for (CellHandle c : box.cells()) {
+    auto& corners = cells.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = box.cell(c).v[k].idx();
+  }
+  const auto n = static_cast<Index>(points.size());
+  for (const Vec3 p : {Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}, Vec3{2, 0, 1}}) points.push_back(p);
+  cells.push_back({n, n + 1, n + 2, n + 3});
+  const auto move = [](int step, Vec3 p) {
+    if (p.x > 1.5) return step == 1 && p.z > 0.5 ? Vec3{0, 0, -1.5} : Vec3{};
+    return swirl(p, 0.06);
+  };
+  EXPECT_GE(expect_same_steps(build(points, cells), towards(15, 12), 4, move), 2);
+}
+
+/// What has been travelled, and how many steps ago there was a repair, is as before a step that is undone.
+TEST(PartRemesher, StepsAfterOneThatIsUndoneAreThoseOfSharedMemory) {
+  RemesherOptions options = towards(15, 5);
+  int step = 0;
+  options.improve.cancel = [&] { return step == 3; };
+  const auto move = [&](int i, Vec3 p) {
+    step = i;
+    return swirl(p, i == 3 ? 0.3 : 0.01);
+  };
+  for (const bool by_motion : {true, false}) {
+    options.triggers.motion = by_motion ? 0.4 : 0;
+    options.triggers.every = by_motion ? 0 : 5;
+    int n_undone = 0;
+    const int n = expect_same_steps(valid_box(6, 0.1, 3), options, 12, move, nullptr, &n_undone);
+    EXPECT_EQ(n_undone, 1);
+    EXPECT_GE(n, 1);
+    EXPECT_LT(n, 8);
+  }
 }
 
 /// Wherever a step is cut short, it either leaves no more inverted cells than there were, or everything as it
@@ -343,7 +433,7 @@ TEST(PartRemesher, StepThatIsUndoneLeavesNoTrace) {
   options.on_inversion = OnInversion::kSubsteps;
   options.max_substeps = 3;
   options.triggers.jacobian_ratio = 0.2;
-  options.triggers.motion = 2;
+  options.improve.surface.fixed_vertices = {V(40), V(170), V(300)};
   int asked = 0, last = std::numeric_limits<int>::max();
   options.improve.cancel = [&] { return comm.rank() == comm.size() - 1 && ++asked > last; };
   TetMesh whole = mesh;
@@ -362,7 +452,7 @@ TEST(PartRemesher, StepThatIsUndoneLeavesNoTrace) {
   const auto expect_same = [&](mpi::Remesher& a, mpi::Remesher& b, int n) {
     const RankArrays x = a.arrays(), y = b.arrays();
     EXPECT_TRUE(x.points == y.points && x.cells == y.cells && x.owner == y.owner) << n;
-    EXPECT_EQ(x.vertex_number, y.vertex_number) << n;
+    EXPECT_TRUE(x.vertex_number == y.vertex_number && x.cell_number == y.cell_number) << n;
     for (const FieldTransfer& field : options.fields)
       EXPECT_TRUE(same_bits(a.field(field.name), b.field(field.name))) << field.name << ", " << n;
   };
@@ -375,6 +465,8 @@ TEST(PartRemesher, StepThatIsUndoneLeavesNoTrace) {
     last = std::numeric_limits<int>::max();
     step(*remesher, 0.04);
     const std::vector<std::uint64_t> ids(remesher->cell_ids().begin(), remesher->cell_ids().end());
+    const std::vector<std::uint64_t> of_vertices(remesher->vertex_ids().begin(),
+                                                 remesher->vertex_ids().end());
     last = n;
     const mpi::PartsStep cut = step(*remesher, 2.5);
     last = std::numeric_limits<int>::max();
@@ -386,12 +478,15 @@ TEST(PartRemesher, StepThatIsUndoneLeavesNoTrace) {
     EXPECT_EQ(cut.repairs.size(), 0U);
     expect_same(*remesher, *never, n);
     EXPECT_TRUE(std::ranges::equal(remesher->cell_ids(), ids));
+    EXPECT_TRUE(std::ranges::equal(remesher->vertex_ids(), of_vertices));
     const auto other = begin();
     step(*other, 0.04);
-    const mpi::PartsStep a = step(*remesher, 0.1), b = step(*other, 0.1);
-    EXPECT_EQ(a.cause, b.cause);
-    EXPECT_EQ(a.min_dihedral, b.min_dihedral);
-    expect_same(*remesher, *other, n);
+    for (int i = 0; i < 3; ++i) {
+      const mpi::PartsStep a = step(*remesher, 0.1), b = step(*other, 0.1);
+      EXPECT_EQ(a.cause, b.cause);
+      EXPECT_EQ(a.min_dihedral, b.min_dihedral);
+      expect_same(*remesher, *other, n);
+    }
   }
   EXPECT_GE(n_cut, 3);
   EXPECT_GE(n_undone, 1);
@@ -472,6 +567,15 @@ TEST(PartRemesher, WhatARepairHadToLeaveCallsForNoOther) {
   const int m = expect_same_steps(mesh, options, 5, flatten);
   EXPECT_GE(m, 1);
   EXPECT_LE(m, 3);
+  // Also after a step that was undone.
+  int step = 0, n_undone = 0;
+  options.improve.cancel = [&] { return step == 2; };
+  const auto flatten_and_fold = [&](int i, Vec3 p) {
+    step = i;
+    return i == 2 ? Vec3{p.x > 0.3 && p.x < 0.5 ? 0.4 : 0.0, 0, 0} : flatten(i, p);
+  };
+  expect_same_steps(mesh, options, 4, flatten_and_fold, nullptr, &n_undone);
+  EXPECT_EQ(n_undone, 1);
 }
 
 TEST(PartRemesher, RegionsStay) {
@@ -522,7 +626,7 @@ TEST(PartRemesher, FieldsAreThoseOfSharedMemory) {
 }
 
 /// A run over everything numbers cells anew that are scattered in memory.
-TEST(PartRemesher, FieldsOfScatteredCellsAreThoseOfSharedMemory) {
+TEST(PartRemesher, FieldsAndIdsOfScatteredCellsAreThoseOfSharedMemory) {
   const TetMesh box = valid_box(17, 0.1, 2);
   std::vector<std::array<Index, 4>> cells(box.n_cells());
   for (std::size_t i = 0; i < cells.size(); ++i)
@@ -535,6 +639,8 @@ TEST(PartRemesher, FieldsOfScatteredCellsAreThoseOfSharedMemory) {
   options.improve.min_dihedral.reset();
   options.improve.iterations = 1;
   options.triggers.every = 1;
+  options.triggers.jacobian_ratio = 0.5;
+  options.ids = true;
   options.fields = Fields::all();
   EXPECT_EQ(expect_same_steps(mesh, options, 2, [](int, Vec3 p) { return swirl(p, 0.02); }), 2);
 }
