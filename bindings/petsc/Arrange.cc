@@ -138,7 +138,7 @@ std::map<Tuple, Values> values_of(Comm& comm, const LocalPlex& mine, const std::
     }
   for (auto& [point, set] : values) {
     std::ranges::sort(set);
-    set.erase(std::ranges::unique(set).begin(), set.end());
+    set.erase(std::unique(set.begin(), set.end()), set.end());
   }
   return values;
 }

@@ -45,9 +45,9 @@ struct Turned {
   std::uint64_t n_alone = 0;  ///< cells that were turned and not with the whole, or the other way round
 };
 
-/// Whether what hangs together and has more negative cells than positive ones is turned, as build() does, or
-/// stays inverted.
-enum class Inverted : std::uint8_t { kTurn, kKeep };
+/// Whether a mesh, or what of it hangs together, with more negative cells than positive ones is turned, as
+/// build() does, or stays inverted.
+enum class Inverted : std::uint8_t { kTurn, kLeave };
 
 /// A mesh that is cut among the ranks. Each vertex has an owner, the same in all passes; a cell belongs to
 /// the owner of its vertex with the smallest number. A rank holds the cells with a vertex of its own and two
@@ -85,7 +85,8 @@ class DistributedMesh : private detail::PartState {
     std::vector<std::uint8_t> turned;  ///< cells that build() has turned here; empty where none was
   };
   /// The parts of a mesh of so many vertices and cells, numbered without gaps, with a workspace that has no
-  /// qualities yet. Cells are turned as build() does; throws InvalidInput for a mesh that cannot be oriented.
+  /// qualities yet. Cells are turned as build() and `inverted` say; throws InvalidInput for a mesh that
+  /// cannot be oriented.
   Turned assemble(Piece piece, std::uint64_t n_vertices, std::uint64_t n_cells,
                   Inverted inverted = Inverted::kTurn);
   /// After assemble(), for what a file says of vertices, edges and faces: each on the rank that owns its

@@ -48,10 +48,10 @@ Gathered gather_poor(DistributedMesh& parts, double below, const Worklist& list,
     const auto theirs = Unpacker(message.bytes).get_all<Poor>();
     poor.insert(poor.end(), theirs.begin(), theirs.end());
   }
-  const auto number = [](const Poor& a) { return a.number; };
-  std::ranges::sort(poor, {}, number);
-  const auto rest = std::ranges::unique(poor, {}, number);
-  poor.erase(rest.begin(), rest.end());
+  std::ranges::sort(poor, {}, &Poor::number);
+  poor.erase(std::unique(poor.begin(), poor.end(),
+                         [](const Poor& a, const Poor& b) { return a.number == b.number; }),
+             poor.end());
   return {std::move(poor), came.sum};
 }
 

@@ -325,7 +325,9 @@ std::size_t PartRound::hand_out_slots(std::size_t may_lose, std::size_t may_gain
     if (plan.adds_vertex && plan.n_created > plan.n_removed) use.gain = plan.n_created - plan.n_removed;
     if (use.n_fresh + use.n_freed + use.loss + use.gain > 0) mine.push_back(use);
   }
-  const auto [uses, freed] = gather_uses(mine, my_freed);
+  const auto gathered = gather_uses(mine, my_freed);
+  const auto& uses = gathered.uses;
+  const auto& freed = gathered.freed;
   std::vector<std::size_t> order(uses.size()), first_freed(uses.size());
   std::size_t n_freed = 0, lost = 0, gained = 0;
   for (std::size_t i = 0; i < uses.size(); ++i) {

@@ -212,7 +212,7 @@ Turned orient(DistributedMesh& parts, Flags turned, Inverted inverted) {
   };
   const bool conflict = comm.sum(std::count(turned.begin(), turned.end(), 1) > 0 ? 1 : 0) > 0;
   const auto has_none_to_turn = [&] {
-    return inverted == Inverted::kKeep ||
+    return inverted == Inverted::kLeave ||
            count_own([&](CellHandle c) { return six_volume(part, c) < 0; }) == 0;
   };
   if (!conflict && has_none_to_turn()) return {};

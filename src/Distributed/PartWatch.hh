@@ -27,11 +27,12 @@ class PartWatch {
   /// At own cells. What was excused stays so as long as it is bad for the same reason, and not much worse
   /// than it was left.
   void look(DistributedMesh& mesh);
-  /// After a repair: looks at all, and what is bad and not inverted was left by it, unless it was cut short.
+  /// After a repair: looks at all. What is bad and not inverted was left by it, and is excused, unless it was
+  /// cut short.
   /// The cells have handles of their own by now.
   void follow(DistributedMesh& mesh, bool was_cut_short);
 
-  /// Inverted and flat cells of all ranks, by the same measure, whatever handles they have.
+  /// n_inverted() of a mesh that this object has not looked at, as one in the middle of a repair.
   static std::uint64_t count_inverted(const DistributedMesh& mesh);
 
   RepairCause cause() const { return cause_; }

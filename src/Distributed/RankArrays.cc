@@ -160,8 +160,10 @@ RankArrays own_arrays(DistributedMesh& mesh) {
       if (v != kNoNumber) v = numbering(mesh.vertex_at(v));
   const auto key = [](const LabelRecord& r) { return std::tuple(r.kind, r.number, r.key()); };
   std::ranges::sort(arrays.labels, {}, key);
-  const auto repeated = std::ranges::unique(arrays.labels, {}, key);
-  arrays.labels.erase(repeated.begin(), repeated.end());
+  arrays.labels.erase(
+      std::unique(arrays.labels.begin(), arrays.labels.end(),
+                  [&](const LabelRecord& a, const LabelRecord& b) { return key(a) == key(b); }),
+      arrays.labels.end());
   return arrays;
 }
 

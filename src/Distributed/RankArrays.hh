@@ -39,7 +39,7 @@ enum class Keep : std::uint8_t {
 /// ranks. All take part. Returns notes, the same on all ranks. Throws InvalidInput for arrays of other
 /// lengths, numbers that have gaps or come twice, points that are not finite or differ between ranks, cells
 /// and labels whose points are not given, and for what a mesh in parts cannot have (docs/distributed.md).
-/// `inverted`: kKeep for a mesh that was oriented before it moved.
+/// `inverted`: kLeave for a mesh that was oriented before it moved.
 std::vector<std::string> from_arrays(DistributedMesh& mesh, const RankArrays& arrays,
                                      Keep keep = Keep::kAlways, Inverted inverted = Inverted::kTurn);
 

@@ -30,7 +30,7 @@ std::vector<std::uint64_t> numbers_of_own(const RankArrays& arrays, int rank) {
   return numbers;
 }
 
-bool was_cut_short(Stop stop) { return stop == Stop::kTimeLimit || stop == Stop::kCancelled; }
+bool is_cut(Stop stop) { return stop == Stop::kTimeLimit || stop == Stop::kCancelled; }
 
 }  // namespace
 
@@ -272,6 +272,16 @@ auto Remesher::kept_over(const DistributedMesh& old, Renumbered renumbered, cons
   return kept;
 }
 
+/// Those of what a repair that is undone has created, which are not given again.
+void Remesher::skip_ids(const DistributedMesh& old, Renumbered renumbered) {
+  const OldPlaces from = old_places(old, *mesh_, renumbered);
+  const auto n_created = [&](const std::vector<std::size_t>& places) {
+    return comm_.sum(static_cast<std::uint64_t>(std::ranges::count(places, OldPlaces::kCreated)));
+  };
+  next_vertex_id_ += n_created(from.vertices);
+  next_cell_id_ += n_created(from.cells);
+}
+
 /// Fields, and what is kept, after a repair that has changed something: over it, and to the ranks that have
 /// the points and cells then. Makes the parts anew.
 std::vector<FieldReport> Remesher::bring_along(std::shared_ptr<const DistributedMesh> old,
@@ -288,7 +298,7 @@ std::vector<FieldReport> Remesher::bring_along(std::shared_ptr<const Distributed
   if (keeps_values()) kept = kept_over(*old, renumbered, arrays);
   old.reset();
   const std::vector<std::uint64_t> vertices_had = numbers_of_own(arrays, comm_.rank());
-  rebuild(arrays, Inverted::kKeep);
+  rebuild(arrays, Inverted::kLeave);
   std::vector<std::uint64_t> vertices_wanted, cells_wanted;
   for (VertexHandle v : points_)
     if (mesh_->is_own(v)) vertices_wanted.push_back(mesh_->number(v));
@@ -350,11 +360,13 @@ bool Remesher::repair(PartsStep& result, bool is_last) {
     before_->kept = kept_;
     before_->surface = options_.improve.surface;
   }
+  if (!brings_along) old.reset();
   std::vector<std::pair<std::uint64_t, std::uint64_t>> renumbered;
   repair.run = improve(*mesh_, options_.improve, &renumbered);
   result.stop = repair.run.stop;
-  const bool is_cut_short = was_cut_short(result.stop);
+  const bool is_cut_short = is_cut(result.stop);
   if (is_cut_short && PartWatch::count_inverted(*mesh_) > before_->n_inverted) {
+    if (options_.ids) skip_ids(*old, renumbered);
     undo(result);
     return false;
   }
@@ -362,7 +374,7 @@ bool Remesher::repair(PartsStep& result, bool is_last) {
   if (repair.run.changed && brings_along) {
     repair.fields = bring_along(std::move(old), renumbered);
   } else if (repair.run.changed) {
-    rebuild(renamed_arrays(), Inverted::kKeep);
+    rebuild(renamed_arrays(), Inverted::kLeave);
   } else {  // but vertices may have gone to other ranks and back
     std::ranges::transform(numbers, points_.begin(), [&](std::uint64_t n) { return mesh_->vertex_at(n); });
     held_by_ = mesh_->held_by_others();
@@ -376,7 +388,7 @@ bool Remesher::repair(PartsStep& result, bool is_last) {
   return !is_cut_short;
 }
 
-/// All is as it was before the step.
+/// All is as it was before the step, but for ids, of which those that were given are not given again.
 void Remesher::undo(PartsStep& result) {
   Before before = std::move(*before_);
   before_.reset();

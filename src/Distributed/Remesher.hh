@@ -33,7 +33,7 @@ struct PartsStep {
   std::uint64_t n_moved = 0;               ///< vertices that were to move
   /// With OnInversion::kRefuse: numbers of the cells that would be inverted or flat, ascending.
   std::vector<std::uint64_t> refused;
-  std::vector<PartsRepair> repairs;  ///< one, but for sub-steps
+  std::vector<PartsRepair> repairs;  ///< one, but for sub-steps; none where it was undone
   double min_dihedral = 0;           ///< after it, degrees
   std::uint64_t n_inverted = 0;      ///< after it: cells that are inverted or flat
   Stop stop = Stop::kNoProgress;     ///< of the last repair; kTimeLimit and kCancelled end the step
@@ -140,6 +140,7 @@ class Remesher {
   bool keeps_values() const { return options_.triggers.jacobian_ratio > 0 || options_.ids; }
   void begin_to_keep();
   Kept kept_over(const DistributedMesh& old, Renumbered renumbered, const RankArrays& now);
+  void skip_ids(const DistributedMesh& old, Renumbered renumbered);
   RankArrays renamed_arrays();
   bool repair(PartsStep& result, bool is_last);
   std::vector<FieldReport> bring_along(std::shared_ptr<const DistributedMesh> old, Renumbered renumbered);
@@ -157,7 +158,7 @@ class Remesher {
   std::vector<VertexHandle> points_;  // those of arrays()
   /// Own vertices that other ranks hold, by rank.
   std::vector<std::vector<VertexHandle>> held_by_;
-  std::vector<Vec3> was_;          // points before the move, by vertex; none where nothing has moved
+  std::vector<Vec3> was_;          // points before the last move, by vertex; none before one
   std::vector<double> travelled_;  // by own point since the last repair, where asked for
   double mean_edge_ = 0, farthest_ = 0;
   int steps_ = 0;  // since the last repair

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <exception>
-#include <ranges>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -128,9 +128,10 @@ inline std::vector<int> edges_to_own(const mpi::DistributedMesh& parts, const Wh
 inline void expect_near_sets(const mpi::DistributedMesh& parts, const std::vector<int>& distance) {
   const TetMesh& part = parts.part();
   mpi::RankSets one(part.n_vertices(), parts.comm().size()), two = one;
+  std::vector<Index> all(part.n_cells());
+  std::iota(all.begin(), all.end(), Index{0});
   mpi::find_near(
-      part, std::views::iota(Index{0}, static_cast<Index>(part.n_cells())),
-      [&](VertexHandle v) { return parts.owner(v); }, one, two);
+      part, all, [&](VertexHandle v) { return parts.owner(v); }, one, two);
   std::size_t n_wrong = 0;
   for (std::size_t i = 0; i < part.n_vertices(); ++i) {
     const int d = distance[parts.number(V(i))];
