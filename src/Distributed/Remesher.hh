@@ -48,16 +48,15 @@ std::string reason_against(const RemesherOptions& options);
 
 /// Moves a mesh in parts, looks at what has become of it, and repairs it where a trigger calls for that: step
 /// by step the mesh that hfr::Remesher makes, to the last bit, for each number of ranks and threads, unless a
-/// clock ends one of them earlier. All
-/// ranks call each function at the same time; where one throws, the others throw RankFailed with their next
-/// call, and the object is of no further use.
+/// clock ends one of them earlier. All ranks call each function at the same time; where one throws, the
+/// others throw RankFailed with their next call, and the object is of no further use.
 ///
 /// There are all triggers but those by an indicator. What options.improve.surface fixes is named by numbers
 /// of vertices in the whole, and stays so when these change. Each rank may have a time limit and callbacks of
 /// its own, or none (see mpi::improve()); where one has any, a step that repairs keeps a copy of part, fields
-/// and ids to go back to. Throws
-/// InvalidInput for what reason_against() names: triggers by an indicator, vertices that follow, fields by
-/// callback, and what mpi::improve() does not have. A step looks at all cells of a rank.
+/// and ids to go back to. Throws InvalidInput for what reason_against() names: triggers by an indicator,
+/// vertices that follow, fields by callback, and what mpi::improve() does not have. A step looks at all cells
+/// of a rank.
 ///
 /// Fields, of numbers of double precision, are not properties here: set_field() gives the values that a rank
 /// has, and field() those that it has after a step: the ones of hfr::Remesher, to the last bit.
