@@ -50,6 +50,15 @@ RankArrays slab_of(const TetMesh& mesh, const mpi::Comm& comm) {
   return arrays;
 }
 
+std::vector<std::array<Index, 4>> corners_of(const TetMesh& mesh) {
+  std::vector<std::array<Index, 4>> cells;
+  for (CellHandle c : mesh.cells()) {
+    auto& corners = cells.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = mesh.cell(c).v[k].idx();
+  }
+  return cells;
+}
+
 /// Along a swirl about an axis of the unit cube, which leaves its surface where it is.
 Vec3 swirl(Vec3 p, double dt) {
   constexpr double kPi = 3.141592653589793;
@@ -390,11 +399,7 @@ TEST(PartRemesher, StepsThatAreCutShortAnywhereAreThoseOfSharedMemory) {
 TEST(PartRemesher, BodyThatIsTurnedInsideOutStaysSo) {
   const TetMesh box = valid_box(5, 0.1, 3);
   std::vector<Vec3> points(box.points().begin(), box.points().end());
-  std::vector<std::array<Index, 4>> cells;
-  for (CellHandle c : box.cells()) {
-    auto& corners = cells.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) corners[k] = box.cell(c).v[k].idx();
-  }
+  std::vector<std::array<Index, 4>> cells = corners_of(box);
   const auto n = static_cast<Index>(points.size());
   for (const Vec3 p : {Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}, Vec3{2, 0, 1}}) points.push_back(p);
   cells.push_back({n, n + 1, n + 2, n + 3});
@@ -642,9 +647,7 @@ TEST(PartRemesher, FieldsAreThoseOfSharedMemory) {
 /// A run over everything numbers cells anew that are scattered in memory.
 TEST(PartRemesher, FieldsAndIdsOfScatteredCellsAreThoseOfSharedMemory) {
   const TetMesh box = valid_box(17, 0.1, 2);
-  std::vector<std::array<Index, 4>> cells(box.n_cells());
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    for (std::size_t k = 0; k < 4; ++k) cells[i][k] = box.cell(CellHandle(i)).v[k].idx();
+  std::vector<std::array<Index, 4>> cells = corners_of(box);
   std::mt19937_64 engine(1);
   for (std::size_t i = 1; i < cells.size(); ++i) std::swap(cells[i], cells[engine() % (i + 1)]);
   const TetMesh mesh = build({box.points().begin(), box.points().end()}, cells);
@@ -668,11 +671,7 @@ TEST(PartRemesher, FieldsOfSmallAndOfPinchedMeshesAreThoseOfSharedMemory) {
   for (const Index n : {1, 2}) expect_same_steps(valid_box(n, 0.1, 4), options, 2, move);
   const TetMesh box = valid_box(4, 0.2, 5);
   std::vector<Vec3> points(box.points().begin(), box.points().end());
-  std::vector<std::array<Index, 4>> cells;
-  for (CellHandle c : box.cells()) {
-    auto& corners = cells.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) corners[k] = box.cell(c).v[k].idx();
-  }
+  std::vector<std::array<Index, 4>> cells = corners_of(box);
   const auto n = static_cast<Index>(points.size());
   Index first = 0;
   for (Index v = 0; v < n; ++v)
