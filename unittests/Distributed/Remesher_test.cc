@@ -410,6 +410,7 @@ TEST(PartRemesher, BodyThatIsTurnedInsideOutStaysSo) {
   EXPECT_GE(expect_same_steps(build(points, cells), towards(15, 12), 4, move), 2);
   // Nor is a step undone because of what was inverted before it.
   RemesherOptions options = towards(15, 12);
+  options.ids = true;
   int step = 0, n_undone = 0;
   options.improve.cancel = [&] { return step == 2; };
   const auto note_step = [&](int i, Vec3 p) {
