@@ -12,11 +12,12 @@ case ${HFR_WERROR:-0} in 1 | ON | on | true) werror=ON ;; esac
 
 "$root/scripts/install-deps.sh"
 jobs=$("$root/scripts/jobs.sh")
-# Optimised, but without -DNDEBUG; line numbers only, because full debug data doubles time and size of a build.
+# Optimised as a release is, but without -DNDEBUG; line numbers only, because full debug data doubles time and size of a build.
 # ccache, where it is set, spares more than headers that are parsed once and sources compiled several at a time.
 pch=TESTS unity=ON
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || pch=OFF unity=OFF
-cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O2 -g1" \
-  -DHFR_TESTS=ON -DHFR_WERROR=$werror -DHFR_PCH=$pch -DCMAKE_UNITY_BUILD=$unity
+cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O3 -g1" \
+  -DHFR_TESTS=ON -DHFR_WERROR=$werror -DHFR_PCH=$pch -DCMAKE_UNITY_BUILD=$unity \
+  -DCMAKE_EXPORT_COMPILE_COMMANDS=ON
 cmake --build "$build" --parallel "$jobs"
 ctest --test-dir "$build" --output-on-failure --parallel "$jobs" "$@"
