@@ -13,7 +13,7 @@ from=${2:-1}
 
 if [ ! -e "$build/CMakeCache.txt" ]; then
   "$root/scripts/install-deps.sh"
-  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O2 -g1" \
+  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O3 -g1" \
     -DHFR_TESTS=ON
 fi
 cmake --build "$build" --parallel "$("$root/scripts/jobs.sh")" --target hfr_fuzz

@@ -13,7 +13,7 @@ first=${2:-1}
 case $seeds$first in *[!0-9]*) echo "shuffle: usage: scripts/shuffle.sh [SEEDS [FIRST]]" >&2; exit 1 ;; esac
 n_jobs=$("$root/scripts/jobs.sh")
 if [ ! -f "$build/CMakeCache.txt" ]; then
-  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O2 -g1" \
+  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O3 -g1" \
     -DHFR_TESTS=ON
 fi
 cmake --build "$build" --parallel "$n_jobs" --target test_Shuffle

@@ -9,7 +9,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 build=${HFR_BUILD:-$root/build/test}
 if [ ! -e "$build/CMakeCache.txt" ]; then
   "$root/scripts/install-deps.sh"
-  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O2 -g1" \
+  cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O3 -g1" \
     -DHFR_TESTS=ON
 fi
 cmake --build "$build" --parallel "$("$root/scripts/jobs.sh")" --target hfr_soak

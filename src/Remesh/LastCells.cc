@@ -6,6 +6,7 @@
 #include "Remesh/MayRise.hh"
 #include "Remesh/Neighbourhoods.hh"
 #include "Remesh/PatchSearch.hh"
+#include "Remesh/Rise.hh"
 #include "Remesh/SmallestDihedrals.hh"
 
 namespace hfr {
@@ -24,7 +25,7 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
         if (now < target.degrees && search_patches(run, target.degrees, how)) now = smallest();
     };
     search(effort.patches_first);
-    for (double before = 0; now < target.degrees && now > effort.again * before && !run.control.stopped();) {
+    for (double before = 0; now < target.degrees && has_risen(now, before, effort.again) && !run.control.stopped();) {
       before = now;
       const auto& neighbourhoods = run.strategy.neighbourhoods;
       const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
@@ -34,8 +35,7 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
     if (target.degrees <= effort.patches_up_to) search(effort.patches);
     if (now < target.degrees) break;
   }
-  // An invalid cell has not risen by staying what it is.
-  return now > std::max(at_first, effort.rise * at_first);
+  return at_first > 0 ? has_risen(now, at_first, effort.rise) : now > at_first;
 }
 
 }  // namespace hfr

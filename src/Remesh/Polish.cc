@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "Quality/Metrics.hh"
+#include "Remesh/Rise.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr {
@@ -21,7 +22,7 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     const Turn turn{i, Focus{decision}, true, effort.seeds_of_vertex};
     const std::size_t changes = runner.iterate(turn);
     const std::size_t n_poor_now = runner.n_below(decision);
-    const double enough = worst > 0 ? worst * effort.gain : worst;
+    const double enough = value_to_rise(worst, effort.gain, decision);
     const std::size_t at_least = n_poor > many ? (n_poor - many) / effort.least_fewer : 0;
     const bool fewer = n_poor_now + at_least < n_poor;
     idle = fewer || runner.worst() > enough ? 0 : idle + 1;
@@ -35,8 +36,8 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
     }
     // Cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex. Where
     // the last ones have not paid, more of them would only fill the place with poor cells.
-    const bool pays =
-        !has_dug || 10 * n_poor <= effort.dig_again_tenths * n_poor_dug || worst > worst_dug * effort.gain;
+    const bool pays = !has_dug || 10 * n_poor <= effort.dig_again_tenths * n_poor_dug ||
+                      worst >= value_to_rise(worst_dug, effort.gain, decision);
     if (n_poor <= few && pays) {
       has_dug = true;
       n_poor_dug = n_poor;

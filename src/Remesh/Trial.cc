@@ -5,6 +5,7 @@
 
 #include "Quality/Metrics.hh"
 #include "Remesh/MayRise.hh"
+#include "Remesh/Rise.hh"
 #include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Strategy.hh"
 

@@ -9,9 +9,6 @@
 
 namespace hfr {
 
-/// A gain in an angle that shows in a table: degrees.
-inline constexpr double kLeastRise = 0.01;
-
 /// A stage that may insert vertices, on trial. Cells are worth having where the worst angle that may
 /// rises by them, or the largest one of the poorest hundredth, or where fewer are below the angle that was
 /// worked for, or fewer inverted or flat. Angles rise where they do so by kLeastRise. Where none of these

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Remesh/Rise.hh"
+
+#include <gtest/gtest.h>
+
+#include "Quality/Metric.hh"
+#include "Remesh/Strategy.hh"
+
+namespace hfr {
+namespace {
+
+TEST(Rise, AnglesRiseByTheFactorAndByWhatShowsInATable) {
+  EXPECT_TRUE(has_risen(10.3, 10, 1.02));
+  EXPECT_FALSE(has_risen(10.1, 10, 1.02));
+  EXPECT_TRUE(has_risen(1.011, 1, 1.002));
+  EXPECT_FALSE(has_risen(1.009, 1, 1.002));
+  EXPECT_FALSE(has_risen(1e-13, 1e-15, 1.002)) << "a hundredfold, and flat all the same";
+}
+
+TEST(Rise, FromInvertedCellsOnToValidOnesOnly) {
+  EXPECT_TRUE(has_risen(1e-9, -3, 1.02));
+  EXPECT_TRUE(has_risen(1e-9, 0, 1.02));
+  EXPECT_FALSE(has_risen(-1, -3, 1.02));
+  EXPECT_FALSE(has_risen(0, 0, 1.02));
+}
+
+TEST(Rise, ValuesOfFlatCellsHaveToComeBeyondThePlainGoal) {
+  const double flat = dihedral_decision(kPlainGoal), wanted = dihedral_decision(15);
+  EXPECT_EQ(value_to_rise(1e-32, 1.01, wanted), flat);
+  EXPECT_EQ(value_to_rise(flat, 1.01, wanted), 1.01 * flat);
+  EXPECT_EQ(value_to_rise(0.1, 1.01, wanted), 1.01 * 0.1);
+}
+
+TEST(Rise, ValuesRiseByTheFactorAloneWhereNoMoreIsWantedThanThat) {
+  EXPECT_EQ(value_to_rise(1e-32, 1.01, dihedral_decision(kPlainGoal)), 1.01 * 1e-32);
+}
+
+TEST(Rise, AmongInvertedCellsAnythingIsARise) {
+  EXPECT_EQ(value_to_rise(-0.5, 1.01, dihedral_decision(15)), -0.5);
+  EXPECT_EQ(value_to_rise(0, 1.01, dihedral_decision(15)), 0);
+}
+
+}  // namespace
+}  // namespace hfr
