@@ -21,8 +21,9 @@ inline bool has_risen(double now, double before, double factor) {
   return now > (before > 0 ? std::max(before * factor, before + kLeastRise) : 0);
 }
 
-/// What a worst decision value has to come to, on the way to the one that is wanted: by that factor, and where
-/// more is wanted than that no cell be all but flat, beyond that. Among inverted cells anything is a rise.
+/// What a worst decision value has to come to, on the way to the one that is wanted: by that factor, and
+/// where more is wanted than that no cell be all but flat, beyond that. Among inverted cells anything is a
+/// rise.
 inline double value_to_rise(double worst, double factor, double wanted) {
   if (worst <= 0) return worst;
   const double flat = dihedral_decision(kPlainGoal);
