@@ -25,7 +25,8 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
         if (now < target.degrees && search_patches(run, target.degrees, how)) now = smallest();
     };
     search(effort.patches_first);
-    for (double before = 0; now < target.degrees && has_risen(now, before, effort.again) && !run.control.stopped();) {
+    double before = 0;
+    while (now < target.degrees && has_risen(now, before, effort.again) && !run.control.stopped()) {
       before = now;
       const auto& neighbourhoods = run.strategy.neighbourhoods;
       const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
