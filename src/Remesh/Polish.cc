@@ -35,9 +35,11 @@ bool iterate_below(PassRunner<Metric>& runner, const PolishEffort& effort, doubl
       continue;
     }
     // Cells that nothing else mends, such as those between two faces of a frozen corner, get a vertex. Where
-    // the last ones have not paid, more of them would only fill the place with poor cells.
-    const bool pays = !has_dug || 10 * n_poor <= effort.dig_again_tenths * n_poor_dug ||
-                      worst >= value_to_rise(worst_dug, effort.gain, decision);
+    // the last ones have not paid, more of them would only fill the place with poor cells; but they may while
+    // one is inverted and has not become much worse.
+    const double to_pay =
+        worst_dug < 0 ? worst_dug * effort.gain : value_to_rise(worst_dug, effort.gain, decision);
+    const bool pays = !has_dug || 10 * n_poor <= effort.dig_again_tenths * n_poor_dug || worst > to_pay;
     if (n_poor <= few && pays) {
       has_dug = true;
       n_poor_dug = n_poor;

@@ -21,13 +21,13 @@ inline bool has_risen(double now, double before, double factor) {
   return now > (before > 0 ? std::max(before * factor, before + kLeastRise) : 0);
 }
 
-/// What a worst decision value has to come to, on the way to the one that is wanted: by that factor, and
-/// where more is wanted than that no cell be all but flat, beyond that. Among inverted cells anything is a
-/// rise.
+/// What a worst decision value has to exceed, on the way to the one that is wanted: by that factor, and where
+/// more is wanted than that no cell be all but flat, beyond that. With a factor of 1 any rise counts, and so
+/// it does among inverted and flat cells.
 inline double value_to_rise(double worst, double factor, double wanted) {
   if (worst <= 0) return worst;
   const double flat = dihedral_decision(kPlainGoal);
-  return wanted > flat ? std::max(worst * factor, flat) : worst * factor;
+  return wanted > flat && factor > 1 ? std::max(worst * factor, flat) : worst * factor;
 }
 
 }  // namespace hfr

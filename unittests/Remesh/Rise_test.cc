@@ -35,6 +35,10 @@ TEST(Rise, ValuesRiseByTheFactorAloneWhereNoMoreIsWantedThanThat) {
   EXPECT_EQ(value_to_rise(1e-32, 1.01, dihedral_decision(kPlainGoal)), 1.01 * 1e-32);
 }
 
+TEST(Rise, WithAFactorOfOneAnyRiseOfAValueCounts) {
+  EXPECT_EQ(value_to_rise(1e-32, 1, dihedral_decision(15)), 1e-32);
+}
+
 TEST(Rise, AmongInvertedCellsAnythingIsARise) {
   EXPECT_EQ(value_to_rise(-0.5, 1.01, dihedral_decision(15)), -0.5);
   EXPECT_EQ(value_to_rise(0, 1.01, dihedral_decision(15)), 0);
