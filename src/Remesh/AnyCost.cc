@@ -8,12 +8,16 @@
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Refine.hh"
-#include "Remesh/Rise.hh"
 #include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Trial.hh"
 
 namespace hfr {
 namespace {
+
+/// Whether the worst angle has, by that factor, and by what shows in a table; 0 before: anything is a gain.
+bool has_risen(double now, double before, double factor) {
+  return now > (before > 0 ? std::max(before * factor, before + kLeastRise) : 0);
+}
 
 class Climb {
  public:

@@ -7,10 +7,10 @@
 
 #include "Quality/Metrics.hh"
 #include "Remesh/MayRise.hh"
-#include "Remesh/Rise.hh"
 #include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
+#include "Remesh/Trial.hh"
 
 namespace hfr {
 namespace {

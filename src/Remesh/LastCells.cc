@@ -26,8 +26,15 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
     };
     search(effort.patches_first);
     double before = 0;
-    while (now < target.degrees && has_risen(now, before, effort.again) && !run.control.stopped()) {
+    std::size_t n_flat_before = kNoLimit;
+    // Of many cells that are all but flat, a few are worked on at a time.
+    const auto is_worth_going_on = [&] {
+      if (now > angle_to_rise(before, effort.again, target.degrees)) return true;
+      return now > effort.again * before && run.n_below(kPlainGoal) < n_flat_before;
+    };
+    while (now < target.degrees && is_worth_going_on() && !run.control.stopped()) {
       before = now;
+      if (now < kPlainGoal) n_flat_before = run.n_below(kPlainGoal);
       const auto& neighbourhoods = run.strategy.neighbourhoods;
       const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
       improve_neighbourhoods(run, neighbourhoods, degrees_with_few_below(run, target.degrees, few));
@@ -36,7 +43,8 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
     if (target.degrees <= effort.patches_up_to) search(effort.patches);
     if (now < target.degrees) break;
   }
-  return at_first > 0 ? has_risen(now, at_first, effort.rise) : now > at_first;
+  // An invalid cell has not risen by staying what it is.
+  return now > std::max(at_first, effort.rise * at_first);
 }
 
 }  // namespace hfr

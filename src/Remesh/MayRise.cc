@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "Remesh/Rise.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
+#include "Remesh/Trial.hh"
 
 namespace hfr {
 namespace {

@@ -22,7 +22,6 @@
 #include "Remesh/Patch.hh"
 #include "Remesh/PatchPlace.hh"
 #include "Remesh/Polish.hh"
-#include "Remesh/Rise.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"
 
@@ -184,8 +183,8 @@ class PatchTries {
         tries_(tries),
         attempts_(tries.size()),
         worst_(survey(patch.mesh(), strategy_.pass.policy).worst),
+        least_(rules().rise * worst_),
         enough_(dihedral_decision(goal)),
-        least_(value_to_rise(worst_, rules().rise, enough_)),
         worked_for_(std::min(rules().ahead * goal, kLargestGoal)) {}
 
   /// Whether there is something to be done, for few cells.
@@ -284,7 +283,7 @@ class PatchTries {
   const Strategy strategy_;
   std::span<const Try> tries_;
   std::vector<Attempt> attempts_;
-  double worst_, enough_, least_, worked_for_;  // decision values but for the last, which is an angle
+  double worst_, least_, enough_, worked_for_;  // decision values but for the last, which is an angle
   // Lowered by tries at the same time:
   int helps_ = Try::kOther + 1;         // the first kind of which one helps
   std::size_t enough_from_ = kNoLimit;  // the first try that leaves enough

@@ -15,7 +15,6 @@
 #include "Remesh/Jpdc2013.hh"
 #include "Remesh/MayRise.hh"
 #include "Remesh/Polish.hh"
-#include "Remesh/Rise.hh"
 #include "Remesh/Snapshot.hh"
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Survey.hh"

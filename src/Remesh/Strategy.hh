@@ -182,7 +182,7 @@ struct CoarsenEffort {
 struct PolishEffort {
   int iterations = kIterations;  ///< at most
   /// An iteration that neither lowers the number of poor cells nor raises the worst decision value by `gain`
-  /// is idle; after `idle` of them in a row dearer operators are asked.
+  /// (see Rise.hh) is idle; after `idle` of them in a row dearer operators are asked.
   double gain = 1.01;
   int idle = kIdle;
   /// With more poor cells than may get vertices, or than `many`, an iteration is idle unless it mends one in

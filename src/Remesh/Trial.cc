@@ -5,7 +5,6 @@
 
 #include "Quality/Metrics.hh"
 #include "Remesh/MayRise.hh"
-#include "Remesh/Rise.hh"
 #include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Strategy.hh"
 

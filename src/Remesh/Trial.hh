@@ -9,12 +9,15 @@
 
 namespace hfr {
 
+/// A gain in an angle that shows in a table: degrees.
+inline constexpr double kLeastRise = 0.01;
+
 /// A stage that may insert vertices, on trial. Cells are worth having where the worst angle that may
 /// rises by them, or the largest one of the poorest hundredth, or where fewer are below the angle that was
-/// worked for, or fewer inverted or flat. Angles rise where they do so by kLeastRise (Rise.hh). Where none of
-/// these holds, all that the stage has done goes again. The poorest hundredth is as many cells before as
-/// after, because good cells that are added to poor ones raise every percentile; a hundredth of what there is
-/// then counts only if no more cells are below the angle.
+/// worked for, or fewer inverted or flat. Angles rise where they do so by kLeastRise. Where none of these
+/// holds, all that the stage has done goes again. The poorest hundredth is as many cells before as after,
+/// because good cells that are added to poor ones raise every percentile; a hundredth of what there is then
+/// counts only if no more cells are below the angle.
 class Trial {
  public:
   /// Makes a Snapshot. `goal`: degrees that are worked for.

@@ -9,19 +9,11 @@
 namespace hfr {
 namespace {
 
-TEST(Rise, AnglesRiseByTheFactorAndByWhatShowsInATable) {
-  EXPECT_TRUE(has_risen(10.3, 10, 1.02));
-  EXPECT_FALSE(has_risen(10.1, 10, 1.02));
-  EXPECT_TRUE(has_risen(1.011, 1, 1.002));
-  EXPECT_FALSE(has_risen(1.009, 1, 1.002));
-  EXPECT_FALSE(has_risen(1e-13, 1e-15, 1.002)) << "a hundredfold, and flat all the same";
-}
-
-TEST(Rise, FromInvertedCellsOnToValidOnesOnly) {
-  EXPECT_TRUE(has_risen(1e-9, -3, 1.02));
-  EXPECT_TRUE(has_risen(1e-9, 0, 1.02));
-  EXPECT_FALSE(has_risen(-1, -3, 1.02));
-  EXPECT_FALSE(has_risen(0, 0, 1.02));
+TEST(Rise, AnglesRiseByTheFactorBeyondThePlainGoal) {
+  EXPECT_EQ(angle_to_rise(10, 1.02, 15), 10 * 1.02);
+  EXPECT_EQ(angle_to_rise(1e-15, 1.02, 15), kPlainGoal) << "a hundredfold is flat all the same";
+  EXPECT_EQ(angle_to_rise(1e-15, 1.02, kPlainGoal), 1e-15 * 1.02);
+  EXPECT_EQ(angle_to_rise(-3, 1.02, 15), -3);
 }
 
 TEST(Rise, ValuesOfFlatCellsHaveToComeBeyondThePlainGoal) {

@@ -13,7 +13,7 @@
 #include "Quality/CellQuality.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/Meshes.hh"
-#include "Remesh/Rise.hh"
+#include "Remesh/Trial.hh"
 
 namespace hfr::test {
 namespace {
