@@ -140,7 +140,7 @@ void PartSurface::Impl::write_labels() {
 
 void PartSurface::rebuild() {
   const WholeSurface now = gather(impl_->parts, impl_->options);
-  impl_->whole->take_back(SurfaceMesh(now.arrays, now.numbers, impl_->options));
+  impl_->whole->rebuild(now.arrays, now.numbers);
 }
 
 std::shared_ptr<const SurfaceMesh> PartSurface::seen_from(const Cutout& cutout) const {

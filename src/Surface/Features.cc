@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "Parallel/DisjointSets.hh"
@@ -436,18 +437,16 @@ std::vector<Incidence> incidences(const Arrays& arrays, std::vector<std::uint8_t
   return at;
 }
 
-/// Sets `locked` and `feature` of the edges by facet or, without facets, by the angle between the faces.
-/// Returns 1 for edges that are features, if at all, by their angle alone.
-std::vector<std::uint8_t> mark_edges(const Arrays& arrays, std::span<const Vec3> normal, double cosine,
-                                     Features& found) {
+/// Sets `locked` and `feature` of the edges; `turns` says of an edge with two faces whether their angle makes
+/// it one. Returns 1 for edges that are features, if at all, by their angle alone.
+template <class Turns>
+std::vector<std::uint8_t> mark_edges(const Arrays& arrays, std::vector<Edge>& edges, Turns&& turns) {
   std::vector<std::uint8_t> only_turns;
-  for (Edge& e : found.edges) {
-    const bool turns = !found.facet.empty() ? e.manifold && found.facet[e.f[0]] != found.facet[e.f[1]]
-                                            : e.manifold && dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
+  for (Edge& e : edges) {
     e.locked = std::binary_search(arrays.locked_edges.begin(), arrays.locked_edges.end(),
                                   std::array<VertexHandle, 2>{e.a, e.b});
     const bool other = !e.manifold || arrays.patch[e.f[0]] != arrays.patch[e.f[1]] || e.locked;
-    e.feature = turns || other;
+    e.feature = other || turns(e);
     only_turns.push_back(other ? 0 : 1);
   }
   return only_turns;
@@ -488,25 +487,19 @@ void lock_meeting_sheets(const Arrays& arrays, std::span<const std::uint32_t> fa
   }
 }
 
-}  // namespace
-
-Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance) {
-  const bool flat = options.mode != SurfaceMode::kFree;
-  const double tolerance = kCoplanar * diagonal(arrays);
-  const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
-  Features found;
-  found.edges = find_edges(arrays);
-  std::vector<MotionConstraint> planes;
-  if (flat) found.facet = find_facets(arrays, found.edges, tolerance, planes);
-
+/// Unit normals of the faces.
+std::vector<Vec3> normals(const Arrays& arrays) {
   std::vector<Vec3> normal;
   for (const auto& face : arrays.faces) normal.push_back(unit(scaled_normal(corners(arrays.points, face))));
-  std::vector<std::uint8_t> only_turns = mark_edges(arrays, normal, cosine, found);
-  if (!flat && distance > 0) {
-    constexpr double kReach = 3;
-    Regions(arrays, found.edges, only_turns, kReach * distance, cosine).drop_noise();
-    drop_small(arrays.points, found.edges, only_turns, distance);
-  }
+  return normal;
+}
+
+/// What the vertices may do, once the features are known. `planes`: of the facets; only in flat mode.
+void find_motion_constraints(const Arrays& arrays, const SurfaceOptions& options,
+                             std::span<const Vec3> normal, std::span<const MotionConstraint> planes,
+                             Features& found) {
+  const bool flat = options.mode != SurfaceMode::kFree;
+  const double tolerance = kCoplanar * diagonal(arrays);
   std::vector<std::uint8_t> on_surface;
   std::vector<Incidence> at = incidences(arrays, on_surface);
   count_features(found, at);
@@ -521,6 +514,46 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
     found.motion_constraint[i] =
         motion_constraint_of(arrays.points, VertexHandle(i), at[i], options, tolerance, plane);
   }
+}
+
+}  // namespace
+
+Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance) {
+  const bool flat = options.mode != SurfaceMode::kFree;
+  const double cosine = std::cos(options.feature_angle * (std::numbers::pi / 180.0));
+  Features found;
+  found.edges = find_edges(arrays);
+  std::vector<MotionConstraint> planes;
+  if (flat) found.facet = find_facets(arrays, found.edges, kCoplanar * diagonal(arrays), planes);
+  const std::vector<Vec3> normal = normals(arrays);
+  const std::vector<std::uint8_t> only_turns = mark_edges(arrays, found.edges, [&](const Edge& e) {
+    return flat ? found.facet[e.f[0]] != found.facet[e.f[1]] : dot(normal[e.f[0]], normal[e.f[1]]) < cosine;
+  });
+  if (!flat && distance > 0) {
+    constexpr double kReach = 3;
+    Regions(arrays, found.edges, only_turns, kReach * distance, cosine).drop_noise();
+    drop_small(arrays.points, found.edges, only_turns, distance);
+  }
+  find_motion_constraints(arrays, options, normal, planes, found);
+  return found;
+}
+
+Features find_features_again(const Arrays& arrays, const SurfaceOptions& options,
+                             std::span<const std::array<Vec3, 2>> segments) {
+  /// Share of the diagonal: what is no further from a segment lies on it but for rounding.
+  constexpr double kOnSegment = 1e-9;
+  const double tolerance = kOnSegment * diagonal(arrays);
+  std::optional<InputSurface> before;
+  if (!segments.empty()) before.emplace(segments);
+  const auto lies_there = [&](Vec3 x) { return before && before->any_within(x, tolerance).has_value(); };
+  Features found;
+  found.edges = find_edges(arrays);
+  mark_edges(arrays, found.edges, [&](const Edge& e) {
+    const Vec3 a = arrays.points[e.a.idx()];
+    const Vec3 b = arrays.points[e.b.idx()];
+    return lies_there(a) && lies_there(b) && lies_there(0.5 * (a + b));
+  });
+  find_motion_constraints(arrays, options, normals(arrays), {}, found);
   return found;
 }
 

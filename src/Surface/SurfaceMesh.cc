@@ -190,6 +190,70 @@ void SurfaceMesh::Impl::begin(const Arrays& arrays, const SurfaceOptions& wanted
   motion_constraint = std::move(features.motion_constraint);
 }
 
+std::vector<std::array<Vec3, 2>> SurfaceMesh::Impl::feature_segments() const {
+  std::vector<std::array<Vec3, 2>> segments;
+  const auto place = [&](OmVertex v) {
+    const auto& p = om.point(v);
+    return Vec3{p[0], p[1], p[2]};
+  };
+  for (OmEdge e : om.all_edges()) {
+    if (om.status(e).deleted() || !om.status(e).feature()) continue;
+    const OmHalfedge h = om.halfedge_handle(e, 0);
+    segments.push_back({place(om.from_vertex_handle(h)), place(om.to_vertex_handle(h))});
+  }
+  return segments;
+}
+
+void SurfaceMesh::Impl::take_samples(const Impl& before) {
+  const std::vector<OmFace> live = live_faces();
+  std::vector<Triangle> triangles;
+  for (OmFace f : live) triangles.push_back(corners(f));
+  const InputSurface now(triangles);
+  for (OmFace old : before.live_faces()) {
+    const FaceRecord& of_old = before.record(old);
+    for (std::size_t kind = 0; kind < 2; ++kind) {
+      for (Vec3 x : of_old.samples[kind].points) {
+        const InputSurface::Hit hit = now.nearest(x);
+        Samples& home = record(live[hit.item]).samples[kind];
+        home.points.push_back(x);
+        home.reach = std::max(home.reach, hit.distance);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    const Triangle& t = triangles[i];
+    const Vec3 middle = (1.0 / 3) * (t[0] + t[1] + t[2]);
+    record(live[i]).beneath = static_cast<std::uint32_t>(shape->nearest(middle).item);
+  }
+}
+
+void SurfaceMesh::Impl::begin_again(const Arrays& arrays, const Impl& before) {
+  options = before.options;
+  if (flat()) return begin(arrays, options);
+  hausdorff = before.hausdorff;
+  detail = before.detail;
+  spacing = before.spacing;
+  between = before.between;
+  samples_between = before.samples_between;
+  shape = before.shape;
+  curves = before.curves;
+  origin = before.origin;
+  six_volume = before.six_volume;
+  area = before.area;
+  surface::Features features = surface::find_features_again(arrays, options, before.feature_segments());
+  build(arrays, features);
+  motion_constraint = std::move(features.motion_constraint);
+  if (!shape) return;  // there are no faces
+  take_samples(before);
+  HFR_ASSERT(regions.size() == before.regions.size());
+  six_gain = -six_volume;
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    regions[i].six_volume = before.regions[i].six_volume;
+    regions[i].six_gain = -regions[i].six_volume;
+  }
+  account(live_faces(), 1);
+}
+
 namespace {
 
 /// The options as they are meant: a surface that may not go anywhere is flat.
@@ -217,9 +281,20 @@ SurfaceMesh::SurfaceMesh(const TetMesh& mesh, const SurfaceOptions& options, par
 void SurfaceMesh::rebuild(const TetMesh& mesh, par::Policy policy) {
   HFR_ASSERT(!impl_->alone && impl_->gone.empty() && impl_->fresh.empty());
   HFR_ASSERT(impl_.use_count() == 1);  // nobody sees it from a part
-  const SurfaceOptions options = impl_->options;
-  SurfaceMesh again(mesh, options, policy);
-  impl_.swap(again.impl_);
+  const Arrays arrays = surface::gather(mesh, impl_->options, policy);
+  const auto again = std::make_shared<Impl>();
+  again->begin_again(arrays, *impl_);
+  again->bind(surface::periodic_orbits(arrays, again->options));
+  impl_ = again;
+}
+
+void SurfaceMesh::rebuild(const surface::Arrays& arrays, std::vector<std::uint64_t> numbers) {
+  HFR_ASSERT(!impl_->alone && impl_->gone.empty() && impl_->fresh.empty());
+  HFR_ASSERT(numbers.size() == arrays.points.size() && impl_->orbits.empty());
+  Impl again;
+  again.in_whole = std::move(numbers);
+  again.begin_again(arrays, *impl_);
+  *impl_ = std::move(again);  // in its place: others see it from their parts
 }
 
 SurfaceMesh::SurfaceMesh(std::shared_ptr<Impl> impl, const VertexNumbers* numbers)

@@ -155,9 +155,12 @@ class SurfaceMesh {
   void on_collapse(VertexHandle v, VertexHandle onto);
   /// The edge from a to b has got the vertex `middle`.
   void on_split(VertexHandle a, VertexHandle b, VertexHandle middle, Vec3 place);
-  /// In flat mode, after cells have been replaced that nobody told of: takes the surface as it is now. Labels
-  /// must have been written.
+  /// After cells have been replaced that nobody told of: the surface as it is meshed now, which must have the
+  /// shape that it had before. What is allowed still counts from the shape that it was made with; in flat
+  /// mode planes are those of now. Labels must have been written.
   void rebuild(const TetMesh& mesh, par::Policy policy = {});
+  /// The same of a mesh in parts, as the constructor takes it.
+  void rebuild(const surface::Arrays& arrays, std::vector<std::uint64_t> numbers);
   /// The surface as it is now, for take_back().
   std::unique_ptr<SurfaceMesh> copy() const;
   /// The surface as it was when it was copied, after the volume has been put back to what it was then.

@@ -200,6 +200,10 @@ struct SurfaceMesh::Impl {
   void build(const surface::Arrays& arrays, const surface::Features& features);
   void take_shape(const surface::Arrays& arrays, const surface::Features& features);
   void begin(const surface::Arrays& arrays, const SurfaceOptions& wanted);
+  /// The surface of `before` meshed in another way, told by nobody: it keeps the shape that `before` keeps,
+  /// with the features that lie where those of `before` lie now. In flat mode the shape is that of now.
+  void begin_again(const surface::Arrays& arrays, const Impl& before);
+  std::vector<std::array<Vec3, 2>> feature_segments() const;
   /// The vertices of each orbit move together; not at all where they are of several kinds.
   void bind(std::vector<std::vector<VertexHandle>> found);
 
@@ -253,9 +257,17 @@ struct SurfaceMesh::Impl {
     return surface::longest_edge2(t) > apart * apart;
   }
   double spacing_between(std::span<const Triangle> input) const;
+  /// Gives the points that the faces of `before` have to the nearest faces.
+  void take_samples(const Impl& before);
   /// A sample stays where it is while that face is near enough, and goes to the nearest of these faces
   /// otherwise; so do those that have no face.
   void share_samples(const std::vector<OmFace>& among, std::array<std::vector<Vec3>, 2> homeless);
+  std::vector<OmFace> live_faces() const {
+    std::vector<OmFace> live;
+    for (OmFace f : om.all_faces())
+      if (!om.status(f).deleted()) live.push_back(f);
+    return live;
+  }
   std::vector<OmFace> faces_round(OmVertex v) const {
     std::vector<OmFace> round;
     for (auto it = om.cvf_iter(v); it.is_valid(); ++it) round.push_back(*it);

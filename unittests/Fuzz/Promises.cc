@@ -67,6 +67,12 @@ class Judge {
   }
 
  private:
+  /// How the surface was to be kept: one that may go nowhere is flat.
+  SurfaceMode mode() const {
+    const SurfaceOptions& surface = options_.surface;
+    return surface.mode == SurfaceMode::kFree && surface.hausdorff == 0.0 ? SurfaceMode::kFlat : surface.mode;
+  }
+
   /// What a run towards a goal has fewer of has been gained, whatever became of the worst.
   std::ptrdiff_t below_goal(const Measure& m) const {
     const double goal = options_.min_dihedral.value_or(0) - kAngleRounding;
@@ -109,12 +115,12 @@ class Judge {
   void volumes(const Measure& before, const Measure& after, double bound) {
     long double allowed = 0;
     const long double rounding = before.largest_coordinate * 0x1p-52L * before.area;
-    if (options_.surface.mode == SurfaceMode::kFlat)
+    if (mode() == SurfaceMode::kFlat)
       allowed =
           kFlatVolume * before.absolute_volume + kPlanar * before.diagonal * before.area + 16 * rounding;
-    if (options_.surface.mode == SurfaceMode::kFree)
+    if (mode() == SurfaceMode::kFree)
       allowed = 2 * bound * before.area + kFlatVolume * before.absolute_volume + 16 * rounding;
-    if (options_.surface.mode == SurfaceMode::kFrozen)
+    if (mode() == SurfaceMode::kFrozen)
       allowed = 1e-16L * before.absolute_volume * before.cells + 1e-3L * rounding;
     std::map<int, long double> change = after.region_volume;
     for (const auto& [region, volume] : before.region_volume) change[region] -= volume;
@@ -134,7 +140,7 @@ class Judge {
   void constraints(const Measure& before, const Measure& after) {
     if (after.fixed_vertices != before.fixed_vertices) find("fixed vertices", "moved or gone");
     if (after.vertex_labels != before.vertex_labels) find("vertex labels", "not the same");
-    if (options_.surface.mode == SurfaceMode::kFrozen) {
+    if (mode() == SurfaceMode::kFrozen) {
       if (after.frozen_faces != before.frozen_faces)
         find("frozen faces", "{} of {} are as they were", common(before.frozen_faces, after.frozen_faces),
              before.frozen_faces.size());
@@ -142,7 +148,7 @@ class Judge {
         find("labelled edges", "{} of {} are as they were",
              common(before.labelled_edges, after.labelled_edges), before.labelled_edges.size());
     }
-    if (options_.surface.mode != SurfaceMode::kFlat) return;
+    if (mode() != SurfaceMode::kFlat) return;
     same_sums("patch area", before.patch_area, after.patch_area, 1e-6L * before.area,
               allowed_by_rounding(before));
     same_sums("edge length", before.edge_length, after.edge_length, 1e-6L * std::sqrt(before.area), {});

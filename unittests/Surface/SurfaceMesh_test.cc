@@ -364,24 +364,35 @@ class Backwards : public VertexNumbers {
   std::size_t n_;
 };
 
+/// A surface as whoever holds a part of the mesh has it: its vertices alone, with their numbers.
+struct Numbered {
+  std::vector<Vec3> points;
+  surface::Arrays arrays;
+  std::vector<std::uint64_t> in_whole;
+
+  Numbered(const TetMesh& mesh, const SurfaceOptions& options, const Backwards& numbers)
+      : arrays(surface::gather(mesh, options, {})) {
+    std::vector<VertexHandle> used;
+    for (const auto& f : arrays.faces) used.insert(used.end(), f.begin(), f.end());
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (VertexHandle v : used) {
+      points.push_back(mesh.point(v));
+      in_whole.push_back(numbers.number(numbers.here(v)));
+    }
+    for (auto& f : arrays.faces)
+      for (VertexHandle& v : f) v = V(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+    arrays.points = points;
+  }
+  Numbered(const Numbered&) = delete;
+  Numbered& operator=(const Numbered&) = delete;
+};
+
 /// The surface alone, with numbers of its vertices.
 std::unique_ptr<SurfaceMesh> numbered(const TetMesh& mesh, const SurfaceOptions& options,
                                       const Backwards& numbers) {
-  surface::Arrays arrays = surface::gather(mesh, options, {});
-  std::vector<VertexHandle> used;
-  for (const auto& f : arrays.faces) used.insert(used.end(), f.begin(), f.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<Vec3> points;
-  std::vector<std::uint64_t> in_whole;
-  for (VertexHandle v : used) {
-    points.push_back(mesh.point(v));
-    in_whole.push_back(numbers.number(numbers.here(v)));
-  }
-  for (auto& f : arrays.faces)
-    for (VertexHandle& v : f) v = V(std::lower_bound(used.begin(), used.end(), v) - used.begin());
-  arrays.points = points;
-  return std::make_unique<SurfaceMesh>(arrays, in_whole, options);
+  const Numbered all(mesh, options, numbers);
+  return std::make_unique<SurfaceMesh>(all.arrays, all.in_whole, options);
 }
 
 /// Of all edges, and of all vertices.
@@ -457,6 +468,98 @@ TEST(SurfaceMesh, APartSeesTheSurfaceOfTheWhole) {
     seen->take_back(*before);  // and the other way round
     EXPECT_TRUE(whole->may_swap(told(edge[0]), told(edge[1])));
   }
+}
+
+/// May the vertex be moved by that step, as far as the surface is concerned?
+bool may_move(const SurfaceMesh& surface, VertexHandle v, Vec3 step) {
+  std::vector<std::array<VertexHandle, 3>> star;
+  surface.star(v, star);
+  std::vector<Triangle> removed, created;
+  for (const auto& f : star) {
+    Triangle t = {surface.point(f[0]), surface.point(f[1]), surface.point(f[2])};
+    removed.push_back(t);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (f[k] == v) t[k] = t[k] + step;
+    created.push_back(t);
+  }
+  return surface.keeps_shape(star, removed, created);
+}
+
+/// Moves a vertex of the mesh and tells the surface.
+void move(TetMesh& mesh, SurfaceMesh& surface, VertexHandle v, Vec3 step) {
+  mesh.set_point(v, mesh.point(v) + step);
+  surface.on_move(v, mesh.point(v));
+}
+
+TEST(SurfaceMesh, WhatIsAllowedCountsFromTheFirstShapeAlsoAfterwards) {
+  const Vec3 up = {0, 0, 0.05};
+  TetMesh mesh = built(generate::box({4, 4, 4}));
+  SurfaceMesh surface(mesh, free_within(0.1));
+  const VertexHandle v = at(mesh, {0.5, 0.5, 1}), w = at(mesh, {0.5, 0.5, 0});
+  ASSERT_TRUE(may_move(surface, v, up));
+  move(mesh, surface, v, up);
+  move(mesh, surface, w, up);  // the volume stays what it was
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_FALSE(may_move(surface, v, up));
+    EXPECT_TRUE(may_move(surface, v, -0.2 * up));
+    EXPECT_TRUE(surface.in_step(mesh));
+    EXPECT_NEAR(surface.volume_gain(), 0, 1e-12);
+    surface.rebuild(mesh);
+  }
+}
+
+TEST(SurfaceMesh, MeshedAgainItKeepsDistanceVolumeAndFeatures) {
+  const TetMesh coarse = built(generate::box({2, 2, 2}));
+  TetMesh fine = built(generate::box({4, 4, 4}));
+  SurfaceOptions options;
+  options.mode = SurfaceMode::kFree;  // the distance is one of the mean edge, or of the diagonal
+  SurfaceMesh surface(coarse, options);
+  const double allowed = surface.hausdorff();
+  surface.rebuild(fine);
+  EXPECT_TRUE(surface.in_step(fine));
+  EXPECT_EQ(surface.hausdorff(), allowed);
+  EXPECT_NEAR(surface.volume_gain(), 0, 1e-12);
+  EXPECT_EQ(surface.n_feature_edges(), 12U * 4);
+  EXPECT_EQ(surface.n_vertices(SurfaceKind::kFixed), 8U);
+  const VertexHandle top = at(fine, {0.5, 0.5, 1}), rim = at(fine, {0.25, 0, 1});
+  EXPECT_EQ(surface.motion_constraint(rim).kind, SurfaceKind::kCurve);
+  EXPECT_NEAR(norm(surface.project(rim, {0.3, 0.1, 1.1}) - Vec3{0.3, 0, 1}), 0, 1e-15);
+  EXPECT_TRUE(may_move(surface, top, {0, 0, 0.5 * allowed}));
+  EXPECT_FALSE(may_move(surface, top, {0, 0, 0.8 * allowed}));
+  EXPECT_FALSE(may_move(surface, top, {0, 0, -0.8 * allowed}));
+}
+
+/// A roof whose ridge is hardly sharp enough for a feature, and flatter than that after a move.
+TEST(SurfaceMesh, FeaturesStayFeaturesWhenItIsMeshedAgain) {
+  TetMesh mesh = built(generate::box({2, 2, 2}));
+  std::vector<VertexHandle> ridge;
+  for (VertexHandle v : mesh.vertices()) {
+    const Vec3 p = mesh.point(v);
+    if (p.z != 1 || p.x != 0.5) continue;
+    ridge.push_back(v);
+    mesh.set_point(v, p + Vec3{0, 0, 0.19});
+  }
+  ASSERT_EQ(ridge.size(), 3U);
+  const Backwards part(mesh.n_vertices());
+  const SurfaceOptions options = free_within(0.05);
+  SurfaceMesh surface(mesh, options);
+  const auto whole = numbered(mesh, options, part);
+  const VertexHandle middle = at(mesh, {0.5, 0.5, 1.19}), end = at(mesh, {0.5, 0, 1.19});
+  ASSERT_TRUE(surface.is_feature(middle, end));
+  for (VertexHandle v : ridge) {
+    move(mesh, surface, v, {0, 0, -0.015});
+    whole->on_move(whole->handle_of(part.number(part.here(v))), mesh.point(v));
+  }
+  EXPECT_FALSE(SurfaceMesh(mesh, options).is_feature(middle, end));
+  surface.rebuild(mesh);
+  EXPECT_TRUE(surface.is_feature(middle, end));
+  EXPECT_EQ(surface.motion_constraint(middle).kind, SurfaceKind::kCurve);
+  const Numbered now(mesh, options, part);
+  const auto seen = whole->seen_from(part);  // which sees what becomes of the whole
+  whole->rebuild(now.arrays, now.in_whole);
+  EXPECT_TRUE(seen->is_feature(part.here(middle), part.here(end)));
+  EXPECT_EQ(seen->volume_gain(), surface.volume_gain());
+  EXPECT_NEAR(surface.volume_gain(), -0.015 / 2 / 1.095, 1e-4);
 }
 
 }  // namespace
