@@ -100,6 +100,7 @@ void mend_and_improve_all(const Run& run) {
 struct Beginning {
   Snapshot mesh;
   std::uint32_t clock;
+  bool is_input = false;  // with cells that what every run does first did not make valid; see make_valid()
 
   explicit Beginning(const Run& run) : mesh(run), clock(run.work.clock) {}
   void put_back(const Run& run) {
@@ -151,17 +152,34 @@ bool frozen_may_help(const Run& run) {
          may_rise(with_frozen_surface(run), run.strategy.frozen->claimed->goal->degrees);
 }
 
+/// What every run does first where cells are inverted or flat. Where some stay so, a run that is to keep more
+/// of the surface may mend others from the input, which is returned if there is such a run.
+std::optional<Beginning> make_valid(const Run& run) {
+  std::optional<Beginning> input;
+  if (!run.strategy.plain) return input;
+  const auto keeps_more = [](const Strategy& s) { return s.frozen || s.without_goal; };
+  if (keeps_more(run.strategy) || (run.strategy.usual && keeps_more(*run.strategy.usual)))
+    input.emplace(run).is_input = true;
+  const bool is_valid = run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal) ||
+                        run.survey().n_invalid == 0;
+  run.keep(is_valid);
+  if (is_valid) input.reset();
+  return input;
+}
+
 /// The run with the surface frozen: goes on from there, or begins at `from`, and keeps the better of what
 /// there was and what comes.
 void run_frozen(const Run& run, std::optional<Beginning> from = {}) {
   const Strategy& frozen = *run.strategy.frozen;
   Best best(run, frozen.claimed->goal->may_fall, Loss::kMadeUpFor);
   if (from) from->put_back(run);
-  run_default(with_frozen_surface(run));
+  const Run part = with_frozen_surface(run);
+  if (from && from->is_input) make_valid(part);
+  run_default(part);
   best.settle();
 }
 
-void run_usual(const Run& run);
+void run_usual(const Run& run, std::optional<Beginning> input = {});
 
 /// The run with a flat surface, from the beginning, and the better of what there was and what comes: a free
 /// run may do all that this one may.
@@ -173,53 +191,54 @@ void run_flat(const Run& run, Beginning from) {
   const FlatSurface surface(run);
   Run part = run.with(strategy);
   part.surface = surface.get();
-  run_usual(part);
+  run_usual(part, from.is_input ? make_valid(part) : std::nullopt);
   rebuild_surface(run);
   best.settle();
 }
 
-/// A default run, whatever the surface may do.
-void run_usual(const Run& run) {
+/// A default run, whatever the surface may do. `input`: see make_valid().
+void run_usual(const Run& run, std::optional<Beginning> input) {
   if (!run.strategy.frozen) return run_default(run);
   const bool lacks = lacks_vertices(run);
-  std::optional<Beginning> beginning;
-  if (lacks || run.strategy.flat) beginning.emplace(run);
+  std::optional<Beginning> beginning = std::move(input);
+  if (!beginning && (lacks || run.strategy.flat)) beginning.emplace(run);
   mend_and_improve_all(run);
   const bool is_poor = frozen_may_help(run);
   reach_claimed(run, run.findings.met_cell_bound);
   if (is_poor) run_frozen(run);
   if (run.strategy.flat)  // which may go on with a frozen one
     run_flat(run, std::move(*beginning));
-  else if (lacks && frozen_may_help(run))
+  else if (beginning && (lacks || run.survey().n_invalid > 0) && frozen_may_help(run))
     run_frozen(run, std::move(beginning));
 }
 
 /// Where a goal was missed, the run without one from the beginning, and of both the one that comes closer: a
 /// goal asks for nothing but the worst angle.
-void run_without_goal(const Run& run, const GoalEffort& goal, Beginning from) {
+void run_without_goal(const Run& run, const GoalEffort& goal, Beginning from,
+                      std::optional<Beginning> input) {
   if (run.control.stopped() || !may_rise(run, run.strategy.claimed->goal->degrees)) return;
   constexpr double kAll = 1;
   Best best(run, kAll);
   from.put_back(run);
-  run_usual(run.with(*run.strategy.without_goal));
+  run_usual(run.with(*run.strategy.without_goal), std::move(input));
   best.note();
   polish(run, run.strategy.polish, goal.degrees);
   best.settle();
 }
 
 /// A run towards a goal, whatever the surface may do.
-bool run_to_goal(const Run& run, const GoalEffort& goal) {
+bool run_to_goal(const Run& run, const GoalEffort& goal, std::optional<Beginning> input) {
   std::optional<Beginning> beginning;
   if (run.strategy.without_goal) beginning.emplace(run);
   if (run_towards_goal(run, goal)) return true;
   // That goes on with a frozen surface, too.
-  if (beginning) run_without_goal(run, goal, std::move(*beginning));
+  if (beginning) run_without_goal(run, goal, std::move(*beginning), std::move(input));
   return run.n_below(goal.degrees) == 0;
 }
 
-bool run_at_any_cost(const Run& run, const AnyCostEffort& effort) {
+bool run_at_any_cost(const Run& run, const AnyCostEffort& effort, std::optional<Beginning> input) {
   const Run usual = run.strategy.usual ? run.with(*run.strategy.usual) : run;
-  run_usual(usual);
+  run_usual(usual, std::move(input));
   Best best(run, effort.may_fall);
   raise_at_any_cost(run, effort, best);
   best.settle();
@@ -244,19 +263,15 @@ void improve_all(const Run& run, double floor, std::span<const TargetAngle> targ
 }
 
 bool run_stages(const Run& run) {
-  if (run.strategy.plain) {
-    const bool is_valid = run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal) ||
-                          run.survey().n_invalid == 0;
-    run.keep(is_valid);
-  }
+  std::optional<Beginning> input = make_valid(run);
   switch (run.strategy.course) {
     case Course::kDefault:
-      run_usual(run);
+      run_usual(run, std::move(input));
       return false;
     case Course::kGoal:
-      return run_to_goal(run, *run.strategy.goal);
+      return run_to_goal(run, *run.strategy.goal, std::move(input));
     case Course::kAnyCost:
-      return run_at_any_cost(run, *run.strategy.any_cost);
+      return run_at_any_cost(run, *run.strategy.any_cost, std::move(input));
     case Course::kCompat:
       run_jpdc2013(run, run.strategy.compat);
   }
