@@ -2,6 +2,7 @@
 #include "Remesh/Pipeline.hh"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -38,9 +39,25 @@ void mend_invalid(const Run& run) {
 /// Whether a cell is below `degrees` that nothing proves to be held where it is.
 bool may_rise(const Run& run, double degrees) { return smallest_that_may_rise(run, degrees) < degrees; }
 
+/// Cells below an angle before a part of a run, for what more cells would make of them.
+struct Low {
+  double degrees;
+  std::size_t n, n_cells;
+
+  Low(const Run& run, double angle) : degrees(angle), n(run.n_below(angle)), n_cells(run.n_cells()) {}
+  /// Whether there would be none with `most` cells, if those that come mend as many each as those that came.
+  bool would_be_gone(const Run& run, double most) const {
+    const std::size_t left = run.n_below(degrees), now = run.n_cells();
+    if (left >= n || now <= n_cells) return false;
+    return static_cast<double>(n - left) * (most - static_cast<double>(n_cells)) >=
+           static_cast<double>(n) * static_cast<double>(now - n_cells);
+  }
+};
+
 /// Works over all cells for what a default run claims, or for the goal if it is less: where the number of
 /// cells was in the way, and with a surface that may change in any case. Goes on while that raises the worst
-/// angle, with more cells where they were in the way; once also where a percentile has fallen for it.
+/// angle, with more cells where they were in the way, or would with as many as there may be in the end; once
+/// also where a percentile has fallen for it.
 void reach_claimed(const Run& run, bool met_cell_bound) {
   if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
@@ -52,27 +69,30 @@ void reach_claimed(const Run& run, bool met_cell_bound) {
     part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
   };
   int n_grown = 0;
-  if (may_grow && part.bounds.max <= run.bounds.max) {
-    grow();
-    ++n_grown;
-  }
+  const auto most_cells = [&] {
+    return std::pow(goal.more_cells, goal.turns - 1 - n_grown) * static_cast<double>(part.bounds.max);
+  };
+  const auto has_no_room = [&] { return part.bounds.max <= std::max(run.bounds.max, run.n_cells()); };
+  for (; may_grow && has_no_room() && n_grown + 1 < goal.turns; ++n_grown) grow();
   std::optional<Best::Beginning> before;
   bool stayed = true;
   while (may_rise(run, goal.degrees) && !run.control.stopped()) {
     if (!before) before.emplace(run);
     const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
+    const Low low(run, enough);
     run.findings.forget_cell_bound();
     Best best(run, goal.may_fall, Loss::kMadeUpFor, *before);
     reach_in_turn(part, goal, best);
     const bool rose = smallest() > enough, was_in_the_way = run.findings.met_cell_bound || !part.has_room();
+    const bool would_rise = !rose && was_in_the_way && may_grow && low.would_be_gone(run, most_cells());
     best.settle();
     const bool stays = smallest() > enough;
-    if (!rose || !(stays || stayed)) return;
+    if (!would_rise && (!rose || !(stays || stayed))) return;
     if (was_in_the_way) {
       if (!may_grow || ++n_grown >= goal.turns) return;
       grow();
     }
-    stayed = stays;
+    stayed = stays || would_rise;
   }
 }
 

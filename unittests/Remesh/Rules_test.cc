@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "HalfFace/Errors.hh"
@@ -54,6 +55,18 @@ TetMesh graded(Index n, double factor) {
 
 TetMesh wrung(double degrees) { return built(generate::cylinder(2, 6, 1, 2, 0, degrees)); }
 
+/// n cells round an edge, `beside` the axis of their rim: all alike, or nearly, and without an inner vertex.
+TetMesh ring(Index n, double beside) {
+  generate::Arrays arrays;
+  arrays.points = {{beside, 0, 0}, {beside, 0, 1}};
+  for (Index i = 0; i < n; ++i) {
+    const double turn = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+    arrays.points.push_back({std::cos(turn), std::sin(turn), 0.5});
+    arrays.cells.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
+  }
+  return built(arrays);
+}
+
 /// Cells that join one vertex to the triangles of a sphere, whose vertices lie unevenly on 10 circles of
 /// latitude: one inside, or without a `centre` the north pole, so that there is none inside.
 TetMesh star_of_sphere(std::optional<Vec3> centre, std::uint64_t seed) {
@@ -97,6 +110,7 @@ std::vector<TetMesh> meshes() {
   for (double height : {0.1, 0.05}) all.push_back(pressed(4, 0.2, height));
   for (double degrees : {58.0, 85.0}) all.push_back(wrung(degrees));
   all.push_back(star_of_sphere(Vec3{0.6, 0.1, 0.2}, 3));
+  all.push_back(ring(150, 0));
   return all;
 }
 
@@ -340,6 +354,20 @@ TEST(Rules, FreeSurfaceEndsNoLowerThanAFlatOneAndAMissedGoalNoLowerThanADefaultR
     }
   }
   EXPECT_GE(n_missed, 2U);
+}
+
+/// All cells are the worst one, so that the worst angle rises only when each of them has been mended; and the
+/// first vertex, which is of all cells, takes more of them than the first bound allows.
+TEST(Rules, CellsThatAreAllAlikeGetTheVerticesThatTheyNeed) {
+  for (const auto& [n, beside] : {std::pair<Index, double>{24, 0.0}, {48, 0.5}, {64, 0.0}}) {
+    const TetMesh cells = ring(n, beside);
+    for (const ImproveOptions& options : {serial(), towards(15), towards(10)}) {
+      TetMesh mesh = cells;
+      const double claimed = options.min_dihedral.value_or(15);
+      EXPECT_GE(improve(mesh, options).after.min_dihedral.min, claimed - kLeastRise) << n;
+      EXPECT_LE(mesh.n_cells(), 3.4 * n);
+    }
+  }
 }
 
 /// The mesh with a cell beside it that touches nothing, and that its own faces hold at a degree.
