@@ -56,9 +56,9 @@ struct Low {
 
 /// Works over all cells for what a default run claims, or for the goal if it is less: where the number of
 /// cells was in the way, and with a surface that may change in any case. Goes on while that raises the worst
-/// angle, with more cells where they were in the way, or would with as many as there may be in the end; once
-/// also where a percentile has fallen for it.
-void reach_claimed(const Run& run, bool met_cell_bound) {
+/// angle, with more cells where they were in the way; once also where a percentile has fallen for it. With
+/// `on_promise` also where it would rise with as many cells as there may be in the end.
+void reach_claimed(const Run& run, bool met_cell_bound, bool on_promise = true) {
   if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
@@ -84,7 +84,8 @@ void reach_claimed(const Run& run, bool met_cell_bound) {
     Best best(run, goal.may_fall, Loss::kMadeUpFor, *before);
     reach_in_turn(part, goal, best);
     const bool rose = smallest() > enough, was_in_the_way = run.findings.met_cell_bound || !part.has_room();
-    const bool would_rise = !rose && was_in_the_way && may_grow && low.would_be_gone(run, most_cells());
+    const bool would_rise =
+        on_promise && !rose && was_in_the_way && may_grow && low.would_be_gone(run, most_cells());
     best.settle();
     const bool stays = smallest() > enough;
     if (!would_rise && (!rose || !(stays || stayed))) return;
@@ -131,11 +132,16 @@ struct Beginning {
 
 /// Where the worst angle that is claimed was not reached and the mesh is poor throughout all the same: the
 /// run that is asked for it, from the beginning, for there the order decides what the worst cells come to. If
-/// that reaches more, all cells are improved from there, and of all that the best mesh is kept.
+/// that reaches more, all cells are improved from there, and of all that the best mesh is kept. Where a few
+/// cells are what is left, the rest of what the claim may take.
 void run_towards_claim(const Run& run, Beginning from) {
   const Strategy& strategy = *run.strategy.towards_claim;
   const double before = smallest_that_may_rise(run, strategy.goal->degrees);
-  if (before >= strategy.goal->degrees || run.control.stopped() || !is_poor_throughout(run)) return;
+  if (before >= strategy.goal->degrees || run.control.stopped()) return;
+  if (!is_poor_throughout(run)) {
+    reach_claimed(run, run.findings.ever_met_cell_bound);
+    return;
+  }
   Best best(run, strategy.goal->may_fall, Loss::kMadeUpFor);
   const Revision usual = run.control.revision();
   from.put_back(run);
@@ -156,7 +162,7 @@ void run_default(const Run& run) {
   std::optional<Beginning> beginning;
   if (run.strategy.towards_claim && is_poor_throughout(run)) beginning.emplace(run);
   mend_and_improve_all(run);
-  reach_claimed(run, run.findings.met_cell_bound);
+  reach_claimed(run, run.findings.met_cell_bound, /*on_promise=*/!beginning);
   if (beginning) run_towards_claim(run, std::move(*beginning));
 }
 
@@ -172,18 +178,32 @@ bool frozen_may_help(const Run& run) {
          may_rise(with_frozen_surface(run), run.strategy.frozen->claimed->goal->degrees);
 }
 
-/// What every run does first where cells are inverted or flat. Where some stay so, a run that is to keep more
-/// of the surface may mend others from the input, which is returned if there is such a run.
+/// What every run does first where cells are inverted or flat: once without holding each cluster to being no
+/// more damaged, and held where that leaves some so; the better of both. A run that is to keep more of the
+/// surface may mend others from the input, which is returned if cells stay invalid and there is such a run.
 std::optional<Beginning> make_valid(const Run& run) {
-  std::optional<Beginning> input;
-  if (!run.strategy.plain) return input;
+  if (!run.strategy.plain) return {};
+  const Strategy& plain = *run.strategy.plain;
+  const auto mend = [&] {
+    const bool is_valid = run_towards_goal(run.with(plain), *plain.goal) || run.survey().n_invalid == 0;
+    run.keep(is_valid);
+    return is_valid;
+  };
+  Beginning input(run);
+  if (mend()) return {};
+  if (!run.work.holds_damage && !run.control.stopped()) {
+    const Standing found = run.standing();
+    Beginning unheld(run), again = input;
+    again.put_back(run);
+    run.work.holds_damage = true;
+    const bool is_valid = mend();
+    run.work.holds_damage = false;
+    if (is_valid) return {};
+    if (!is_better(run.standing(), found)) unheld.put_back(run);
+  }
   const auto keeps_more = [](const Strategy& s) { return s.frozen || s.without_goal; };
-  if (keeps_more(run.strategy) || (run.strategy.usual && keeps_more(*run.strategy.usual)))
-    input.emplace(run).is_input = true;
-  const bool is_valid = run_towards_goal(run.with(*run.strategy.plain), *run.strategy.plain->goal) ||
-                        run.survey().n_invalid == 0;
-  run.keep(is_valid);
-  if (is_valid) input.reset();
+  if (!keeps_more(run.strategy) && !(run.strategy.usual && keeps_more(*run.strategy.usual))) return {};
+  input.is_input = true;
   return input;
 }
 

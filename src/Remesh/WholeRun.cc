@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Remesh/WholeRun.hh"
 
+#include <optional>
+
 #include "Remesh/Pipeline.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/RestoreVolume.hh"
@@ -29,7 +31,8 @@ bool settle(const Run& run, bool known_to_meet) {
 
 /// All stages. Over inverted or flat cells first without holding each cluster to being no more damaged: from
 /// a state between that is worse, more of them come right. Where the mesh ends worse for it than it began,
-/// again from the beginning, and held.
+/// again from the beginning, and held; a plain goal also where cells stay invalid, and the better of both, as
+/// other runs do it with theirs.
 bool run_twice_if_worse(const Run& run) {
   const auto run_all = [&] {
     const bool met = run_stages(run);
@@ -42,9 +45,19 @@ bool run_twice_if_worse(const Run& run) {
   run.work.holds_damage = false;
   const bool met = run_all();
   run.work.holds_damage = true;
-  if (met || run.control.stopped() || run.checkpoint->allows(run.mesh)) return met;
+  if (met || run.control.stopped()) return met;
+  const Standing found = run.standing();
+  std::optional<Snapshot> unheld;
+  if (run.checkpoint->allows(run.mesh)) {
+    const bool is_plain = run.strategy.untangle && !run.strategy.plain;
+    if (!is_plain || found.is_valid()) return met;
+    unheld.emplace(run);
+  }
   before.put_back(run);
-  return run_all();
+  const bool met_held = run_all();
+  if (!unheld || is_better(run.standing(), found)) return met_held;
+  unheld->put_back(run);
+  return met;
 }
 
 }  // namespace
