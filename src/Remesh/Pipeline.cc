@@ -2,7 +2,6 @@
 #include "Remesh/Pipeline.hh"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -39,15 +38,18 @@ void mend_invalid(const Run& run) {
 /// Whether a cell is below `degrees` that nothing proves to be held where it is.
 bool may_rise(const Run& run, double degrees) { return smallest_that_may_rise(run, degrees) < degrees; }
 
-/// Cells below an angle before a part of a run, for what more cells would make of them.
+/// Cells below an angle that may rise, before a part of a run, for what more cells would make of them.
 struct Low {
   double degrees;
   std::size_t n, n_cells;
 
-  Low(const Run& run, double angle) : degrees(angle), n(run.n_below(angle)), n_cells(run.n_cells()) {}
+  Low(const Run& run, double angle) : degrees(angle), n(count(run, angle)), n_cells(run.n_cells()) {}
+  static std::size_t count(const Run& run, double angle) {
+    return run.n_below(angle) - n_at_ceiling(run, angle);
+  }
   /// Whether there would be none with `most` cells, if those that come mend as many each as those that came.
   bool would_be_gone(const Run& run, double most) const {
-    const std::size_t left = run.n_below(degrees), now = run.n_cells();
+    const std::size_t left = count(run, degrees), now = run.n_cells();
     if (left >= n || now <= n_cells) return false;
     return static_cast<double>(n - left) * (most - static_cast<double>(n_cells)) >=
            static_cast<double>(n) * static_cast<double>(now - n_cells);
@@ -57,9 +59,11 @@ struct Low {
 /// Works over all cells for what a default run claims, or for the goal if it is less: where the number of
 /// cells was in the way, and with a surface that may change in any case. Goes on while that raises the worst
 /// angle, with more cells where they were in the way; once also where a percentile has fallen for it. With
-/// `on_promise` also where it would rise with as many cells as there may be in the end.
-void reach_claimed(const Run& run, bool met_cell_bound, bool on_promise = true) {
-  if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return;
+/// `on_promise` also where it would rise with as many cells as there may be in the end. `before`: where such
+/// work has begun already, of which the percentiles count; returned for more of it.
+std::optional<Best::Beginning> reach_claimed(const Run& run, bool met_cell_bound, bool on_promise = true,
+                                             std::optional<Best::Beginning> before = {}) {
+  if (!run.strategy.claimed || (!run.surface && !met_cell_bound && run.has_room())) return before;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const auto smallest = [&] { return smallest_that_may_rise(run, goal.degrees); };
@@ -70,31 +74,34 @@ void reach_claimed(const Run& run, bool met_cell_bound, bool on_promise = true) 
   };
   int n_grown = 0;
   const auto most_cells = [&] {
-    return std::pow(goal.more_cells, goal.turns - 1 - n_grown) * static_cast<double>(part.bounds.max);
+    auto most = static_cast<double>(part.bounds.max);
+    for (int i = n_grown + 1; i < goal.turns; ++i) most *= goal.more_cells;
+    return most;
   };
-  const auto has_no_room = [&] { return part.bounds.max <= std::max(run.bounds.max, run.n_cells()); };
-  for (; may_grow && has_no_room() && n_grown + 1 < goal.turns; ++n_grown) grow();
-  std::optional<Best::Beginning> before;
+  const auto brings_no_room = [&] { return part.bounds.max <= run.bounds.max || !part.has_room(); };
+  for (; may_grow && brings_no_room() && n_grown + 1 < goal.turns; ++n_grown) grow();
   bool stayed = true;
   while (may_rise(run, goal.degrees) && !run.control.stopped()) {
     if (!before) before.emplace(run);
     const double enough = std::max(smallest(), 0.0) + goal.pays * goal.degrees;
-    const Low low(run, enough);
+    std::optional<Low> low;
+    if (on_promise && may_grow) low.emplace(run, enough);
     run.findings.forget_cell_bound();
     Best best(run, goal.may_fall, Loss::kMadeUpFor, *before);
     reach_in_turn(part, goal, best);
     const bool rose = smallest() > enough, was_in_the_way = run.findings.met_cell_bound || !part.has_room();
     const bool would_rise =
-        on_promise && !rose && was_in_the_way && may_grow && low.would_be_gone(run, most_cells());
+        low && !rose && was_in_the_way && smallest() < goal.degrees && low->would_be_gone(run, most_cells());
     best.settle();
     const bool stays = smallest() > enough;
-    if (!would_rise && (!rose || !(stays || stayed))) return;
+    if (!would_rise && (!rose || !(stays || stayed))) break;
     if (was_in_the_way) {
-      if (!may_grow || ++n_grown >= goal.turns) return;
+      if (!may_grow || ++n_grown >= goal.turns) break;
       grow();
     }
     stayed = stays || would_rise;
   }
+  return before;
 }
 
 bool run_towards_goal(const Run& run, const GoalEffort& goal) {
@@ -132,14 +139,14 @@ struct Beginning {
 
 /// Where the worst angle that is claimed was not reached and the mesh is poor throughout all the same: the
 /// run that is asked for it, from the beginning, for there the order decides what the worst cells come to. If
-/// that reaches more, all cells are improved from there, and of all that the best mesh is kept. Where a few
-/// cells are what is left, the rest of what the claim may take.
-void run_towards_claim(const Run& run, Beginning from) {
+/// that reaches more, all cells are improved from there, and of all that the best mesh is kept. Where only
+/// a few cells are poor by then, more of them on promise instead.
+void run_towards_claim(const Run& run, Beginning from, std::optional<Best::Beginning> claiming) {
   const Strategy& strategy = *run.strategy.towards_claim;
   const double before = smallest_that_may_rise(run, strategy.goal->degrees);
   if (before >= strategy.goal->degrees || run.control.stopped()) return;
   if (!is_poor_throughout(run)) {
-    reach_claimed(run, run.findings.ever_met_cell_bound);
+    reach_claimed(run, run.findings.ever_met_cell_bound, /*on_promise=*/true, std::move(claiming));
     return;
   }
   Best best(run, strategy.goal->may_fall, Loss::kMadeUpFor);
@@ -162,8 +169,8 @@ void run_default(const Run& run) {
   std::optional<Beginning> beginning;
   if (run.strategy.towards_claim && is_poor_throughout(run)) beginning.emplace(run);
   mend_and_improve_all(run);
-  reach_claimed(run, run.findings.met_cell_bound, /*on_promise=*/!beginning);
-  if (beginning) run_towards_claim(run, std::move(*beginning));
+  auto claiming = reach_claimed(run, run.findings.met_cell_bound, /*on_promise=*/!beginning);
+  if (beginning) run_towards_claim(run, std::move(*beginning), std::move(claiming));
 }
 
 Run with_frozen_surface(const Run& run) {
@@ -199,7 +206,12 @@ std::optional<Beginning> make_valid(const Run& run) {
     const bool is_valid = mend();
     run.work.holds_damage = false;
     if (is_valid) return {};
-    if (!is_better(run.standing(), found)) unheld.put_back(run);
+    const Standing held = run.standing();
+    const auto is_allowed = [&](const Standing& standing) {
+      return !run.checkpoint || is_no_worse(standing, run.checkpoint->input());
+    };
+    // What is worse than the input in anything would not be given back.
+    if (!is_better(held, found) || (is_allowed(found) && !is_allowed(held))) unheld.put_back(run);
   }
   const auto keeps_more = [](const Strategy& s) { return s.frozen || s.without_goal; };
   if (!keeps_more(run.strategy) && !(run.strategy.usual && keeps_more(*run.strategy.usual))) return {};
@@ -240,15 +252,16 @@ void run_flat(const Run& run, Beginning from) {
 void run_usual(const Run& run, std::optional<Beginning> input) {
   if (!run.strategy.frozen) return run_default(run);
   const bool lacks = lacks_vertices(run);
-  std::optional<Beginning> beginning = std::move(input);
-  if (!beginning && (lacks || run.strategy.flat)) beginning.emplace(run);
+  std::optional<Beginning> beginning;
+  if (lacks || run.strategy.flat) beginning.emplace(run);
   mend_and_improve_all(run);
   const bool is_poor = frozen_may_help(run);
   reach_claimed(run, run.findings.met_cell_bound);
   if (is_poor) run_frozen(run);
+  if (input && run.survey().n_invalid > 0) beginning = std::move(input);
   if (run.strategy.flat)  // which may go on with a frozen one
     run_flat(run, std::move(*beginning));
-  else if (beginning && (lacks || run.survey().n_invalid > 0) && frozen_may_help(run))
+  else if (beginning && frozen_may_help(run))
     run_frozen(run, std::move(beginning));
 }
 

@@ -51,8 +51,8 @@ class PartOfSurface {
  private:
   std::shared_ptr<SurfaceMesh> surface_;  // shared: a build without surfaces cannot delete one
 };
-/// After patches have been put back, or a run with a flat surface: the surface of the run as it is now, which
-/// has to have the shape that it is to keep. Does nothing without one.
+/// After patches have been put back, or a run with a flat surface: the surface of the run as it is meshed
+/// now, which keeps the shape that it has had to keep so far. Does nothing without one.
 void rebuild_surface(const Run& run);
 
 /// The surface of a free run before anything has changed it, as a flat one.

@@ -52,10 +52,11 @@ bool run_twice_if_worse(const Run& run) {
     const bool is_plain = run.strategy.untangle && !run.strategy.plain;
     if (!is_plain || found.is_valid()) return met;
     unheld.emplace(run);
+    run.keep(false);
   }
   before.put_back(run);
   const bool met_held = run_all();
-  if (!unheld || is_better(run.standing(), found)) return met_held;
+  if (!unheld || (run.checkpoint->allows(run.mesh) && is_better(run.standing(), found))) return met_held;
   unheld->put_back(run);
   return met;
 }

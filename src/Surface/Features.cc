@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "Parallel/DisjointSets.hh"
 #include "Surface/InputSurface.hh"
@@ -539,7 +540,7 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
 }
 
 Features find_features_again(const Arrays& arrays, const SurfaceOptions& options,
-                             std::span<const std::array<Vec3, 2>> segments) {
+                             std::span<const std::array<Vec3, 2>> segments, std::vector<Vec3> corners) {
   /// Share of the diagonal: what is no further from a segment lies on it but for rounding.
   constexpr double kOnSegment = 1e-9;
   const double tolerance = kOnSegment * diagonal(arrays);
@@ -554,6 +555,14 @@ Features find_features_again(const Arrays& arrays, const SurfaceOptions& options
     return lies_there(a) && lies_there(b) && lies_there(0.5 * (a + b));
   });
   find_motion_constraints(arrays, options, normals(arrays), {}, found);
+  const auto less = [](Vec3 a, Vec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
+  std::sort(corners.begin(), corners.end(), less);
+  for (std::size_t i = 0; i < found.motion_constraint.size(); ++i) {
+    MotionConstraint& here = found.motion_constraint[i];
+    if (here.kind != SurfaceKind::kInside &&
+        std::binary_search(corners.begin(), corners.end(), arrays.points[i], less))
+      here = {SurfaceKind::kFixed, arrays.points[i], {}};
+  }
   return found;
 }
 

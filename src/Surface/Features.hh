@@ -60,9 +60,10 @@ struct Features {
 /// that, are too small to be features.
 Features find_features(const Arrays& arrays, const SurfaceOptions& options, double distance);
 /// In free mode, where the same surface had features before it was meshed in another way: edges that lie on
-/// those `segments` are features, whatever angle is there by now, and no others for their angle alone.
+/// those `segments` are features, whatever angle is there by now, and no others for their angle alone. What
+/// lies in a `corner` stays there.
 Features find_features_again(const Arrays& arrays, const SurfaceOptions& options,
-                             std::span<const std::array<Vec3, 2>> segments);
+                             std::span<const std::array<Vec3, 2>> segments, std::vector<Vec3> corners);
 /// Largest distance from the input that the options allow; 0 but in free mode. Unless they say it, three
 /// tenths of the mean edge, but no more than 0.005 of the diagonal of the bounding box.
 double allowed_distance(const Arrays& arrays, const SurfaceOptions& options);

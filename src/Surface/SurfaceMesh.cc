@@ -204,6 +204,13 @@ std::vector<std::array<Vec3, 2>> SurfaceMesh::Impl::feature_segments() const {
   return segments;
 }
 
+std::vector<Vec3> SurfaceMesh::Impl::fixed_points() const {
+  std::vector<Vec3> points;
+  for (const MotionConstraint& one : motion_constraint)
+    if (one.kind == SurfaceKind::kFixed) points.push_back(one.anchor);
+  return points;
+}
+
 void SurfaceMesh::Impl::take_samples(const Impl& before) {
   const std::vector<OmFace> live = live_faces();
   std::vector<Triangle> triangles;
@@ -240,7 +247,8 @@ void SurfaceMesh::Impl::begin_again(const Arrays& arrays, const Impl& before) {
   origin = before.origin;
   six_volume = before.six_volume;
   area = before.area;
-  surface::Features features = surface::find_features_again(arrays, options, before.feature_segments());
+  surface::Features features =
+      surface::find_features_again(arrays, options, before.feature_segments(), before.fixed_points());
   build(arrays, features);
   motion_constraint = std::move(features.motion_constraint);
   if (!shape) return;  // there are no faces

@@ -204,6 +204,7 @@ struct SurfaceMesh::Impl {
   /// with the features that lie where those of `before` lie now. In flat mode the shape is that of now.
   void begin_again(const surface::Arrays& arrays, const Impl& before);
   std::vector<std::array<Vec3, 2>> feature_segments() const;
+  std::vector<Vec3> fixed_points() const;
   /// The vertices of each orbit move together; not at all where they are of several kinds.
   void bind(std::vector<std::vector<VertexHandle>> found);
 

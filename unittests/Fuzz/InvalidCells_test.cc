@@ -39,7 +39,11 @@ TEST(InvalidCells, FlatLeavesNoMoreCellsInvalidThanFrozenAndFreeNoMoreThanFlat) 
       EXPECT_LE(free, flat) << number;
       n_better += free < frozen ? 1 : 0;
     } catch (const InvalidInput& error) {
+#ifdef HFR_HAS_SURFACE
+      FAIL() << number << ": " << error.what();
+#else
       GTEST_SKIP() << error.what();  // a build without OpenMesh
+#endif
     }
   }
   EXPECT_GT(n_better, 2U);

@@ -529,6 +529,21 @@ TEST(SurfaceMesh, MeshedAgainItKeepsDistanceVolumeAndFeatures) {
   EXPECT_FALSE(may_move(surface, top, {0, 0, -0.8 * allowed}));
 }
 
+/// A bend between two feature edges, hardly large enough for a corner, and smaller once a neighbour has
+/// moved.
+TEST(SurfaceMesh, CornersStayCornersWhenItIsMeshedAgain) {
+  TetMesh mesh = built(generate::box({2, 2, 2}));
+  const VertexHandle corner = at(mesh, {0.5, 0, 1}), beside = at(mesh, {1, 0, 1});
+  mesh.set_point(corner, {0.5, -0.2, 1});  // the rim turns by 43.6 degrees here
+  const SurfaceOptions options = free_within(0.05);
+  SurfaceMesh surface(mesh, options);
+  ASSERT_EQ(surface.motion_constraint(corner).kind, SurfaceKind::kFixed);
+  move(mesh, surface, beside, {0, -0.045, 0});
+  EXPECT_EQ(SurfaceMesh(mesh, options).motion_constraint(corner).kind, SurfaceKind::kCurve);
+  surface.rebuild(mesh);
+  EXPECT_EQ(surface.motion_constraint(corner).kind, SurfaceKind::kFixed);
+}
+
 /// A roof whose ridge is hardly sharp enough for a feature, and flatter than that after a move.
 TEST(SurfaceMesh, FeaturesStayFeaturesWhenItIsMeshedAgain) {
   TetMesh mesh = built(generate::box({2, 2, 2}));
