@@ -297,8 +297,10 @@ TEST(Improve, EveryOperatorByItselfKeepsTheMeshWhole) {
     EXPECT_NEAR(volume(mesh), before, 1e-12);
     EXPECT_LE(n_inverted(mesh), inverted);
     EXPECT_TRUE(worst_quality(mesh, VolumeLength{}) >= worst || n_inverted(mesh) == 0);
-    for (const PassReport& pass : result.passes)
+    for (const PassReport& pass : result.passes) {
+      if (pass.op == "undo") continue;  // what was put back, by no operator
       EXPECT_TRUE(pass.op == name || (pass.op == "unfold" && name == std::string("smooth"))) << pass.op;
+    }
   }
 }
 
