@@ -199,19 +199,17 @@ std::optional<Beginning> make_valid(const Run& run) {
   Beginning input(run);
   if (mend()) return {};
   if (!run.work.holds_damage && !run.control.stopped()) {
+    const auto is_allowed = [&] { return !run.checkpoint || run.checkpoint->allows(run.mesh); };
     const Standing found = run.standing();
+    const bool was_allowed = is_allowed();
     Beginning unheld(run), again = input;
     again.put_back(run);
     run.work.holds_damage = true;
     const bool is_valid = mend();
     run.work.holds_damage = false;
     if (is_valid) return {};
-    const Standing held = run.standing();
-    const auto is_allowed = [&](const Standing& standing) {
-      return !run.checkpoint || is_no_worse(standing, run.checkpoint->input());
-    };
     // What is worse than the input in anything would not be given back.
-    if (!is_better(held, found) || (is_allowed(found) && !is_allowed(held))) unheld.put_back(run);
+    if (!is_better(run.standing(), found) || (was_allowed && !is_allowed())) unheld.put_back(run);
   }
   const auto keeps_more = [](const Strategy& s) { return s.frozen || s.without_goal; };
   if (!keeps_more(run.strategy) && !(run.strategy.usual && keeps_more(*run.strategy.usual))) return {};

@@ -529,6 +529,21 @@ TEST(SurfaceMesh, MeshedAgainItKeepsDistanceVolumeAndFeatures) {
   EXPECT_FALSE(may_move(surface, top, {0, 0, -0.8 * allowed}));
 }
 
+/// A spike, whose tip is far from whatever is a little lower, while that is near the spike's sides.
+TEST(SurfaceMesh, InputIsNearTheResultAlsoWhenItIsMeshedAgain) {
+  TetMesh mesh = built(generate::box({2, 2, 2}));
+  const VertexHandle tip = at(mesh, {0.5, 0.5, 1});
+  mesh.set_point(tip, {0.5, 0.5, 2});
+  SurfaceOptions options = free_within(0.1);
+  options.feature_angle = options.normal_angle = 180;  // only distances count
+  SurfaceMesh surface(mesh, options);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(may_move(surface, tip, {0, 0, -0.05}));
+    EXPECT_FALSE(may_move(surface, tip, {0, 0, -0.1}));
+    surface.rebuild(mesh);
+  }
+}
+
 /// A bend between two feature edges, hardly large enough for a corner, and smaller once a neighbour has
 /// moved.
 TEST(SurfaceMesh, CornersStayCornersWhenItIsMeshedAgain) {
