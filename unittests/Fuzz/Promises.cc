@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "Quality/Metrics.hh"
+#include "Remesh/Strategy.hh"
 
 namespace hfr::fuzz {
 namespace {
@@ -75,7 +76,7 @@ class Judge {
 
   /// What a run towards a goal has fewer of has been gained, whatever became of the worst.
   std::ptrdiff_t below_goal(const Measure& m) const {
-    const double goal = options_.min_dihedral.value_or(0) - kAngleRounding;
+    const double goal = options_.min_dihedral.value_or(kClaimedGoal) - kAngleRounding;
     return std::lower_bound(m.angles.begin(), m.angles.end(), goal) - m.angles.begin();
   }
 

@@ -87,6 +87,8 @@ TEST(Promises, AreBrokenByCellsForNothingButNotByThoseThatLeaveFewerBelowTheGoal
   after.angles = {5, 15, 20};
   EXPECT_EQ(n_findings(), 0);
   options.improve.min_dihedral.reset();
+  EXPECT_EQ(n_findings(), 0) << "without a goal, below what is claimed";
+  after.angles = {5, 14, 20};
   EXPECT_EQ(n_findings(), 1) << "there is no goal";
   before.inverted = after.inverted = 1;
   EXPECT_EQ(n_findings(), 0) << "the worst beside the inverted one has risen";
