@@ -87,7 +87,9 @@ class Residents : public Ranks, public MeshInParts {
   std::size_t sum(std::size_t mine) override { return static_cast<std::size_t>(mesh_.comm().sum(mine)); }
   double min(double mine) override { return mesh_.comm().min(mine); }
   double smallest(std::span<const double> mine, std::size_t rank) override;
-  void mark_round(double degrees, int layers) override { passes_.mark_round(degrees, layers); }
+  void mark_round(std::span<const CellHandle> cells, int layers) override {
+    passes_.mark_round(cells, layers);
+  }
   std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,
                                                std::span<const CellHandle> but) override;
   PatchesDone search_patches(std::span<const std::uint64_t> cells, int layers, const SurfaceMesh* surface,

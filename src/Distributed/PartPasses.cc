@@ -100,10 +100,9 @@ bool PartPasses::is_marked(VertexHandle v) const {
   return number >= newer_from_ || std::binary_search(marked_.begin(), marked_.end(), number);
 }
 
-void PartPasses::mark_round(double degrees, int layers) {
+void PartPasses::mark_round(std::span<const CellHandle> cells, int layers) {
   Spread spread(parts_, Spread::Stars::kWalked, 0);  // as vertices_within()
-  for (CellHandle c : cells_below(parts_.part(), degrees, {}, known_values(parts_.work())))
-    if (parts_.is_own(c)) spread.begin(c, static_cast<std::uint32_t>(layers));
+  for (CellHandle c : cells) spread.begin(c, static_cast<std::uint32_t>(layers));
   spread.run();
   marked_.clear();
   const std::vector<VertexHandle> own = std::move(spread.take_own().front());

@@ -28,9 +28,8 @@ class PartPasses {
   RoundCounts search(const Ranks::Search& search);
   /// Of all cells of the whole.
   Ranks::Tally tally(double below);
-  /// For looks that are marked: vertices of the cells of the whole below so many degrees, and of so many
-  /// layers round them.
-  void mark_round(double degrees, int layers);
+  /// For looks that are marked: vertices of these own cells of all ranks, and of so many layers round them.
+  void mark_round(std::span<const CellHandle> cells, int layers);
   /// Cells of the part that a pass has to look at.
   Worklist listed(const Ranks::Look& look);
 

@@ -8,7 +8,6 @@
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Polish.hh"
 #include "Remesh/Refine.hh"
-#include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Trial.hh"
 
 namespace hfr {
@@ -30,7 +29,7 @@ class Climb {
       over_targets();
       if (run_.control.stopped()) return;
       const std::size_t few = run_.strategy.neighbourhoods ? run_.strategy.neighbourhoods->few : 0;
-      const double last = degrees_with_few_below(run_, effort_.targets.back().degrees, few);
+      const double last = degrees_with_few_that_may_rise(run_, effort_.targets.back().degrees, few);
       Trial trial(run_, last);
       improve_neighbourhoods(run_, run_.strategy.neighbourhoods, last);
       trial.settle();

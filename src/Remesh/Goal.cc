@@ -42,7 +42,7 @@ void reach_in_turn(const Run& run, const GoalEffort& goal, Best& best) {
     const double now = smallest(run), degrees = all[i].degrees;
     if (now >= degrees) continue;
     const auto targets = all.first(i + 1);
-    const bool many_miss = run.share_below(degrees) > goal.few_miss;
+    const bool many_miss = share_that_may_rise(run, degrees, goal.few_miss) > goal.few_miss;
     if (many_miss) improve_all(run, now, targets);
     attempt(run, degrees, targets);
     // What more targets bring may cost more of the other cells than it may.
@@ -60,7 +60,8 @@ bool reach_goal(const Run& run, const GoalEffort& goal, bool cells_are_untouched
     bounds = strategy.bounds_asked;
   }
   if (run.control.stopped() || !goal.goes_on) return false;
-  const bool many_miss = cells_are_untouched && run.share_below(goal.degrees) > goal.few_miss;
+  const bool many_miss =
+      cells_are_untouched && share_that_may_rise(run, goal.degrees, goal.few_miss) > goal.few_miss;
   if (!run.surface && !many_miss) return false;
   const Run further = run.within(bounds);
   Trial trial(run, goal.degrees);

@@ -7,7 +7,6 @@
 #include "Remesh/Neighbourhoods.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/Rise.hh"
-#include "Remesh/SmallestDihedrals.hh"
 
 namespace hfr {
 
@@ -19,7 +18,7 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
   for (const TargetAngle& target : targets) {
     if (target.degrees > effort.up_to || run.control.stopped()) break;
     if (now >= target.degrees) continue;
-    if (run.share_below(target.degrees) > target.largest_share) break;
+    if (share_that_may_rise(run, target.degrees, target.largest_share) > target.largest_share) break;
     const auto search = [&](const std::vector<PatchEffort>& efforts) {
       for (const PatchEffort& how : efforts)
         if (now < target.degrees && search_patches(run, target.degrees, how)) now = smallest();
@@ -37,7 +36,7 @@ bool improve_last_cells(const Run& run, const LastCellsEffort& effort, std::span
       if (now < kPlainGoal) n_flat_before = run.n_below(kPlainGoal);
       const auto& neighbourhoods = run.strategy.neighbourhoods;
       const std::size_t few = neighbourhoods ? neighbourhoods->few : 0;
-      improve_neighbourhoods(run, neighbourhoods, degrees_with_few_below(run, target.degrees, few));
+      improve_neighbourhoods(run, neighbourhoods, degrees_with_few_that_may_rise(run, target.degrees, few));
       now = smallest();
     }
     if (target.degrees <= effort.patches_up_to) search(effort.patches);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "Quality/Metrics.hh"
+#include "Remesh/SmallestDihedrals.hh"
 #include "Remesh/Strategy.hh"
 #include "Remesh/StuckCells.hh"
 #include "Remesh/SurfaceRun.hh"
@@ -16,7 +18,7 @@ namespace {
 std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
   std::vector<CellHandle> cells = cells_below(run.mesh, degrees, run.policy(), run.known());
   if (run.is_part()) std::erase_if(cells, [&](CellHandle c) { return !run.parts()->is_own(c); });
-  std::vector<StuckCell> low = kept_from_rising(run.mesh, cells, kLeastRise, run.policy());
+  std::vector<StuckCell> low = kept_from_rising(run.mesh, run.work.frozen, cells, kLeastRise, run.policy());
   // What a feature holds, the faces at it hold as well while they stay, which is quicker to see.
   const auto is_kept = [&] {
     const bool here =
@@ -48,9 +50,33 @@ std::vector<CellHandle> cells_at_ceiling(const Run& run, double degrees) {
   return held;
 }
 
+std::vector<CellHandle> cells_that_may_rise(const Run& run, double degrees) {
+  std::vector<CellHandle> cells;
+  for (const StuckCell& cell : with_proofs(run, degrees))
+    if (!is_at_ceiling(cell)) cells.push_back(cell.cell);
+  return cells;
+}
+
 std::size_t n_at_ceiling(const Run& run, double degrees) {
   const std::size_t here = cells_at_ceiling(run, degrees).size();
   return run.is_part() ? run.parts()->sum(here) : here;
+}
+
+std::size_t n_out_of(const Run& run, double degrees, double vain_below) {
+  const std::size_t n_held = n_at_ceiling(run, degrees);
+  if (!(vain_below > 0)) return n_held;
+  return n_held + run.n_below(vain_below) - n_at_ceiling(run, vain_below);
+}
+
+double share_that_may_rise(const Run& run, double degrees, double largest) {
+  const AngleTally tally = run.tally_below(std::span(&degrees, 1));
+  return tally.share(0) > largest ? tally.share(0, n_at_ceiling(run, degrees)) : tally.share(0);
+}
+
+double degrees_with_few_that_may_rise(const Run& run, double degrees, std::size_t n) {
+  SmallestDihedrals angles(run, cells_at_ceiling(run, degrees));
+  if (angles.n_below(dihedral_decision(degrees)) <= n) return degrees;
+  return report_value(Metric::kMinDihedral, angles.smallest(n + 1));
 }
 
 double smallest_that_may_rise(const Run& run, double degrees) {

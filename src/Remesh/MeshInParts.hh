@@ -46,8 +46,9 @@ class MeshInParts {
   virtual double smallest(std::span<const double> mine, std::size_t rank) = 0;
   /// Of all its points.
   virtual Box box() = 0;
-  /// For Focus::is_marked: the vertices of the cells below so many degrees, and of so many layers round them.
-  virtual void mark_round(double degrees, int layers) = 0;
+  /// For Focus::is_marked: the vertices of these own cells of all processes, and of so many layers round
+  /// them.
+  virtual void mark_round(std::span<const CellHandle> cells, int layers) = 0;
   /// The numbers of the n worst cells below so many degrees, of which at most that many, the worst first; of
   /// two that are alike the one with the smaller number. `but`: own ones that do not count, ascending.
   virtual std::vector<std::uint64_t> worst_cells_below(double degrees, std::size_t n,

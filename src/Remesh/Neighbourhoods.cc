@@ -6,8 +6,8 @@
 
 #include "HalfFace/Layers.hh"
 #include "Quality/Metrics.hh"
+#include "Remesh/MayRise.hh"
 #include "Remesh/Polish.hh"
-#include "Remesh/Survey.hh"
 
 namespace hfr {
 
@@ -16,13 +16,13 @@ void improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
   if (!effort) return;
   const double decision = dihedral_decision(degrees);
   for (const NeighbourhoodEffort::Try& attempt : effort->tries) {
-    std::vector<CellHandle> left;
-    if (!run.is_part()) left = cells_below(run.mesh, degrees, run.policy(), run.known());
-    const std::size_t n_left = run.is_part() ? run.n_below(degrees) : left.size();
+    const std::vector<CellHandle> left = cells_that_may_rise(run, degrees);
+    const std::size_t n_left = run.is_part() ? run.parts()->sum(left.size()) : left.size();
     if (n_left == 0 || n_left > effort->few || run.control.stopped()) return;
+    const std::size_t n_held = run.n_below(degrees) - n_left;
     std::vector<std::uint8_t> around;
     if (run.is_part())
-      run.parts()->mark_round(degrees, attempt.layers);
+      run.parts()->mark_round(left, attempt.layers);
     else
       around = vertices_within(run.mesh, left, attempt.layers);
     PassRunner<MinSine2> runner(run, MinSine2{}, "neighbourhoods");
@@ -36,7 +36,7 @@ void improve_neighbourhoods(const Run& run, const std::optional<NeighbourhoodEff
       if (changes == 0) break;
     }
     runner.look_again();
-    iterate_below(runner, run.strategy.polish, decision, effort->few);
+    iterate_below(runner, run.strategy.polish, decision, effort->few, n_held);
   }
 }
 

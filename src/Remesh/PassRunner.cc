@@ -376,7 +376,7 @@ std::size_t PassRunner<Metric>::insert_pass(const Turn& turn) {
     if (n_invalid() > 0) count(turn.focus);
     if (r == 0) first = counts.winners;
     if (counts.winners < counts.held_back) break;  // the room is used up
-    if (counts.seeds > effort.few_seeds && counts.winners < counts.seeds / turn.seeds_of_vertex) break;
+    if (turn.is_vain(counts, effort.few_seeds, r == 0)) break;
     if (counts.winners * effort.little <= first && waiting_.empty()) break;
   }
   count(turn.focus);

@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_PASS_STATE_HH
 #define HFR_REMESH_PASS_STATE_HH
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -53,9 +54,16 @@ struct Turn {
   /// With more than PassEffort::few_seeds, insertion ends after a round in which fewer than one in so many
   /// got a vertex.
   std::size_t seeds_of_vertex = kNoLimit;
+  std::size_t n_held = 0;  ///< seeds of the first round of insertion that do not count among them
   /// Set where a pass is done again that was done on a device which has failed since: so many rounds,
   /// whatever the clock says, and no line in the report.
   std::optional<std::size_t> replayed_rounds = {};
+
+  /// Whether insertion ends after such a round.
+  bool is_vain(const RoundCounts& counts, std::size_t few_seeds, bool is_first) const {
+    const std::size_t n_seeds = counts.seeds - (is_first ? std::min(counts.seeds, n_held) : 0);
+    return n_seeds > few_seeds && counts.winners < n_seeds / seeds_of_vertex;
+  }
 };
 
 /// What the passes of a stage have looked at, and what there is left to look at. Work follows damage: a pass

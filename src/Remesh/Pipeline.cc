@@ -104,10 +104,52 @@ std::optional<Best::Beginning> reach_claimed(const Run& run, bool met_cell_bound
   return before;
 }
 
+/// For each of these angles, the cells below that may rise.
+std::vector<std::size_t> n_that_may_rise(const Run& run, std::span<const TargetAngle> targets) {
+  std::vector<std::size_t> n;
+  for (const TargetAngle& target : targets) n.push_back(Low::count(run, target.degrees));
+  return n;
+}
+
+/// Where many cells miss what is claimed, with a frozen surface: those that others, which nothing raises,
+/// have kept from their turn. Goes on, with more cells, while more than a few of those below an angle are
+/// mended, or the number of cells is in the way.
+void raise_others(const Run& run) {
+  if (!run.strategy.claimed || run.surface || run.control.stopped()) return;
+  const Strategy& claimed = *run.strategy.claimed;
+  const GoalEffort& goal = *claimed.goal;
+  const double many = claimed.throughout.share;
+  if (!(share_that_may_rise(run, goal.degrees, many) > many)) return;
+  const std::span<const TargetAngle> targets = claimed.targets.targets;
+  Run part = run.within(claimed.bounds);
+  const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+  const Findings found = run.findings;
+  const Revision usual = run.control.revision();
+  Trial trial(run, goal.degrees);
+  Best best(run, goal.may_fall, Loss::kMadeUpFor);
+  for (int turn = 0; turn < goal.turns && !run.control.stopped(); ++turn) {
+    if (turn > 0)
+      part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
+    if (may_grow && turn + 1 < goal.turns && !part.has_room()) continue;
+    const std::vector<std::size_t> before = n_that_may_rise(run, targets);
+    run.findings.forget_cell_bound();
+    raise_to_targets(part, targets, /*past_vain=*/true);
+    best.note();
+    const std::vector<std::size_t> now = n_that_may_rise(run, targets);
+    const bool has_mended_some = !std::ranges::equal(now, before, [](std::size_t left, std::size_t n) {
+      return static_cast<double>(left) >= (1 - kFewShare) * static_cast<double>(n);
+    });
+    if (!may_grow || (!has_mended_some && !run.findings.met_cell_bound)) break;
+  }
+  best.settle();
+  trial.settle();
+  if (run.control.revision() == usual) run.findings = found;
+}
+
 bool run_towards_goal(const Run& run, const GoalEffort& goal) {
   mend_invalid(run);
   if (goal.polish_only) return polish(run, run.strategy.polish, goal.degrees);
-  if (run.share_below(goal.degrees) <= goal.many_miss) {
+  if (share_that_may_rise(run, goal.degrees, goal.many_miss) <= goal.many_miss) {
     if (reach_goal(run, goal, /*cells_are_untouched=*/true)) return true;
   } else {
     Trial trial(run, goal.degrees);
@@ -171,6 +213,7 @@ void run_default(const Run& run) {
   mend_and_improve_all(run);
   auto claiming = reach_claimed(run, run.findings.met_cell_bound, /*on_promise=*/!beginning);
   if (beginning) run_towards_claim(run, std::move(*beginning), std::move(claiming));
+  raise_others(run);
 }
 
 Run with_frozen_surface(const Run& run) {
@@ -282,6 +325,7 @@ bool run_to_goal(const Run& run, const GoalEffort& goal, std::optional<Beginning
   std::optional<Beginning> beginning;
   if (run.strategy.without_goal) beginning.emplace(run);
   if (run_towards_goal(run, goal)) return true;
+  raise_others(run);
   // That goes on with a frozen surface, too.
   if (beginning) run_without_goal(run, goal, std::move(*beginning), std::move(input));
   return run.n_below(goal.degrees) == 0;
@@ -301,7 +345,7 @@ bool run_at_any_cost(const Run& run, const AnyCostEffort& effort, std::optional<
 void improve_all(const Run& run, double floor, std::span<const TargetAngle> targets) {
   const Strategy& strategy = run.strategy;
   const FirstPolish& first = strategy.first_polish;
-  polish(run, first.polish, first.target, first.largest_share);
+  polish(run, first.polish, first.target, {.largest_share = first.largest_share});
   if (strategy.coarsen) coarsen(run, *strategy.coarsen);
   improve_bulk(run, strategy.bulk);
   run.control.set_fraction(kBulkDone);

@@ -111,7 +111,7 @@ std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) 
     if (state_.n_invalid() > 0) count(turn);
     if (r == 0) first = counts.winners;
     if (counts.winners < counts.held_back) break;  // the room is used up
-    if (counts.seeds > effort.few_seeds && counts.winners < counts.seeds / turn.seeds_of_vertex) break;
+    if (turn.is_vain(counts, effort.few_seeds, r == 0)) break;
     if (counts.winners * effort.little <= first && waiting_.empty()) break;
   }
   count(turn);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "Quality/Metrics.hh"
+#include "Remesh/MayRise.hh"
 #include "Remesh/PassRunner.hh"
 #include "Remesh/Trial.hh"
 
@@ -26,7 +27,7 @@ void insert_where_poor(const Run& run, const RefineEffort& effort) {
 
 bool refine(const Run& run, const RefineEffort& effort) {
   if (run.control.stopped() || run.smallest_dihedral() >= effort.below) return false;
-  const double share = run.share_below(effort.below);
+  const double share = share_that_may_rise(run, effort.below, effort.least_share);
   if (share <= effort.least_share || share >= effort.largest_share) return false;
   const bool met_before = run.findings.met_cell_bound;
   CellBounds bounds = run.bounds;

@@ -68,7 +68,6 @@ struct Run {
     return is_part() ? parts()->standing() : standing_of(mesh, survey(), policy());
   }
   std::size_t n_below(double degrees) const { return tally_below(std::span(&degrees, 1)).n_below[0]; }
-  double share_below(double degrees) const { return tally_below(std::span(&degrees, 1)).share(0); }
   AngleTally tally_below(std::span<const double> degrees) const {
     return is_part() ? parts()->tally_below(degrees) : hfr::tally_below(mesh, degrees, policy(), known());
   }

@@ -27,6 +27,11 @@ SmallestDihedrals::SmallestDihedrals(const Run& run)
   });
 }
 
+SmallestDihedrals::SmallestDihedrals(const Run& run, std::span<const CellHandle> but)
+    : SmallestDihedrals(run) {
+  for (CellHandle c : but) values_[c.idx()] = std::numeric_limits<double>::infinity();
+}
+
 template <class Is>
 std::size_t SmallestDihedrals::count(Is&& is) const {
   const std::size_t here = par::reduce(
@@ -48,13 +53,6 @@ double SmallestDihedrals::smallest(std::size_t rank) {
   const auto at = values_.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
   std::nth_element(values_.begin(), at, values_.end());
   return *at;
-}
-
-double degrees_with_few_below(const Run& run, double degrees, std::size_t n) {
-  if (!run.is_part()) return degrees_with_few_below(run.mesh, degrees, n, run.policy(), run.known());
-  SmallestDihedrals angles(run);
-  if (angles.n_below(dihedral_decision(degrees)) <= n) return degrees;
-  return report_value(Metric::kMinDihedral, angles.smallest(n + 1));
 }
 
 }  // namespace hfr

@@ -3,6 +3,7 @@
 #define HFR_REMESH_SMALLEST_DIHEDRALS_HH
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "Remesh/Run.hh"
@@ -14,6 +15,8 @@ namespace hfr {
 class SmallestDihedrals {
  public:
   explicit SmallestDihedrals(const Run& run);
+  /// Without these, of a mesh in parts own ones.
+  SmallestDihedrals(const Run& run, std::span<const CellHandle> but);
 
   std::size_t n_cells() const { return n_cells_; }
   std::size_t n_below(double decision) const;
@@ -28,11 +31,8 @@ class SmallestDihedrals {
 
   Run run_;
   std::size_t n_cells_;
-  std::vector<double> values_;  // infinity in deleted slots, and for cells of other parts
+  std::vector<double> values_;  // infinity in deleted slots, for cells of other parts and those left out
 };
-
-/// At most `degrees`, such that no more than n cells of the whole are below.
-double degrees_with_few_below(const Run& run, double degrees, std::size_t n);
 
 }  // namespace hfr
 

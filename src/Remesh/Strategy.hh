@@ -354,7 +354,8 @@ struct GoalEffort {
   double may_fall = kClaimShare;
   /// Times the cells of the input that it may make for that; so many times again, `turns` in all, while the
   /// worst angle rises by `pays`, a share of the goal: a share of itself would be nothing where it is all but
-  /// 0. Or while it would rise with as many as come in all; and where these leave no room for a vertex.
+  /// 0. Or while it would rise with as many as come in all; and where these leave no room for a vertex. Also
+  /// for cells that others have kept from their turn, while some are mended.
   double more_cells = kMoreCells;
   int turns = 3;
   double pays = kClaimShare;

@@ -2,6 +2,7 @@
 #include "Remesh/StuckCells.hh"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "Operators/Operator.hh"
 #include "Operators/VertexInsertion.hh"
@@ -46,13 +47,15 @@ bool has_cell(const TetMesh& mesh, const Wedge& wedge, VertexHandle a, VertexHan
 }
 
 /// Notes the proof by one of the cell's edges that keeps it below `degrees`: one of the surface, if there is
-/// one, then that with the lowest ceiling, then that with the smaller vertices.
-void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
+/// one, then that with the lowest ceiling, then that with the smaller vertices. `frozen`: see
+/// constrained_vertices().
+void prove(const TetMesh& mesh, std::span<const std::uint8_t> frozen, double degrees, StuckCell& stuck) {
   for (int e = 0; e < 6; ++e) {
-    const auto found = wedges_at(mesh, stuck.cell, e);
-    if (!found) continue;
     const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
     const auto [a, b] = std::minmax(mesh.cell(stuck.cell).v[ends[0]], mesh.cell(stuck.cell).v[ends[1]]);
+    if (!frozen[a.idx()] || !frozen[b.idx()]) continue;  // no face there is constrained
+    const auto found = wedges_at(mesh, stuck.cell, e);
+    if (!found) continue;
     for (const Wedge& wedge : found->wedges) {
       // Where every mesh has an invalid cell at the edge, nothing says in which of the wedges.
       const bool may_be_the_one = found->impossible && wedge.degrees <= 0 && stuck.degrees <= 0;
@@ -76,12 +79,12 @@ void prove(const TetMesh& mesh, double degrees, StuckCell& stuck) {
 
 }  // namespace
 
-std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const CellHandle> cells, double by,
-                                        par::Policy policy) {
+std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
+                                        std::span<const CellHandle> cells, double by, par::Policy policy) {
   std::vector<StuckCell> kept(cells.size());
   par::for_each(policy, cells.size(), [&](std::size_t i) {
     kept[i] = unproven(mesh, cells[i]);
-    prove(mesh, kept[i].degrees + by, kept[i]);
+    prove(mesh, frozen, kept[i].degrees + by, kept[i]);
   });
   return kept;
 }
@@ -106,7 +109,7 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
     if (folds && orientation(p[0], p[1], p[2], p[3]) <= 0)
       stuck.reason = StuckReason::kFoldedSurface;
     else
-      prove(mesh, degrees, stuck);
+      prove(mesh, frozen, degrees, stuck);
   });
   return cells;
 }

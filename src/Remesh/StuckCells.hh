@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_STUCK_CELLS_HH
 #define HFR_REMESH_STUCK_CELLS_HH
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,8 +18,9 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
                                    std::span<const HalfFaceHandle> unfillable, par::Policy policy = {});
 
 /// For each of these cells, what is proven to keep it from rising by so many degrees; not what needs the fold
-/// of a boundary, and without the number of vertices that may not move.
-std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const CellHandle> cells, double by,
+/// of a boundary, and without the number of vertices that may not move. `frozen`: constrained_vertices().
+std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
+                                        std::span<const CellHandle> cells, double by,
                                         par::Policy policy = {});
 
 /// Says kMaxCells of the cells without a reason of which VertexInsertion would raise the worst angle, with

@@ -147,10 +147,6 @@ std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy) {
   return tally_below(mesh, std::span(&degrees, 1), policy).n_below[0];
 }
 
-double share_below(const TetMesh& mesh, double degrees, par::Policy policy) {
-  return static_cast<double>(n_below(mesh, degrees, policy)) / static_cast<double>(mesh.n_logical_cells());
-}
-
 std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
   return cells_that(mesh, policy, [&](std::size_t begin, std::size_t end, std::vector<CellHandle>& found) {
     for_decisions(mesh, MinSine2{}, begin, end, [&](std::size_t i, double value) {

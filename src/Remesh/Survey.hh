@@ -2,6 +2,7 @@
 #ifndef HFR_REMESH_SURVEY_HH
 #define HFR_REMESH_SURVEY_HH
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -41,8 +42,10 @@ struct AngleTally {
   double smallest = 0;               ///< see smallest_dihedral()
   std::size_t n_cells = 0;           ///< of the mesh
   std::vector<std::size_t> n_below;  ///< by angle: cells whose smallest dihedral is below
-  double share(std::size_t angle) const {
-    return static_cast<double>(n_below[angle]) / static_cast<double>(n_cells);
+  /// Of all cells; `without`: of those below, that do not count.
+  double share(std::size_t angle, std::size_t without = 0) const {
+    const std::size_t n = n_below[angle];
+    return static_cast<double>(n - std::min(n, without)) / static_cast<double>(n_cells);
   }
 };
 /// `counts`: the cells that are looked at, but for n_cells; all where it is empty.
@@ -50,8 +53,6 @@ AngleTally tally_below(const TetMesh& mesh, std::span<const double> degrees, par
                        const KnownValues& known = {}, const std::function<bool(CellHandle)>& counts = {});
 /// Number of cells whose smallest dihedral is below so many degrees.
 std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy);
-/// The same as a share of the cells.
-double share_below(const TetMesh& mesh, double degrees, par::Policy policy);
 /// These cells, ascending.
 std::vector<CellHandle> cells_below(const TetMesh& mesh, double degrees, par::Policy policy,
                                     const KnownValues& known = {});

@@ -18,18 +18,13 @@ namespace {
 /// goals that have met their own bound on cells.
 bool is_bounded(const Run& run) { return !run.surface && run.bounds.max > 0; }
 
-/// `below`: the share of cells below ThroughoutEffort::below.
-bool is_poor_throughout(const Run& run, double below) {
-  return lacks_vertices(run) || below > run.strategy.throughout.share;
-}
-
 /// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
-void raise_throughout(const Run& run, const ThroughoutEffort& effort, double degrees) {
+void raise_throughout(const Run& run, const ThroughoutEffort& effort, double degrees, double vain_below) {
   CellBounds bounds = run.bounds;
   if (bounds.max > 0) bounds.max = std::max<std::size_t>(bounds.max * effort.of_hundred / 100, 1);
   const Run part = run.within(bounds);
   Trial trial(part, degrees);
-  polish(part, effort.polish, degrees);
+  polish(part, effort.polish, degrees, {.vain_below = vain_below});
   trial.settle();
 }
 
@@ -50,20 +45,20 @@ bool lacks_vertices(const Run& run) {
 }
 
 bool is_poor_throughout(const Run& run) {
-  return is_poor_throughout(run, run.share_below(run.strategy.throughout.below));
+  const ThroughoutEffort& effort = run.strategy.throughout;
+  return lacks_vertices(run) || share_that_may_rise(run, effort.below, effort.share) > effort.share;
 }
 
-void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
+void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, bool past_vain) {
   const TargetEffort& effort = run.strategy.targets;
   const ThroughoutEffort& throughout = run.strategy.throughout;
   std::vector<double> angles;
   for (const TargetAngle& target : targets) angles.push_back(target.degrees);
-  angles.push_back(throughout.below);
   AngleTally now = run.tally_below(angles);
-  const bool bounded = is_bounded(run),
-             is_poor = bounded && is_poor_throughout(run, now.share(targets.size()));
+  const bool bounded = is_bounded(run), is_poor = bounded && is_poor_throughout(run);
   double last = 0;          // that was worked for
   bool has_brought = true;  // enough, the target before
+  double vain_below = 0;    // the last target that has mended next to none of its cells
   for (std::size_t k = 0; k < targets.size(); ++k) {
     const TargetAngle& target = targets[k];
     if (run.control.stopped()) return;
@@ -71,15 +66,23 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets) {
     if (target.degrees > effort.in_turn_beyond && now.smallest < last &&
         smallest_that_may_rise(run, last) < last)
       break;
-    const double share = now.share(k);
-    if (share > target.largest_share && !(has_brought && bounded)) continue;
+    const double many = is_poor ? throughout.dig_share : target.largest_share;
+    const std::size_t n_out =
+        now.share(k) > many || vain_below > 0 ? n_out_of(run, target.degrees, vain_below) : 0;
+    const double share = now.share(k, n_out);
+    if (share == 0 || (share > target.largest_share && !(has_brought && bounded))) continue;
     last = target.degrees;
-    if (share > (is_poor ? throughout.dig_share : target.largest_share))
-      raise_throughout(run, throughout, target.degrees);
+    if (share > many)
+      raise_throughout(run, throughout, target.degrees, vain_below);
     else
-      polish(run, run.strategy.polish, target.degrees);
+      polish(run, run.strategy.polish, target.degrees, {.vain_below = vain_below});
     now = run.tally_below(angles);
-    has_brought = now.share(k) < effort.enough_left * share;
+    const double left = now.share(k, n_out);
+    has_brought = left < effort.enough_left * share;
+    if (past_vain && is_poor && left > (1 - kFewShare) * share) {
+      vain_below = target.degrees;
+      has_brought = true;
+    }
   }
 }
 

@@ -14,9 +14,12 @@ bool lacks_vertices(const Run& run);
 bool is_poor_throughout(const Run& run);
 /// Raises the worst angles from target to target; one that is missed is no reason to stop, because what holds
 /// a cell below it may give way on the next. Where most of a mesh misses one, it is worked for while that
-/// brings enough, and the next only if it has.
+/// brings enough, and the next only if it has. With `past_vain` the next also where it has mended next to
+/// none of its cells, which then do not count among those of the next ones: whatever holds them, they say
+/// nothing of others.
+///
 /// Expects: any mesh. Guarantees: what polish() does. Ends: after the last target, or with the run.
-void raise_to_targets(const Run& run, std::span<const TargetAngle> targets);
+void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, bool past_vain = false);
 /// Raises the worst angles as far as a limited effort takes them: back to `floor` degrees, where they stood
 /// before the bulk stage, then vertices where they are missing, the targets, and the last few cells.
 void raise_worst_angles(const Run& run, double floor, std::span<const TargetAngle> targets);
