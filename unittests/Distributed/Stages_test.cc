@@ -17,6 +17,7 @@
 #include "Distributed/PartPatchSearch.hh"
 #include "HalfFace/Reorder.hh"
 #include "Operators/VertexCollapse.hh"
+#include "Remesh/Beside.hh"
 #include "Remesh/Patch.hh"
 
 namespace hfr::test {
@@ -84,13 +85,14 @@ TetMesh plate(Index n, std::uint64_t seed) {
 /// What runs of a test have come to: their stages, and how many went back to what there was before.
 struct Stages {
   std::set<std::string> names;
-  std::size_t undone = 0, n_patched = 0;
+  std::size_t undone = 0, n_patched = 0, n_inserted = 0;
 
   void add(const Result& result) {
     for (const PassReport& pass : result.passes) {
       names.insert(pass.stage);
       undone += pass.stage == "undo" ? 1 : 0;
       n_patched += pass.stage == "patches" ? pass.winners : 0;
+      n_inserted += pass.stage != "patches" && pass.op == "insert" ? pass.winners : 0;
     }
   }
 };
@@ -167,6 +169,20 @@ TEST_F(StagesInParts, WholeRunsHaveTheBytesOfSharedMemory) {
   if (comm.rank() == 0) {
     EXPECT_THAT(all.names, testing::IsSupersetOf({"neighbourhoods", "patches"}));
     EXPECT_GT(all.n_patched, 5U);
+  }
+}
+
+/// Cells that are held, or worked for in vain, and others whose turn comes all the same.
+TEST_F(StagesInParts, CellsThatNothingRaisesHaveTheBytesOfSharedMemory) {
+  ImproveOptions goal = all_stages();
+  goal.min_dihedral = 12;
+  for (const ImproveOptions& options : {all_stages(), goal}) {
+    for (const TetMesh& mesh : {beside_slivers(ring(64, 0), 90), beside_plates(ring(64, 0), 12)}) {
+      const Stages stages = run(mesh, options);
+      if (comm.rank() == 0) {
+        EXPECT_GT(stages.n_inserted, 3U) << "the others do not get their turn";
+      }
+    }
   }
 }
 

@@ -3,17 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <random>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "HalfFace/Errors.hh"
 #include "Quality/CellQuality.hh"
+#include "Remesh/Beside.hh"
 #include "Remesh/Improve.hh"
 #include "Remesh/Meshes.hh"
 #include "Remesh/Trial.hh"
@@ -56,18 +55,6 @@ TetMesh graded(Index n, double factor) {
 }
 
 TetMesh wrung(double degrees) { return built(generate::cylinder(2, 6, 1, 2, 0, degrees)); }
-
-/// n cells round an edge, `beside` the axis of their rim: all alike, or nearly, and without an inner vertex.
-TetMesh ring(Index n, double beside) {
-  generate::Arrays arrays;
-  arrays.points = {{beside, 0, 0}, {beside, 0, 1}};
-  for (Index i = 0; i < n; ++i) {
-    const double turn = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
-    arrays.points.push_back({std::cos(turn), std::sin(turn), 0.5});
-    arrays.cells.push_back({0, 1, 2 + i, 2 + (i + 1) % n});
-  }
-  return built(arrays);
-}
 
 /// Cells that join one vertex to the triangles of a sphere, whose vertices lie unevenly on 10 circles of
 /// latitude: one inside, or without a `centre` the north pole, so that there is none inside.
@@ -370,53 +357,6 @@ TEST(Rules, CellsThatAreAllAlikeGetTheVerticesThatTheyNeed) {
       EXPECT_LE(mesh.n_cells(), 3.4 * n);
     }
   }
-}
-
-constexpr double kBeside = 100;  // x of what stands beside a mesh
-
-/// The mesh with `points` and `cells` beside it, n times, each a step further.
-TetMesh beside(const TetMesh& mesh, std::span<const Vec3> points, std::span<const Corners> cells, Index n) {
-  generate::Arrays all;
-  all.points.assign(mesh.points().begin(), mesh.points().end());
-  for (CellHandle c : mesh.cells()) {
-    Corners corners{};
-    for (std::size_t k = 0; k < 4; ++k) corners[k] = static_cast<Index>(mesh.cell(c).v[k].idx());
-    all.cells.push_back(corners);
-  }
-  for (Index i = 0; i < n; ++i) {
-    const auto first = static_cast<Index>(all.points.size());
-    for (Vec3 p : points) all.points.push_back(p + Vec3{kBeside + 3.0 * i, 0, 0});
-    for (Corners c : cells) {
-      for (Index& corner : c) corner += first;
-      all.cells.push_back(c);
-    }
-  }
-  return built(all);
-}
-
-/// The mesh beside cells that touch nothing, and that their own faces hold at a degree.
-TetMesh beside_slivers(const TetMesh& mesh, Index n) {
-  const double half = 0.5 * std::numbers::pi / 180;
-  const std::array<Vec3, 4> points = {
-      {{-1, 0, 0}, {1, 0, 0}, {0, std::sin(half), std::cos(half)}, {0, -std::sin(half), std::cos(half)}}};
-  return beside(mesh, points, std::array<Corners, 1>{{{0, 1, 2, 3}}}, n);
-}
-
-/// The mesh beside thin plates of six cells each, which are below 2 degrees: nothing is proven to hold them,
-/// and nothing raises them.
-TetMesh beside_plates(const TetMesh& mesh, Index n) {
-  generate::Arrays plate = generate::box({1, 1, 1}, {0, 0, 0}, {1, 1, 0.02});
-  return beside(mesh, plate.points, plate.cells, n);
-}
-
-/// Smallest dihedrals of what nothing was put beside, ascending.
-std::vector<double> angles_without_beside(const TetMesh& mesh) {
-  std::vector<double> angles;
-  for (CellHandle c : mesh.cells())
-    if (mesh.point(mesh.cell(c).v[0]).x < kBeside / 2)
-      angles.push_back(quality(mesh, c, Metric::kMinDihedral));
-  std::sort(angles.begin(), angles.end());
-  return angles;
 }
 
 TEST(Rules, CellThatNothingCanRaiseIsNoReasonToLeaveTheOthers) {
