@@ -25,6 +25,7 @@
 #include "Distributed/PartSurface.hh"
 #include "Distributed/PartUnfolding.hh"
 #include "Distributed/WorkBalance.hh"
+#include "Quality/Coverage.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/Checkpoint.hh"
@@ -71,6 +72,7 @@ class Residents : public Ranks, public MeshInParts {
     return PartSurface::ceilings(mesh_, cells, options);
   }
   bool is_folded_since(std::uint32_t clock) override;
+  bool covers_twice() override;
   Tally tally(double below) override { return passes_.tally(below); }
   std::size_t n_cells() const override { return static_cast<std::size_t>(mesh_.n_cells()); }
   void bring_back(TetMesh&, Workspace&) override {}
@@ -144,6 +146,11 @@ bool Residents::is_folded_since(std::uint32_t clock) {
                    return is_pinched(v) && std::binary_search(changed.begin(), changed.end(), v);
                  }).empty();
   return mesh_.comm().sum(is_folded ? 1 : 0) > 0;
+}
+
+bool Residents::covers_twice() {
+  const auto at = [&](VertexHandle v) { return mesh_.is_own(v); };
+  return mesh_.comm().sum(hfr::covers_twice(mesh_.part(), policy_, at) ? 1 : 0) > 0;
 }
 
 /// Of whose inverted cells the volumes come together on all ranks.

@@ -19,9 +19,9 @@ bool DevicePasses::takes(PassKind kind) const {
     return effort.smoother == Smoother::kCandidates || effort.smoother == Smoother::kNewton;
   if (kind != PassKind::kEdge && kind != PassKind::kFace && kind != PassKind::kNode) return false;
   const Labels& labels = run.mesh.labels();
-  return !effort.device_only_smooths && state_.n_invalid() == 0 && !run.findings.is_folded &&
-         labels.faces.empty() && labels.edges.empty() && labels.vertices.empty() &&
-         run.mesh.locks().empty() && run.work.pinched.empty();
+  return !effort.device_only_smooths && !state_.checks_links() && labels.faces.empty() &&
+         labels.edges.empty() && labels.vertices.empty() && run.mesh.locks().empty() &&
+         run.work.pinched.empty();
 }
 
 bool DevicePasses::take_mesh() {

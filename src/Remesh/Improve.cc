@@ -61,11 +61,13 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
     work.attach(mesh, policy);
   if (!memory.is_folded || surface.get()) memory.is_folded = !folded_faces(mesh, policy).empty();
   findings.is_folded = *memory.is_folded;
+  findings.may_cover_twice = !valid || !std::exchange(memory.covers_once, false);
   run.surface = surface.get();
   run.ranks = memory.ranks;
   has_begun = true;
   const Ending ending = run_to_the_end(run);
   memory.knows_stars = ending.stays;
+  memory.covers_once = ending.stays && !findings.may_cover_twice && !findings.is_folded;
   if (surface.get()) memory.is_folded.reset();
   surface_report = surface.report(mesh);
   return ending.meets;

@@ -149,8 +149,7 @@ template <class Op, class RunRound>
 RoundCounts PassRunner<Metric>::round(const RunRound& run_round, const Worklist& list) {
   const Run& run = this->run();
   const std::size_t n_cells = run.mesh.n_logical_cells();
-  RoundOptions options{run.policy(), n_invalid() > 0 || run.findings.is_folded, effort().seed,
-                       effort().ranks_exactly};
+  RoundOptions options{run.policy(), this->checks_links(), effort().seed, effort().ranks_exactly};
   options.may_lose = run.bounds.may_lose(n_cells);
   options.may_gain = run.bounds.may_gain(n_cells);
   Round<Op> round(run.mesh, run.work, options);

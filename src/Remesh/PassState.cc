@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "HalfFace/Errors.hh"
+#include "Quality/Coverage.hh"
 #include "Quality/Metrics.hh"
 #include "Remesh/DevicePasses.hh"
 #include "Remesh/RankPasses.hh"
@@ -55,6 +56,19 @@ Worklist PassState::changed_since(std::uint32_t since, const Focus& focus) {
   };
   if (focus.everything()) return Worklist(mesh, run_.policy(), has_changed);
   return Worklist(mesh, run_.policy(), poor(focus.below), has_changed);
+}
+
+bool PassState::checks_links() {
+  Findings& findings = run_.findings;
+  if (n_invalid_ > 0) {
+    findings.may_cover_twice = true;
+    return true;
+  }
+  if (std::exchange(findings.may_cover_twice, false) && !findings.is_folded) {
+    to_host();
+    findings.is_folded = run_.is_part() ? run_.ranks->covers_twice() : covers_twice(run_.mesh, run_.policy());
+  }
+  return findings.is_folded;
 }
 
 std::size_t PassState::n_below(double value) {

@@ -79,6 +79,9 @@ class PassState {
   std::size_t n_invalid() const { return n_invalid_; }
   /// Smallest decision value of the mesh.
   double worst() const { return worst_; }
+  /// Whether rounds hold the link condition: no new edge or face can come twice where all cells are positive
+  /// and none lie over one another.
+  bool checks_links();
   std::size_t n_below(double value);
 
   /// Forgets what was looked at, so that passes with a wider focus or other operators see every cell again.

@@ -265,6 +265,7 @@ class PatchTries {
     TetMesh mesh = patch_.mesh();
     LoneRun lone(mesh, strategy_, clock.seconds_left());
     lone.findings().is_folded = whole_.findings.is_folded;
+    lone.findings().may_cover_twice = whole_.findings.may_cover_twice;
     if (!begin(how, lone.run(), rules(), worked_for_)) return one;
     lone.work().attach(mesh, strategy_.pass.policy);
     const PartOfSurface part(mesh, surface_, patch_.vertices());

@@ -194,7 +194,8 @@ void run_towards_claim(const Run& run, Beginning from, std::optional<Best::Begin
   Best best(run, strategy.goal->may_fall, Loss::kMadeUpFor);
   const Revision usual = run.control.revision();
   from.put_back(run);
-  const Findings found = std::exchange(run.findings, {.is_folded = run.findings.is_folded});
+  const Findings found = std::exchange(
+      run.findings, {.is_folded = run.findings.is_folded, .may_cover_twice = run.findings.may_cover_twice});
   run_towards_goal(run.with(strategy), *strategy.goal);
   if (smallest_that_may_rise(run, strategy.goal->degrees) > before + kLeastRise) {
     best.note();

@@ -131,6 +131,8 @@ class Ranks {
   /// Whether a surface that has changed lies on or goes through itself at a vertex that has since the clock
   /// stood there.
   virtual bool is_folded_since(std::uint32_t) { return false; }
+  /// Whether the cells round some vertex cover a direction twice; see Coverage.hh.
+  virtual bool covers_twice() { return false; }
   /// Of all cells.
   virtual Tally tally(double below) = 0;
   virtual std::size_t n_cells() const = 0;

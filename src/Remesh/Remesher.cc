@@ -9,6 +9,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Geometry.hh"
+#include "Quality/Coverage.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/CellWatch.hh"
 #include "Remesh/Coordinates.hh"
@@ -181,6 +182,7 @@ void Remesher::State::prepare() {
   before_ = std::make_shared<TetMesh>(mesh_);
   remember_mesh();
   memory_.is_folded = !folded_faces(mesh_, policy_).empty();
+  memory_.covers_once = !*memory_.is_folded && !covers_twice(mesh_, policy_);
 }
 
 void Remesher::State::remember_mesh() {
@@ -192,6 +194,7 @@ void Remesher::State::remember_mesh() {
 void Remesher::State::forget_mesh() {
   memory_.knows_stars = false;
   memory_.is_folded.reset();
+  memory_.covers_once = false;
 }
 
 RepairCause Remesher::State::needs_repair() const {
@@ -490,6 +493,7 @@ void Remesher::State::undo() {
   }
   if (has_moved_) {
     memory_.is_folded.reset();
+    memory_.covers_once = false;
     put_points_back();
   }
   steps_ = steps_before_;

@@ -24,6 +24,9 @@ struct Findings {
   /// The boundary lies on or goes through itself somewhere: then positive cells may overlap, too, and rounds
   /// hold the link condition throughout.
   bool is_folded = false;
+  /// The cells are not known to cover each direction round a vertex once: that is to be looked into when all
+  /// are positive, and counts as folded where they do not.
+  bool may_cover_twice = true;
   /// Something was left undone for the number of cells; and the bound on more of them at that time, 0: none.
   bool met_cell_bound = false;
   std::size_t max_cells_met = 0;
