@@ -32,6 +32,17 @@ Best::Percentiles percentiles_of(const Run& run) {
   return found;
 }
 
+/// Whether both percentiles are worth less: in degrees, each as a share of what it was. Where one was not
+/// positive, the first that differs decides.
+bool are_lower(const Best::Percentiles& now, const Best::Percentiles& before) {
+  double kept = 1;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (!(before[k] > 0)) return now < before;
+    kept *= degrees(now[k]) / degrees(before[k]);
+  }
+  return kept < 1;
+}
+
 bool is_alike(double a, double b) { return std::abs(a - b) <= kLeastRise; }
 double risen_now(const Run& run) { return smallest_that_may_rise(run, kLargestGoal); }
 
@@ -98,7 +109,7 @@ void Best::settle() {
   if (is_alike(degrees(found), degrees(standing_))) found.worst = standing_.worst;
   const bool is_worse = by < 0 || (by == 0 && is_better(standing_, found));
   const bool decides_low = by == 0 && !is_worse && !is_better(found, standing_);
-  if (is_worse || !is_admissible(found) || (decides_low && percentiles_of(run_) < low_))
+  if (is_worse || !is_admissible(found) || (decides_low && are_lower(percentiles_of(run_), low_)))
     mesh_->put_back(run_);
 }
 

@@ -47,7 +47,8 @@ class Best {
   /// The mesh may have become better.
   void note();
   /// At the end of the stage: where the mesh is worse than the best one was, puts that back. Angles that look
-  /// alike in a table count alike; in the end the 1st percentile decides, and the 5th.
+  /// alike in a table count alike; in the end the 1st and the 5th percentile decide, by their shares of what they
+  /// were.
   void settle();
 
  private:
