@@ -41,7 +41,7 @@ class Climb {
   }
   /// Of cells that came to be below that, on the way to what is larger.
   void mend(double degrees) {
-    if (run_.smallest_dihedral() < degrees) polish(run_, run_.strategy.mending(), degrees);
+    if (smallest() < degrees) polish(run_, run_.strategy.mending(), degrees);
   }
   double smallest() const { return smallest_that_may_rise(run_, kLargestGoal); }
 
@@ -78,15 +78,16 @@ void raise_at_any_cost(const Run& whole, const AnyCostEffort& effort, Best& best
   run.may_add_poor_cells = true;
   Climb climb(run, effort);
   climb.search_worst();
+  best.note();
   if (effort.refine) refine(run, *effort.refine);
   for (double at_start = 0; has_risen(climb.smallest(), at_start, effort.again) && !run.control.stopped();) {
     climb.while_it_rises();
-    climb.mend(best.worst());
+    climb.mend(best.risen());
     best.note();
     if (at_start == 0 && effort.refine_again) refine(run, *effort.refine_again);
     at_start = climb.smallest();
     climb.search_worst();
-    climb.mend(best.worst());
+    climb.mend(best.risen());
     best.note();
   }
 }

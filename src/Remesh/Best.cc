@@ -81,8 +81,6 @@ bool Best::makes_up_for(double worst, const Percentiles& low) const {
   return sum >= 0 && worst * kept * kept >= beginning_.worst;
 }
 
-double Best::worst() const { return degrees(standing_); }
-
 int Best::by_risen(const Standing& found, double risen) const {
   Standing alike = found;
   alike.worst = standing_.worst;

@@ -42,13 +42,13 @@ class Best {
   Best(const Best&) = delete;
   Best& operator=(const Best&) = delete;
 
-  /// Smallest dihedral of the best mesh in degrees.
-  double worst() const;
+  /// Smallest dihedral in degrees of the cells of the best mesh that may rise.
+  double risen() const { return risen_; }
   /// The mesh may have become better.
   void note();
   /// At the end of the stage: where the mesh is worse than the best one was, puts that back. Angles that look
-  /// alike in a table count alike; in the end the 1st and the 5th percentile decide, by their shares of what they
-  /// were.
+  /// alike in a table count alike; in the end the 1st and the 5th percentile decide, by their shares of what
+  /// they were.
   void settle();
 
  private:

@@ -120,6 +120,7 @@ TEST(Best, WhereTheWorstAngleStaysBothPercentilesDecide) {
   EXPECT_NEAR(ends_with({1, 1.9, 16}, {1, 2.4, 6}, kMayFall), 1.9, 1e-6);
   EXPECT_NEAR(ends_with({1, 2, 16}, {1, 2.1, 15.9}, kMayFall), 2.1, 1e-6);
   EXPECT_NEAR(ends_with({1, 2.1, 15.9}, {1, 2, 16}, 0.1), 2.1, 1e-6);
+  EXPECT_NEAR(ends_with({1, 2, 16}, {1, 2.02, 15.6}, kMayFall), 2, 1e-6);
 }
 
 TEST(Best, WhatWasHadOnTheWayComesBackWhereTheEndIsWorse) {
