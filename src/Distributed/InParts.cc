@@ -71,7 +71,7 @@ class Residents : public Ranks, public MeshInParts {
                                                const SurfaceOptions& options) override {
     return PartSurface::ceilings(mesh_, cells, options);
   }
-  bool is_folded_since(std::uint32_t clock) override;
+  bool is_folded_since(std::uint32_t clock, bool are_positive) override;
   bool covers_twice() override;
   Tally tally(double below) override { return passes_.tally(below); }
   std::size_t n_cells() const override { return static_cast<std::size_t>(mesh_.n_cells()); }
@@ -133,18 +133,21 @@ std::shared_ptr<SurfaceMesh> Residents::surface(const SurfaceOptions& options) {
 }
 
 /// As SurfacePasses has it, each rank at its own vertices.
-bool Residents::is_folded_since(std::uint32_t clock) {
+bool Residents::is_folded_since(std::uint32_t clock, bool are_positive) {
   const TetMesh& part = mesh_.part();
   const Workspace& work = mesh_.work();
   std::vector<VertexHandle> changed;
   for (VertexHandle v : own_vertices(mesh_))
     if (work.frozen[v.idx()] && work.changed[v.idx()] > clock) changed.push_back(v);
-  bool is_folded = is_folded_at(part, changed, policy_);
+  bool is_folded =
+      is_folded_at(part, changed, policy_) || (are_positive && is_wound_at(part, changed, policy_));
   const auto is_pinched = [&](VertexHandle v) { return !work.pinched.empty() && work.pinched[v.idx()] != 0; };
+  const auto has_changed_pinched = [&](VertexHandle v) {
+    return is_pinched(v) && std::binary_search(changed.begin(), changed.end(), v);
+  };
   if (!is_folded && std::any_of(changed.begin(), changed.end(), is_pinched))
-    is_folded = !folded_faces(part, policy_, [&](VertexHandle v) {
-                   return is_pinched(v) && std::binary_search(changed.begin(), changed.end(), v);
-                 }).empty();
+    is_folded = !folded_faces(part, policy_, has_changed_pinched).empty() ||
+                (are_positive && hfr::covers_twice(part, policy_, has_changed_pinched));
   return mesh_.comm().sum(is_folded ? 1 : 0) > 0;
 }
 

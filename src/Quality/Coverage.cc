@@ -26,15 +26,16 @@ constexpr double kCellNanoseconds = 20;
 constexpr double kWalkNanoseconds = 300;
 /// Along no axis or diagonal, so that it lies in no face of a grid.
 constexpr Vec3 kDirection{0.8507350102, 0.4415211327, 0.2851530273};
-/// A volume below so many times the cube of an edge may have either sign.
+/// An area below so many times the square of an edge may have either sign.
 constexpr double kSure = 1e-13;
 
-// What is counted at a vertex, in one word.
-constexpr std::uint32_t kAhead = 1, kBehind = 1U << 15, kUnsure = 1U << 30;
-std::uint32_t n_ahead(std::uint32_t counted) { return counted % kBehind; }
-std::uint32_t n_behind(std::uint32_t counted) { return counted % kUnsure / kBehind; }
+// What is known of a vertex, in one word: two numbers, and flags.
+constexpr std::uint32_t kAhead = 1, kBehind = 1U << 14;
+constexpr std::uint32_t kUnsure = 1U << 28, kNotPositive = 1U << 29, kOnBoundary = 1U << 30;
+std::uint32_t n_ahead(std::uint32_t word) { return word % kBehind; }
+std::uint32_t n_behind(std::uint32_t word) { return word % kUnsure / kBehind; }
 
-/// Calls visit(corner, what) for what a cell adds at its corners.
+/// Calls visit(corner, what) for what a cell says of its corners, but for the boundary.
 template <class Visit>
 void count_in(const TetMesh& mesh, CellHandle c, Visit&& visit) {
   const auto& v = mesh.cell(c).v;
@@ -45,7 +46,7 @@ void count_in(const TetMesh& mesh, CellHandle c, Visit&& visit) {
                                   dot(cross(b, d), kDirection)};
   inward[0] = -(inward[1] + inward[2] + inward[3]);
   if (!(dot(cross(b, d), e) > 0)) {
-    visit(0, 2 * kAhead);
+    for (std::size_t i = 0; i < 4; ++i) visit(i, kNotPositive);
     return;
   }
   const double least = kSure * std::max({dot(b, b), dot(d, d), dot(e, e)});
@@ -117,43 +118,67 @@ bool has_wound_edge(const TetMesh& mesh, par::Policy policy, const std::vector<s
           }).empty();
 }
 
-/// Per vertex: 1 on the boundary.
-std::vector<std::uint8_t> boundary_vertices(const TetMesh& mesh) {
-  std::vector<std::uint8_t> on_boundary(mesh.n_vertices(), 0);
-  for (HalfFaceHandle h : mesh.boundary_halffaces())
-    for (VertexHandle v : mesh.halfface_vertices(h)) on_boundary[v.idx()] = 1;
-  return on_boundary;
+/// The same at the edges of the boundary at v, on the part of its cells that a walk sees.
+bool is_wound_round(const TetMesh& mesh, VertexHandle v) {
+  for (CellHandle c : mesh.vertex_cells(v))
+    for (HalfFaceHandle h : mesh.cell_halffaces(c)) {
+      const auto f = mesh.halfface_vertices(h);
+      const auto at = static_cast<std::size_t>(std::find(f.begin(), f.end(), v) - f.begin());
+      if (at == f.size() || !mesh.is_boundary(h)) continue;
+      // Where the cells round the edge to the next vertex of the face begin.
+      const RingPlace start{c, mesh.cell(c).own_corner(f[(at + 2) % 3]),
+                            static_cast<std::uint8_t>(corner_of(h))};
+      if (n_turns(mesh, v, f[(at + 1) % 3], start) > 0) return true;
+    }
+  return false;
 }
 
 }  // namespace
 
 bool covers_twice(const TetMesh& mesh, par::Policy policy, const std::function<bool(VertexHandle)>& at) {
-  std::vector<std::uint32_t> counted(mesh.n_vertices(), 0);
+  std::vector<std::uint32_t> words(mesh.n_vertices(), 0);
+  const auto note = [&](VertexHandle v, std::uint32_t what) {
+    const auto word = par::atomic(words[v.idx()]);
+    par::before_shared_access();
+    if (what >= kUnsure)
+      word.fetch_or(what, std::memory_order_relaxed);
+    else
+      word.fetch_add(what, std::memory_order_relaxed);
+  };
   par::for_each(policy.for_items_of(kCellNanoseconds), mesh.n_cells(), [&](std::size_t i) {
     const CellHandle c(i);
     if (mesh.is_deleted(c)) return;
-    count_in(mesh, c, [&](std::size_t corner, std::uint32_t what) {
-      const auto here = par::atomic(counted[mesh.cell(c).v[corner].idx()]);
-      par::before_shared_access();
-      if (what == kUnsure)
-        here.fetch_or(what, std::memory_order_relaxed);
-      else
-        here.fetch_add(what, std::memory_order_relaxed);
-    });
+    const Cell& cell = mesh.cell(c);
+    count_in(mesh, c, [&](std::size_t corner, std::uint32_t what) { note(cell.v[corner], what); });
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (cell.mate[k].is_valid()) continue;
+      for (VertexHandle v : mesh.halfface_vertices(halfface_of(c, static_cast<int>(k)))) note(v, kOnBoundary);
+    }
   });
-  const std::vector<std::uint8_t> on_boundary = boundary_vertices(mesh);
-  std::vector<std::uint8_t> is_open(mesh.n_vertices(), 0);
-  bool has_open = false;
-  for (std::size_t v = 0; v < counted.size(); ++v) {
-    const std::uint32_t n = counted[v];
-    if (n == 0 || (at && !at(VertexHandle(v)))) continue;
-    if (n < kUnsure && (n_ahead(n) > 1 || n_behind(n) > 1)) return true;
-    const bool both = n_ahead(n) > 0 && n_behind(n) > 0;
-    if (n < kUnsure && !(both && on_boundary[v] != 0)) continue;
-    is_open[v] = 1;
-    has_open = true;
-  }
-  return has_open && has_wound_edge(mesh, policy, is_open);
+  enum Verdict : std::uint8_t { kOnce, kToWalk, kTwice };
+  const auto verdict = [&](std::size_t v) {
+    const std::uint32_t word = words[v];
+    if (word == 0 || (at && !at(VertexHandle(v)))) return kOnce;
+    if ((word & kNotPositive) != 0 || n_ahead(word) > 1 || n_behind(word) > 1) return kTwice;
+    const bool both = n_ahead(word) > 0 && n_behind(word) > 0;
+    return (word & kUnsure) != 0 || (both && (word & kOnBoundary) != 0) ? kToWalk : kOnce;
+  };
+  std::vector<std::uint8_t> to_walk(mesh.n_vertices(), 0);
+  const Verdict worst = par::reduce(
+      policy, words.size(), kOnce,
+      [&](std::size_t v) {
+        const Verdict here = verdict(v);
+        to_walk[v] = here == kToWalk ? 1 : 0;
+        return here;
+      },
+      [](Verdict a, Verdict b) { return std::max(a, b); });
+  return worst == kTwice || (worst == kToWalk && has_wound_edge(mesh, policy, to_walk));
+}
+
+bool is_wound_at(const TetMesh& mesh, std::span<const VertexHandle> vertices, par::Policy policy) {
+  return !par::compact<std::size_t>(policy.for_items_of(kWalkNanoseconds), vertices.size(),
+                                    [&](std::size_t i) { return is_wound_round(mesh, vertices[i]); })
+              .empty();
 }
 
 }  // namespace hfr

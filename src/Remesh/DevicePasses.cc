@@ -19,9 +19,11 @@ bool DevicePasses::takes(PassKind kind) const {
     return effort.smoother == Smoother::kCandidates || effort.smoother == Smoother::kNewton;
   if (kind != PassKind::kEdge && kind != PassKind::kFace && kind != PassKind::kNode) return false;
   const Labels& labels = run.mesh.labels();
-  return !effort.device_only_smooths && !state_.checks_links() && labels.faces.empty() &&
-         labels.edges.empty() && labels.vertices.empty() && run.mesh.locks().empty() &&
-         run.work.pinched.empty();
+  if (effort.device_only_smooths || !labels.faces.empty() || !labels.edges.empty() ||
+      !labels.vertices.empty() || !run.mesh.locks().empty() || !run.work.pinched.empty())
+    return false;
+  // To look into it may bring the mesh back, and with that lose the device.
+  return !state_.checks_links() && run.device.mesh();
 }
 
 bool DevicePasses::take_mesh() {
@@ -127,8 +129,7 @@ double DevicePasses::smallest_dihedral() {
 
 void DevicePasses::count() {
   const DeviceMesh::Tally tally = state_.run_.device.mesh()->tally();
-  state_.n_invalid_ = tally.n_invalid;
-  state_.worst_ = tally.worst;
+  state_.count_as(tally.n_invalid, tally.worst);
 }
 
 void DevicePasses::bring_back() {

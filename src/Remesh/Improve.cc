@@ -68,7 +68,10 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
   const Ending ending = run_to_the_end(run);
   memory.knows_stars = ending.stays;
   memory.covers_once = ending.stays && !findings.may_cover_twice && !findings.is_folded;
-  if (surface.get()) memory.is_folded.reset();
+  if (surface.get()) {
+    memory.is_folded.reset();
+    memory.covers_once = false;
+  }
   surface_report = surface.report(mesh);
   return ending.meets;
 }

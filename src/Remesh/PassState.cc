@@ -60,10 +60,7 @@ Worklist PassState::changed_since(std::uint32_t since, const Focus& focus) {
 
 bool PassState::checks_links() {
   Findings& findings = run_.findings;
-  if (n_invalid_ > 0) {
-    findings.may_cover_twice = true;
-    return true;
-  }
+  if (n_invalid_ > 0) return true;
   if (std::exchange(findings.may_cover_twice, false) && !findings.is_folded) {
     to_host();
     findings.is_folded = run_.is_part() ? run_.ranks->covers_twice() : covers_twice(run_.mesh, run_.policy());
@@ -83,8 +80,7 @@ std::span<const Index> PassState::poor(double value) {
 void PassState::count(const Focus& focus) {
   if (run_.is_part()) {
     const Ranks::Tally tally = run_.ranks->tally(focus.below);
-    n_invalid_ = tally.n_invalid;
-    worst_ = tally.worst;
+    count_as(tally.n_invalid, tally.worst);
     return;
   }
   to_host();
@@ -110,8 +106,13 @@ void PassState::count(const Focus& focus) {
     sum = sum_over(cells.size(), [&](std::size_t i) { return cells[i]; });
   }
   if (!(sum.worst < focus.below)) sum = sum_over(quality.size(), [](std::size_t i) { return i; });
-  n_invalid_ = sum.invalid;
-  worst_ = sum.worst;
+  count_as(sum.invalid, sum.worst);
+}
+
+void PassState::count_as(std::size_t n_invalid, double worst) {
+  n_invalid_ = n_invalid;
+  worst_ = worst;
+  if (n_invalid > 0) run_.findings.may_cover_twice = true;
 }
 
 void PassState::report(const char* op, const Turn& turn, const RoundCounts& counts, double seconds) {

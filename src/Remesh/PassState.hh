@@ -98,6 +98,8 @@ class PassState {
   std::span<const Index> poor(double value);
   /// Brings n_invalid() and worst() up to date. With a focus that holds a cell, both are found inside it.
   void count(const Focus& focus);
+  /// The same, where they are known.
+  void count_as(std::size_t n_invalid, double worst);
   /// A line in the report, and to the caller that listens.
   void report(const char* op, const Turn& turn, const RoundCounts& counts, double seconds);
   /// Brings the mesh back from the device or other ranks, where passes may have left it.

@@ -48,7 +48,7 @@ struct PatchesDone {
   std::size_t n_patches = 0, n_candidates = 0, n_changed = 0;
   bool worst_rose = false;
   bool met_bound = false;  ///< of cells
-  bool is_folded = false;  ///< the boundary lies on or goes through itself now
+  bool is_folded = false;  ///< see Findings
 };
 
 }  // namespace hfr

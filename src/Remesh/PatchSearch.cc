@@ -36,7 +36,7 @@ constexpr double kAnyLoss = 0;
 struct Outcome {
   std::optional<TetMesh> mesh;
   bool held_back = false;  // see PatchVerdict
-  bool is_folded = false;  // its surface lies on or goes through itself now
+  bool is_folded = false;  // see Findings
 };
 
 /// Cells that a patch may come to have.
@@ -334,7 +334,8 @@ std::vector<Patch> disjoint_patches(PatchPlace& place, const PatchEffort& effort
 /// Puts back what has got better, as far as the bounds on cells let it and no edge or face comes twice.
 void put_back(const Run& run, PatchPlace& place, std::span<const Patch> patches,
               std::span<const Outcome> outcomes, PatchesDone& done) {
-  const bool may_overlap = run.findings.is_folded || !run.work.pinched.empty() || run.surface;
+  const bool may_overlap =
+      run.findings.is_folded || run.findings.may_cover_twice || !run.work.pinched.empty() || run.surface;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     done.met_bound = done.met_bound || outcomes[i].held_back;
     if (!outcomes[i].mesh) continue;

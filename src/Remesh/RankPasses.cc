@@ -40,8 +40,7 @@ void RankPasses::renew(Ranks::Look& look, const Turn& turn) {
 
 void RankPasses::count(const Turn& turn) {
   const Ranks::Tally tally = state_.run_.ranks->tally(turn.focus.below);
-  state_.n_invalid_ = tally.n_invalid;
-  state_.worst_ = tally.worst;
+  state_.count_as(tally.n_invalid, tally.worst);
 }
 
 std::optional<std::size_t> RankPasses::run(PassKind kind, const char* name, const Turn& turn) {

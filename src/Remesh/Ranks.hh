@@ -129,8 +129,8 @@ class Ranks {
   /// Where keep_mesh(), and the run has a surface. Nothing where no cell is looked at.
   virtual std::optional<RoundCounts> surface_pass(SurfaceMesh&, const SurfaceLook&) { return std::nullopt; }
   /// Whether a surface that has changed lies on or goes through itself at a vertex that has since the clock
-  /// stood there.
-  virtual bool is_folded_since(std::uint32_t) { return false; }
+  /// stood there; where all cells are positive, also whether these lie over one another there.
+  virtual bool is_folded_since(std::uint32_t, bool) { return false; }
   /// Whether the cells round some vertex cover a direction twice; see Coverage.hh.
   virtual bool covers_twice() { return false; }
   /// Of all cells.

@@ -102,6 +102,7 @@ class Remesher::State {
 
   void prepare();
   void forget_mesh();
+  void forget_coverage();
   std::span<const Vec3> followed(std::span<const Vec3> displacement);
   void remember_mesh();
   std::size_t look_at_moved();
@@ -193,6 +194,11 @@ void Remesher::State::remember_mesh() {
 /// The mesh is another one than repairs remember.
 void Remesher::State::forget_mesh() {
   memory_.knows_stars = false;
+  forget_coverage();
+}
+
+/// Whether the boundary lies on itself, or cells over one another.
+void Remesher::State::forget_coverage() {
   memory_.is_folded.reset();
   memory_.covers_once = false;
 }
@@ -239,7 +245,7 @@ std::span<const Vec3> Remesher::State::followed(std::span<const Vec3> displaceme
 void Remesher::State::move_points(std::span<const Vec3> displacement) {
   travelled_before_.clear();
   const auto is_frozen = [&](VertexHandle v) { return !memory_.knows_stars || memory_.work.frozen[v.idx()]; };
-  if (memory_.is_folded && moved_.find_if(is_frozen)) memory_.is_folded.reset();
+  if ((memory_.is_folded || memory_.covers_once) && moved_.find_if(is_frozen)) forget_coverage();
   if (!travelled_.empty())
     moved_.find_if([&](VertexHandle v) {
       travelled_before_.push_back(travelled_[v.idx()]);
@@ -492,8 +498,7 @@ void Remesher::State::undo() {
     options_.improve.surface = std::move(undo_->surface);
   }
   if (has_moved_) {
-    memory_.is_folded.reset();
-    memory_.covers_once = false;
+    forget_coverage();
     put_points_back();
   }
   steps_ = steps_before_;

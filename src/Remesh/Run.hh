@@ -21,11 +21,11 @@ class SurfaceMesh;
 
 /// What a run finds out on its way.
 struct Findings {
-  /// The boundary lies on or goes through itself somewhere: then positive cells may overlap, too, and rounds
-  /// hold the link condition throughout.
+  /// The boundary lies on or goes through itself somewhere, or cells cover a direction round a vertex twice:
+  /// then positive cells may overlap, and rounds hold the link condition throughout.
   bool is_folded = false;
-  /// The cells are not known to cover each direction round a vertex once: that is to be looked into when all
-  /// are positive, and counts as folded where they do not.
+  /// The cells are not known to cover each direction round a vertex once: that is looked into before a round
+  /// over positive cells, and counts as folded where they do not.
   bool may_cover_twice = true;
   /// Something was left undone for the number of cells; and the bound on more of them at that time, 0: none.
   bool met_cell_bound = false;

@@ -22,8 +22,8 @@ struct RunMemory {
   bool knows_stars = false;
   /// Whether folded_faces() has any, where no vertex of the boundary has moved since that was asked.
   std::optional<bool> is_folded;
-  /// The cells are known to cover each direction round a vertex once (Coverage.hh), as they do while positive
-  /// cells are moved and stay positive.
+  /// The cells are known to cover each direction round a vertex once (Coverage.hh), as positive ones do while
+  /// no vertex of the boundary is moved.
   bool covers_once = false;
   /// What survey() would find; for the next run only.
   std::optional<Survey> found;

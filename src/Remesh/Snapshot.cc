@@ -17,6 +17,7 @@ void Snapshot::put_back(const Run& run) {
   surface_.put_back(run.surface);
   if (!run.is_part()) run.work.attach(run.mesh, run.policy());
   const Survey found = run.survey();
+  if (found.n_invalid > 0) run.findings.may_cover_twice = true;
   run.control.add_undo(revision_, found.n_invalid, found.worst);
 }
 

@@ -10,6 +10,7 @@
 
 #include "HalfFace/Errors.hh"
 #include "Operators/Metrics.hh"
+#include "Quality/Coverage.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Remesh/PassState.hh"
 #include "Remesh/SurfaceSeeds.hh"
@@ -313,22 +314,25 @@ template <class Metric>
 void SurfacePasses<Metric>::look_for_folds(std::uint32_t since) {
   const Run& run = state_.run();
   if (run.findings.is_folded) return;
+  // Before all cells are positive they are not wound, and looked at once they are.
+  const bool are_positive = state_.n_invalid() == 0;
   if (run.is_part()) {
-    run.findings.is_folded = run.ranks->is_folded_since(since);
+    run.findings.is_folded = run.ranks->is_folded_since(since, are_positive);
     return;
   }
   const auto has_changed = [&](std::size_t v) {
     return run.work.frozen[v] && run.work.changed[v] > since && !run.mesh.is_deleted(VertexHandle(v));
   };
   const auto changed = par::compact<VertexHandle>(run.policy(), run.mesh.n_vertices(), has_changed);
-  run.findings.is_folded = is_folded_at(run.mesh, changed, run.policy());
+  run.findings.is_folded = is_folded_at(run.mesh, changed, run.policy()) ||
+                           (are_positive && is_wound_at(run.mesh, changed, run.policy()));
   // Of a pinched vertex a walk sees a part alone, and the parts may go through each other.
   const std::vector<std::uint8_t>& pinched = run.work.pinched;
   const auto is_pinched = [&](VertexHandle v) { return !pinched.empty() && pinched[v.idx()] != 0; };
+  const auto has_changed_pinched = [&](VertexHandle v) { return is_pinched(v) && has_changed(v.idx()); };
   if (!run.findings.is_folded && std::any_of(changed.begin(), changed.end(), is_pinched))
-    run.findings.is_folded = !folded_faces(run.mesh, run.policy(), [&](VertexHandle v) {
-                                return is_pinched(v) && has_changed(v.idx());
-                              }).empty();
+    run.findings.is_folded = !folded_faces(run.mesh, run.policy(), has_changed_pinched).empty() ||
+                             (are_positive && covers_twice(run.mesh, run.policy(), has_changed_pinched));
 }
 
 template <class Metric>

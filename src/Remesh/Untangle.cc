@@ -234,6 +234,7 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
   const std::unique_ptr<Unfolding> unfolding =
       run.is_part() ? run.parts()->unfolding(effort) : std::make_unique<MeshUnfolding>(run, effort);
   std::size_t n_invalid = unfolding->look();
+  if (n_invalid > 0) run.findings.may_cover_twice = true;
   run.keep(n_invalid == 0);
   run.work.forget_qualities();
   Tangle least;

@@ -25,8 +25,9 @@ class RoundPlace;
 struct RoundOptions {
   par::Policy policy;
   /// Hold the full link condition, also among the winners of the round. Needed while any cell is inverted or
-  /// flat; elsewhere a cluster whose cells stay positive cannot break it. Where it has two vertices that are
-  /// pinched (Workspace::pinched), what would come twice is refused in any case.
+  /// flat, and where cells lie over one another; elsewhere a cluster whose cells stay positive cannot break
+  /// it. Where it has two vertices that are pinched (Workspace::pinched), what would come twice is refused in
+  /// any case.
   bool check_links = true;
   std::uint64_t seed = 1;
   /// Rank by the exact worst cell, as the paper's ASSIGNMENT does, instead of by buckets of it. Neighbours

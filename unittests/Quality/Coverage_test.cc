@@ -11,11 +11,10 @@
 #include "HalfFace/Generate.hh"
 #include "Quality/FoldedFaces.hh"
 #include "Quality/Metrics.hh"
+#include "Quality/RoundAxle.hh"
 
 namespace hfr::test {
 namespace {
-
-using Corners = std::array<Index, 4>;
 
 /// Points turned about two axes by so many degrees.
 void turn(std::vector<Vec3>& points, double degrees) {
@@ -26,23 +25,10 @@ void turn(std::vector<Vec3>& points, double degrees) {
   }
 }
 
-/// Cells of vertex 0 round its edges to 1 and 2, which lie opposite one another: n of each, from a half-plane
-/// on by so many degrees in all, whose last ones meet the first where `closed`.
-TetMesh round_axle(int n, double degrees, bool closed, double turned) {
-  std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 1}, {0, 0, -1}};
-  std::vector<Corners> cells;
-  const Index n_rim = static_cast<Index>(closed ? n : n + 1);
-  for (Index i = 0; i < n_rim; ++i) {
-    const double angle = degrees * i / n * std::numbers::pi / 180;
-    points.push_back({std::cos(angle), std::sin(angle), 0});
-  }
-  for (Index i = 0; i < static_cast<Index>(n); ++i) {
-    const Index here = 3 + i, next = 3 + (i + 1) % n_rim;
-    cells.push_back({0, 1, here, next});
-    cells.push_back({0, 2, next, here});
-  }
+TetMesh turned_round_axle(int n, double degrees, bool closed, double turned) {
+  std::vector<Vec3> points = points_round_axle(n, degrees, closed);
   turn(points, turned);
-  return build(points, cells);
+  return round_axle(n, points);
 }
 
 bool at_centre(VertexHandle v) { return v.idx() == 0; }
@@ -67,13 +53,15 @@ TEST(Coverage, CellsRoundABoundaryEdgeCoverTwiceFromAWholeTurnOn) {
   for (double turned = 0; turned < 360; turned += 17) {
     for (const double degrees : {90.0, 179.0, 181.0, 300.0, 359.0})
       for (const int n : {3, 5, 9, 70})
-        EXPECT_FALSE(covers_twice_at_centre(round_axle(n, degrees, false, turned))) << degrees << " " << n;
+        EXPECT_FALSE(covers_twice_at_centre(turned_round_axle(n, degrees, false, turned)))
+            << degrees << " " << n;
     for (const double degrees : {361.0, 450.0, 520.0, 700.0})
       for (const int n : {5, 9, 70}) {
-        const TetMesh mesh = round_axle(n, degrees, false, turned);
+        const TetMesh mesh = turned_round_axle(n, degrees, false, turned);
         EXPECT_FALSE(has_inverted(mesh));
         EXPECT_TRUE(folded_faces(mesh, {}, at_centre).empty());
         EXPECT_TRUE(covers_twice_at_centre(mesh)) << degrees << " " << n << " turned by " << turned;
+        EXPECT_TRUE(is_wound_at(mesh, std::array{VertexHandle(0)}));
       }
   }
 }
@@ -81,13 +69,27 @@ TEST(Coverage, CellsRoundABoundaryEdgeCoverTwiceFromAWholeTurnOn) {
 TEST(Coverage, CellsRoundAnInnerEdgeCoverTwiceFromTwoTurnsOn) {
   for (double turned = 0; turned < 360; turned += 17) {
     for (const int n : {3, 4, 5, 9, 70})
-      EXPECT_FALSE(covers_twice_at_centre(round_axle(n, 360, true, turned))) << n;
+      EXPECT_FALSE(covers_twice_at_centre(turned_round_axle(n, 360, true, turned))) << n;
     for (const int n : {5, 9, 70}) {
-      const TetMesh mesh = round_axle(n, 720, true, turned);
+      const TetMesh mesh = turned_round_axle(n, 720, true, turned);
       EXPECT_FALSE(has_inverted(mesh));
       EXPECT_TRUE(covers_twice_at_centre(mesh)) << n << " turned by " << turned;
     }
   }
+}
+
+/// What goes back over an inverted cell is no turn.
+TEST(Coverage, InvertedCellsTurnBack) {
+  std::vector<Vec3> points = points_round_axle(9, 340, false);
+  EXPECT_FALSE(is_wound_at(round_axle(9, points), std::array{VertexHandle(0)}));
+  const auto at = [](double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return Vec3{std::cos(angle), std::sin(angle), 0};
+  };
+  points[points.size() - 2] = at(375);  // and back to 340
+  EXPECT_FALSE(is_wound_at(round_axle(9, points), std::array{VertexHandle(0)}));
+  points.back() = at(380);
+  EXPECT_TRUE(is_wound_at(round_axle(9, points), std::array{VertexHandle(0)}));
 }
 
 TEST(Coverage, SolidsCoverOnce) {
@@ -106,18 +108,9 @@ TEST(Coverage, CellsOfAnEdgeAlongTheDirectionAreWalkedRound) {
   const Vec3 axle{0.8507350102, 0.4415211327, 0.2851530273};
   const Vec3 x = cross(axle, {0, 0, 1}), y = cross(axle, x);
   const auto along = [&](double degrees) {
-    const TetMesh upright = round_axle(7, degrees, false, 0);
-    std::vector<Vec3> points;
-    std::vector<Corners> cells;
-    for (VertexHandle v : upright.vertices()) {
-      const Vec3 p = upright.point(v);
-      points.push_back(p.x * x + p.y * y + p.z * axle);
-    }
-    for (CellHandle c : upright.cells()) {
-      const auto& v = upright.cell(c).v;
-      cells.push_back({v[0].idx(), v[1].idx(), v[2].idx(), v[3].idx()});
-    }
-    return build(points, cells);
+    std::vector<Vec3> points = points_round_axle(7, degrees, false);
+    for (Vec3& p : points) p = p.x * x + p.y * y + p.z * axle;
+    return round_axle(7, points);
   };
   EXPECT_FALSE(has_inverted(along(350)));
   EXPECT_FALSE(covers_twice_at_centre(along(350)));
