@@ -9,6 +9,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <future>
 #include <random>
 #include <set>
 #include <string>
@@ -101,11 +102,29 @@ inline io::MeshData labelled(const TetMesh& mesh, std::uint64_t seed, const Dens
   return data;
 }
 
+/// A mesh of shared memory after a run.
+struct WholeRun {
+  TetMesh mesh;
+  Result result;
+};
+
+/// A run in shared memory beside whatever comes until it is asked for; not before that where it calls back.
+inline std::future<WholeRun> run_whole(const std::filesystem::path& in, const ImproveOptions& options) {
+  const auto way = options.progress || options.cancel ? std::launch::deferred : std::launch::async;
+  return std::async(way, [in, options] {
+    WholeRun run{io::read(in), {}};
+    run.result = hfr::improve(run.mesh, options);
+    return run;
+  });
+}
+
 /// Reads, improves and writes with all ranks and in shared memory, and compares the bytes. Returns the
 /// winners of all passes, or of those of one operator.
 inline std::size_t expect_bytes(mpi::Comm& comm, const SharedFolder& folder, const std::filesystem::path& in,
                                 const ImproveOptions& options, std::uint64_t at_once = 300,
                                 const std::string& op = {}) {
+  std::future<WholeRun> whole;
+  if (comm.rank() == 0) whole = run_whole(in, options);
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, in, at_once);
   const mpi::PartsResult result = mpi::improve(parts, options);
@@ -114,8 +133,7 @@ inline std::size_t expect_bytes(mpi::Comm& comm, const SharedFolder& folder, con
   mpi::write_vtu(parts, folder.path() / "parts.vtu");
   std::size_t n_winners = 0;
   if (comm.rank() == 0) {
-    TetMesh mesh = io::read(in);
-    const Result shared = hfr::improve(mesh, options);
+    const auto [mesh, shared] = whole.get();
     EXPECT_EQ(check(mesh), Ok);
     for (const PassReport& pass : shared.passes) n_winners += op.empty() || pass.op == op ? pass.winners : 0;
     EXPECT_EQ(shared.goal_reached, result.goal_reached);
@@ -143,6 +161,8 @@ inline void expect_same_surface(const SurfaceReport& a, const SurfaceReport& b) 
 inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const std::filesystem::path& in,
                               const ImproveOptions& options,
                               const std::function<void(mpi::DistributedMesh&)>& around = {}) {
+  std::future<WholeRun> whole;
+  if (comm.rank() == 0) whole = run_whole(in, options);
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, in, 300);
   if (around) around(parts);
@@ -154,8 +174,8 @@ inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const
   mpi::write_vtu(parts, folder.path() / "parts.vtu");
   Result shared;
   if (comm.rank() == 0) {
-    TetMesh mesh = io::read(in);
-    shared = hfr::improve(mesh, options);
+    WholeRun run = whole.get();
+    shared = std::move(run.result);
     EXPECT_EQ(shared.goal_reached, result.goal_reached);
     EXPECT_EQ(shared.changed, result.changed);
     EXPECT_EQ(shared.invalid_cells.size(), result.after.n_invalid);
@@ -168,7 +188,7 @@ inline Result expect_same_run(mpi::Comm& comm, const SharedFolder& folder, const
       EXPECT_EQ(a.worst, b.worst) << a.op << ", pass " << i;
     }
     expect_same_surface(shared.surface, result.surface);
-    io::write(folder.path() / "whole.vtu", mesh);
+    io::write(folder.path() / "whole.vtu", run.mesh);
     EXPECT_TRUE(bytes_of(folder.path() / "parts.vtu") == bytes_of(folder.path() / "whole.vtu"));
   }
   comm.sum(0);
