@@ -24,7 +24,7 @@ cmake -S "$root" -B "$build" -DCMAKE_BUILD_TYPE=Release -DHFR_MPI=ON -DHFR_TESTS
   "${options[@]}" > /dev/null
 cmake --build "$build" --target test_Distributed example_solver_on_ranks hfremesh_tool hfremesh_mpi_tool hfremesh_c \
   hfremesh_manual --parallel "$("$root/scripts/jobs.sh")"
-ctest --test-dir "$build" --output-on-failure -R '^Distributed\.'
+ctest --test-dir "$build" --output-on-failure --parallel 4 -R '^Distributed\.'  # those on ranks one by one
 ctest --test-dir "$build/unittests/install" --output-on-failure -R '^install\.(prefix|mpi)'
 
 if [ "$(id -u)" -eq 0 ]; then export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; fi
