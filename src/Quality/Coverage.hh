@@ -13,8 +13,8 @@ namespace hfr {
 /// Whether the cells round some vertex cover a direction twice: then they lie over one another, although all
 /// are positive and no face of the boundary lies on another. So it is where the cells round an inner edge
 /// make more than one turn, or those round an edge of the boundary one; inverted cells that come right may
-/// leave it so. True also where a cell is not positive. For meshes without folded_faces(); not seen is what
-/// may be where the boundary faces of a vertex are more than one closed fan, and none of its edges is such.
+/// leave it so. True also where a cell is not positive. For meshes without folded_faces(); where the boundary
+/// faces of a vertex are more than one closed fan, something may go unseen.
 /// `at`: only round vertices with at(vertex), all of whose cells the mesh must have; all where it is empty.
 bool covers_twice(const TetMesh& mesh, par::Policy policy = {},
                   const std::function<bool(VertexHandle)>& at = {});

@@ -63,6 +63,7 @@ bool PassState::checks_links() {
   if (n_invalid_ > 0) return true;
   if (std::exchange(findings.may_cover_twice, false) && !findings.is_folded) {
     to_host();
+    if (n_invalid_ > 0) return true;  // after a device was lost
     findings.is_folded = run_.is_part() ? run_.ranks->covers_twice() : covers_twice(run_.mesh, run_.policy());
   }
   return findings.is_folded;

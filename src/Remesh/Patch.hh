@@ -38,8 +38,8 @@ class Patch {
   const std::vector<VertexHandle>& vertices() const { return vertices_; }
 
   /// False when an edge or a face that `changed` has and mesh() has not is one of the whole's cells outside
-  /// of the patch. That can be only where the whole lies over itself: in two of its pinched vertices, or
-  /// where its boundary is folded. O(cells of the whole).
+  /// of the patch. That can be only where the whole lies over itself: in two of its pinched vertices,
+  /// where its boundary is folded, or where its cells cover a direction twice. O(cells of the whole).
   bool fits(const TetMesh& whole, const TetMesh& changed) const;
 
   /// Writes `changed`, which became of mesh() without collection of garbage, in place of the cells. The whole

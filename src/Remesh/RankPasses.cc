@@ -22,11 +22,17 @@ bool RankPasses::takes(PassKind kind, const Turn& turn) {
   const Run& run = state_.run_;
   if (!run.ranks || !run.ranks->can_do(kind, metric_)) return false;
   if ((run.surface && !run.is_part()) || turn.focus.everything() || !turn.focus.around.empty()) return false;
-  if ((state_.checks_links() && !run.is_part()) || run.strategy.pass.ranks_exactly) return false;
+  if ((checks_links(kind) && !run.is_part()) || run.strategy.pass.ranks_exactly) return false;
   if (kind == PassKind::kSmooth && run.strategy.pass.smoother != Smoother::kNewton) return false;
   if (is_resident_) return true;
   return state_.n_below(turn.focus.below) >= run.ranks->least_cells(run.mesh.n_logical_cells()) &&
          run.ranks->can_take(run.mesh, run.work);
+}
+
+/// What cells cover is looked into where shared memory does so: before they are connected anew.
+bool RankPasses::checks_links(PassKind kind) {
+  if (kind != PassKind::kSmooth) return state_.checks_links();
+  return state_.n_invalid() > 0 || state_.run_.findings.is_folded;
 }
 
 void RankPasses::renew(Ranks::Look& look, const Turn& turn) {
@@ -34,7 +40,7 @@ void RankPasses::renew(Ranks::Look& look, const Turn& turn) {
   look.since = std::exchange(state_.looked_[static_cast<std::size_t>(look.kind)], run.work.clock);
   look.may_lose = run.bounds.may_lose(run.ranks->n_cells());
   look.may_gain = run.bounds.may_gain(run.ranks->n_cells());
-  look.check_links = state_.checks_links();
+  look.check_links = checks_links(look.kind);
   look.is_marked = turn.focus.is_marked;
 }
 

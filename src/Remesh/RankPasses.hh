@@ -35,6 +35,7 @@ class RankPasses {
 
  private:
   bool takes(PassKind kind, const Turn& turn);
+  bool checks_links(PassKind kind);
   /// What the next round of a pass has to know.
   void renew(Ranks::Look& look, const Turn& turn);
   /// Brings the counts of the stage up to date.

@@ -7,7 +7,10 @@
 
 namespace hfr {
 
-Snapshot::Snapshot(const Run& run) : surface_(run.surface), revision_(run.control.revision()) {
+Snapshot::Snapshot(const Run& run)
+    : surface_(run.surface),
+      revision_(run.control.revision()),
+      may_cover_twice_(run.findings.may_cover_twice) {
   if (run.checkpoint) mesh_ = run.checkpoint->copy_of_revision(revision_);
   if (!mesh_) mesh_ = copy_of(run.mesh, run.parts());
 }
@@ -17,7 +20,7 @@ void Snapshot::put_back(const Run& run) {
   surface_.put_back(run.surface);
   if (!run.is_part()) run.work.attach(run.mesh, run.policy());
   const Survey found = run.survey();
-  if (found.n_invalid > 0) run.findings.may_cover_twice = true;
+  if (may_cover_twice_ || found.n_invalid > 0) run.findings.may_cover_twice = true;
   run.control.add_undo(revision_, found.n_invalid, found.worst);
 }
 

@@ -24,6 +24,7 @@ class Snapshot {
   MeshCopy mesh_;  // the checkpoint may have it, too
   SurfaceCopy surface_;
   Revision revision_;
+  bool may_cover_twice_;  // see Findings
 };
 
 }  // namespace hfr

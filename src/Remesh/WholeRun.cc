@@ -65,8 +65,8 @@ bool run_twice_if_worse(const Run& run) {
 
 Ending run_to_the_end(const Run& run) {
   const bool valid = run.checkpoint->input().is_valid();
-  // Elsewhere all cells are positive: no new edge or face can come twice, or rounds ask whether one would, and
-  // there is no copy to make.
+  // Elsewhere all cells are positive: no new edge or face can come twice, or rounds ask whether one would,
+  // and there is no copy to make.
   if (!valid || run.findings.is_folded || !run.work.pinched.empty()) run.keep(valid);
   const bool met = run_twice_if_worse(run);
   const bool stays = settle(run, met);
