@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One pass over the cells counts, at each vertex, those in which one direction leads, and the opposite one.
 // At an inner vertex there is one of each, or as many as times that the cells cover all directions. At a
-// vertex of the boundary, whose faces do not cross, they cover the directions on one side of the faces once
-// more than those on the other: where one of the two directions leads in no cell, nothing is covered twice.
-// Where both lead in one, or one of them too near to a face to tell, the cells round each edge of the vertex
-// are walked.
+// vertex of the boundary, whose faces are one closed fan and do not cross, they cover the directions on one
+// side of the faces once more than those on the other: where one of the two directions leads in no cell,
+// nothing is covered twice. Where both lead in one, or one of them too near to a face to tell, the cells
+// round each edge of the vertex are walked.
 #include "Quality/Coverage.hh"
 
 #include <algorithm>
