@@ -105,37 +105,57 @@ std::optional<Best::Beginning> reach_claimed(const Run& run, bool met_cell_bound
 }
 
 /// For each of these angles, the cells below that may rise.
-std::vector<std::size_t> n_that_may_rise(const Run& run, std::span<const TargetAngle> targets) {
+std::vector<std::size_t> n_that_may_rise(const Run& run, std::span<const double> angles) {
   std::vector<std::size_t> n;
-  for (const TargetAngle& target : targets) n.push_back(Low::count(run, target.degrees));
+  for (double degrees : angles) n.push_back(Low::count(run, degrees));
   return n;
 }
 
-/// Where many cells miss what is claimed, with a frozen surface: those that others, which nothing raises,
-/// have kept from their turn. Goes on, with more cells, while more than a few of those below an angle are
-/// mended, or the number of cells is in the way.
+/// The targets from the first one on that so many cells miss that it was left out. None where there is no
+/// such, or where cells miss a lower one than the last before it: what keeps the worst angle down is another
+/// thing.
+std::span<const TargetAngle> left_out(const Run& run, std::span<const TargetAngle> targets,
+                                      bool whatever_lower) {
+  const auto first = std::ranges::find_if(targets, [&](const TargetAngle& target) {
+    return share_that_may_rise(run, target.degrees, target.largest_share) > target.largest_share;
+  });
+  const auto n_lower = static_cast<std::size_t>(first - targets.begin());
+  if (!whatever_lower && n_lower > 1 && may_rise(run, targets[n_lower - 2].degrees)) return {};
+  return targets.subspan(n_lower);
+}
+
+/// Where many cells miss what is claimed: those that others, which nothing raises, have kept from their
+/// turn. Goes on, with more cells, while more than a few of those below an angle are mended, or the number of
+/// cells is in the way. With a surface that may change, what many cells miss was left out: it is worked for
+/// here, once also where the worst angle is beyond what is claimed, and that keeps it where it is.
 void raise_others(const Run& run) {
-  if (!run.strategy.claimed || run.surface || run.control.stopped()) return;
+  if (!run.strategy.claimed || run.control.stopped()) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const double many = claimed.throughout.share;
-  if (!(share_that_may_rise(run, goal.degrees, many) > many)) return;
-  const std::span<const TargetAngle> targets = claimed.targets.targets;
+  const bool many_miss = share_that_may_rise(run, goal.degrees, many) > many;
+  if (!many_miss && !run.surface) return;
+  const std::span<const TargetAngle> targets =
+      run.surface ? left_out(run, run.strategy.targets.targets, /*whatever_lower=*/many_miss)
+                  : std::span(claimed.targets.targets);
+  if (targets.empty()) return;
+  std::vector<double> angles;
+  for (const TargetAngle& target : targets) angles.push_back(target.degrees);
   Run part = run.within(claimed.bounds);
-  const bool may_grow = part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+  const bool may_grow = many_miss && part.bounds.max > 0 && claimed.bounds_asked.max == 0;
   const Findings found = run.findings;
   const Revision usual = run.control.revision();
-  Trial trial(run, goal.degrees);
+  Trial trial(run, angles);
   Best best(run, goal.may_fall, Loss::kMadeUpFor);
   for (int turn = 0; turn < goal.turns && !run.control.stopped(); ++turn) {
     if (turn > 0)
       part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
     if (may_grow && turn + 1 < goal.turns && !part.has_room()) continue;
-    const std::vector<std::size_t> before = n_that_may_rise(run, targets);
+    const std::vector<std::size_t> before = n_that_may_rise(run, angles);
     run.findings.forget_cell_bound();
-    raise_to_targets(part, targets, /*past_vain=*/true);
+    raise_to_targets(part, targets, many_miss ? ManyMiss::kPastVain : ManyMiss::kWhileItRises);
     best.note();
-    const std::vector<std::size_t> now = n_that_may_rise(run, targets);
+    const std::vector<std::size_t> now = n_that_may_rise(run, angles);
     const bool has_mended_some = !std::ranges::equal(now, before, [](std::size_t left, std::size_t n) {
       return static_cast<double>(left) >= (1 - kFewShare) * static_cast<double>(n);
     });
@@ -305,6 +325,7 @@ void run_usual(const Run& run, std::optional<Beginning> input) {
     run_flat(run, std::move(*beginning));
   else if (beginning && frozen_may_help(run))
     run_frozen(run, std::move(beginning));
+  raise_others(run);
 }
 
 /// Where a goal was missed, the run without one from the beginning, and of both the one that comes closer: a

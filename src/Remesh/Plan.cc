@@ -165,6 +165,37 @@ void add_goal(Lines& lines, const Strategy& strategy, const GoalEffort& goal) {
     lines.add("goal", say("all cells, if more than ", percent(goal.few_miss), " still miss it"));
 }
 
+/// What goes on where less was reached than the run claims, in the order of Pipeline.cc.
+void add_claimed(Lines& lines, const Strategy& strategy) {
+  if (!strategy.claimed) return;
+  const Strategy& claimed = *strategy.claimed;
+  const GoalEffort& goal = *claimed.goal;
+  const bool frozen = !strategy.without_goal && !strategy.frozen;
+  const std::string below = say("below ", goal.degrees, " degrees");
+  lines.add("claimed",
+            say("where cells ", below, " may rise", frozen ? ", and the bound on cells was in the way" : "",
+                ": all cells, target by target up to that"));
+  if (claimed.bounds.max > 0)
+    lines.add("claimed",
+              say("up to ", claimed.bounds.max, " cells; up to ", goal.turns - 1, " times ", goal.more_cells,
+                  " as many, while the worst rises by ", goal.pays * goal.degrees, " degrees"));
+  const auto from_the_start = [&](const std::string& run, const std::string& when) {
+    lines.add("from the start", say(run, when, "; the better of both"));
+  };
+  if (strategy.towards_claim)
+    from_the_start(say("the run towards ", goal.degrees, " degrees"), " where the mesh is poor throughout");
+  if (strategy.frozen) lines.add("frozen", say("the run with a frozen surface, where cells are ", below));
+  if (strategy.flat) from_the_start("the run with a flat surface", say(" where cells are ", below));
+  const std::string many = percent(claimed.throughout.share);
+  lines.add("others", say("where more than ", many, " of the cells are ", below,
+                          ": the targets once more, past those that mend next to nothing"));
+  if (!frozen)
+    lines.add("others",
+              "also where so many are below a target beyond that it was left out, "
+              "and that keeps the worst angle down");
+  if (strategy.without_goal) from_the_start("the run without a goal", say(" where cells are ", below));
+}
+
 void add_any_cost(Lines& lines, const AnyCostEffort& effort) {
   if (effort.most_of_hundred > 0)
     lines.add("any cost", say("up to ", effort.most_of_hundred, " of 100 cells that there are by then"));
@@ -210,6 +241,7 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
   }
   add_targets(lines, first);
   if (strategy.goal) add_goal(lines, strategy, *strategy.goal);
+  add_claimed(lines, first);
   if (strategy.any_cost) add_any_cost(lines, *strategy.any_cost);
   if (strategy.volume)
     lines.add("volume", say("moved back to ", percent(strategy.volume->enough), ", ", strategy.volume->passes,

@@ -14,9 +14,12 @@
 namespace hfr {
 namespace {
 
-/// Whether vertices put in for many cells come to an end: not in runs with a surface that may change, and of
-/// goals that have met their own bound on cells.
-bool is_bounded(const Run& run) { return !run.surface && run.bounds.max > 0; }
+/// Whether vertices put in for many cells come to an end: not of goals that have met their own bound on
+/// cells. With a surface that may change they take many times as long as all else, and are for what that
+/// leaves.
+bool is_bounded(const Run& run, ManyMiss many = ManyMiss::kUsual) {
+  return run.bounds.max > 0 && (!run.surface || many != ManyMiss::kUsual);
+}
 
 /// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
 void raise_throughout(const Run& run, const ThroughoutEffort& effort, double degrees, double vain_below) {
@@ -49,13 +52,14 @@ bool is_poor_throughout(const Run& run) {
   return lacks_vertices(run) || share_that_may_rise(run, effort.below, effort.share) > effort.share;
 }
 
-void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, bool past_vain) {
+void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, ManyMiss many_miss) {
   const TargetEffort& effort = run.strategy.targets;
   const ThroughoutEffort& throughout = run.strategy.throughout;
   std::vector<double> angles;
   for (const TargetAngle& target : targets) angles.push_back(target.degrees);
   AngleTally now = run.tally_below(angles);
-  const bool bounded = is_bounded(run), is_poor = bounded && is_poor_throughout(run);
+  const bool bounded = is_bounded(run, many_miss), is_poor = bounded && is_poor_throughout(run);
+  const bool goes_on = many_miss != ManyMiss::kWhileItRises;
   double last = 0;          // that was worked for
   bool has_brought = true;  // enough, the target before
   double vain_below = 0;    // the last target that has mended next to none of its cells
@@ -72,14 +76,18 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, bool
     const double share = now.share(k, n_out);
     if (share == 0 || (share > target.largest_share && !(has_brought && bounded))) continue;
     last = target.degrees;
+    const double before = goes_on ? 0 : smallest_that_may_rise(run, target.degrees);
     if (share > many)
       raise_throughout(run, throughout, target.degrees, vain_below);
     else
       polish(run, run.strategy.polish, target.degrees, {.vain_below = vain_below});
     now = run.tally_below(angles);
+    if (!goes_on &&
+        smallest_that_may_rise(run, target.degrees) < std::min(before + kLeastRise, target.degrees))
+      return;
     const double left = now.share(k, n_out);
     has_brought = left < effort.enough_left * share;
-    if (past_vain && is_poor && left > (1 - kFewShare) * share) {
+    if (many_miss == ManyMiss::kPastVain && is_poor && left > (1 - kFewShare) * share) {
       vain_below = target.degrees;
       has_brought = true;
     }

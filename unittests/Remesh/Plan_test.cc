@@ -50,6 +50,25 @@ TEST(Plan, HasTheNumbersOfTheOptions) {
   EXPECT_TRUE(says(plan(mesh, options), {"jpdc2013", "7 iterations"}));
 }
 
+TEST(Plan, NamesWhatGoesOnBelowTheClaim) {
+  const TetMesh mesh = jittered(4, 0.2, 1);
+  ImproveOptions options = serial();
+  EXPECT_TRUE(says(plan(mesh, options), {"claimed", "the bound on cells was in the way", "from the start",
+                                         "the run towards 15 degrees", "others"}));
+  options.min_dihedral = 12;
+  EXPECT_TRUE(says(plan(mesh, options), {"claimed", "below 12 degrees", "others"}));
+  EXPECT_FALSE(says(plan(mesh, options), {"from the start"}));
+  options.surface.mode = SurfaceMode::kFlat;
+  EXPECT_TRUE(says(plan(mesh, options),
+                   {"claimed", "others", "it was left out", "from the start", "the run without a goal"}));
+  options.min_dihedral.reset();
+  options.surface.mode = SurfaceMode::kFree;
+  EXPECT_TRUE(says(plan(mesh, options), {"claimed", "frozen", "from the start", "the run with a flat surface",
+                                         "others", "it was left out"}));
+  options.iterations = 1;
+  EXPECT_FALSE(says(plan(mesh, options), {"claimed"}));
+}
+
 TEST(Plan, RefusesOptionsThatARunRefuses) {
   ImproveOptions options = serial();
   options.min_dihedral = 71;

@@ -345,6 +345,27 @@ TEST(Rules, FreeSurfaceEndsNoLowerThanAFlatOneAndAMissedGoalNoLowerThanADefaultR
   EXPECT_GE(n_missed, 2U);
 }
 
+/// So many cells miss what lies beyond the claim that the course of such a run leaves it out.
+TEST(Rules, SurfaceThatMayChangeGoesOnBeyondTheClaimWhereManyCellsAreAllThatKeepsTheWorstAngleDown) {
+  for (const double height : {0.3, 0.4}) {
+    const TetMesh cells = pressed(6, 0.2, height);
+    const double frozen = outcome_of(cells, serial()).worst;
+    for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+      ImproveOptions options = serial(), goal = towards(25);
+      options.surface.mode = goal.surface.mode = mode;
+      try {
+        TetMesh mesh = cells;
+        EXPECT_GE(improve(mesh, options).after.min_dihedral.min, std::max(frozen, 30.0)) << height;
+        EXPECT_LE(mesh.n_cells(), cells.n_cells());
+        EXPECT_GE(outcome_of(cells, goal).worst, 25 - kLeastRise) << height;
+      } catch (const InvalidInput& error) {
+        expect_build_without_surface();
+        GTEST_SKIP() << error.what();  // a build without OpenMesh
+      }
+    }
+  }
+}
+
 /// All cells are the worst one, so that the worst angle rises only when each of them has been mended; and the
 /// first vertex, which is of all cells, takes more of them than the first bound allows.
 TEST(Rules, CellsThatAreAllAlikeGetTheVerticesThatTheyNeed) {
