@@ -100,11 +100,14 @@ void print_limits(const Result& result) {
     if (counts[i] > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(counts[i]), kStuckReasonNames[i]);
   print("below {:g} degrees: {} cells; why: {}\n", result.stuck_below, grouped(result.stuck.size()), text);
-  if (const CellBoundMet& met = result.cell_bound; met.bound > 0)
+  if (const CellBoundMet& met = result.cell_bound; met.cells > 0)
     print(
         "the bound of {} cells was in the way: a vertex would raise {} of them; --max-cells {} has room for "
         "that\n",
         grouped(met.bound), grouped(met.cells), met.wanted);
+  else if (met.bound > 0)
+    print("the bound of {} cells was met; with a larger --max-cells the run would have gone on\n",
+          grouped(met.bound));
   const HeldCells& held = result.held;
   if (held.cells == 0 || !held.known) return;
   print(

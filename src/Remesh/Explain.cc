@@ -43,6 +43,18 @@ StuckReason ended_by(const ImproveOptions& options, const Result& result) {
   return StuckReason::kNotFound;
 }
 
+/// The bound on cells that was met; 0: none. Beyond what a default run claims it keeps to its own, which what
+/// it claims may have taken it past.
+std::size_t bound_met(const Strategy& strategy, std::size_t n_cells, std::size_t max_cells_met,
+                      double smallest) {
+  const std::size_t bound = strategy.bounds.max;
+  const bool is_beyond =
+      strategy.course == Course::kDefault && strategy.claimed && smallest >= strategy.claimed->goal->degrees;
+  if (max_cells_met > 0 || !is_beyond || bound == 0 || n_cells + strategy.pass.cells_of_vertex <= bound)
+    return max_cells_met;
+  return std::max(bound, n_cells);
+}
+
 }  // namespace
 
 void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy& strategy,
@@ -57,8 +69,10 @@ void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy&
   const StuckReason ended = ended_by(options, result);
   for (StuckCell& cell : stuck)
     if (cell.reason == StuckReason::kNotFound) cell.reason = ended;
-  if (max_cells_met > 0 && has(options.ops, Ops::kInsert))
-    result.cell_bound = blame_max_cells(mesh, stuck, result.stuck_below, max_cells_met, options.policy);
+  const std::size_t bound =
+      bound_met(strategy, mesh.n_logical_cells(), max_cells_met, result.after.min_dihedral.min);
+  if (bound > 0 && has(options.ops, Ops::kInsert))
+    result.cell_bound = blame_max_cells(mesh, stuck, result.stuck_below, bound, options.policy);
   if (frozen) result.held = held_cells(mesh, stuck, result.stuck_below, result.unfillable_faces, options);
 }
 

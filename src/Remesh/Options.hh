@@ -86,8 +86,9 @@ struct ImproveOptions {
   ///   - with a frozen surface 81 and 119;
   ///   - in flat mode with raise_min_dihedral 81 and 119, with min_dihedral no lower bound and 119, else as
   ///   in free mode no lower bound and 150; with compat none. A run without a goal that ends below 15
-  ///   degrees may make 150, then 225 and 338, while that raises the worst angle, and where the mesh is poor
-  ///   throughout as many as min_dihedral = 15 would: docs/pipeline.md.
+  ///   degrees may make 150, then 225 and 338, while that raises the worst angle or, where many cells are
+  ///   below, mends some of them; with a frozen surface, where the mesh is poor throughout, as many as
+  ///   min_dihedral = 15 would: docs/pipeline.md.
   /// With coarsen there is no lower bound but one that is given. Towards min_dihedral the bounds that the run
   /// has chosen are dropped once they were in the way and nothing else helps. With raise_min_dihedral,
   /// frozen or free, max_cells is in the end 150 of 100 cells of what the default run leaves.

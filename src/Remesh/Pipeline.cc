@@ -111,34 +111,42 @@ std::vector<std::size_t> n_that_may_rise(const Run& run, std::span<const double>
   return n;
 }
 
-/// The targets from the first one on that so many cells miss that it was left out. None where there is no
-/// such, or where cells miss a lower one than the last before it: what keeps the worst angle down is another
-/// thing.
-std::span<const TargetAngle> left_out(const Run& run, std::span<const TargetAngle> targets,
-                                      bool whatever_lower) {
-  const auto first = std::ranges::find_if(targets, [&](const TargetAngle& target) {
-    return share_that_may_rise(run, target.degrees, target.largest_share) > target.largest_share;
-  });
-  const auto n_lower = static_cast<std::size_t>(first - targets.begin());
-  if (!whatever_lower && n_lower > 1 && may_rise(run, targets[n_lower - 2].degrees)) return {};
-  return targets.subspan(n_lower);
+/// With a surface that may change: the targets from the first one on that so many cells miss that it was left
+/// out, or up to `claimed` degrees so many that the mesh is poor. None where there is no such; nor where
+/// cells miss more of those below it than they may: then it is these that keep the worst angle down.
+std::span<const TargetAngle> left_out(const Run& run, double claimed) {
+  const TargetEffort& effort = run.strategy.targets;
+  const std::span<const TargetAngle> targets = effort.targets;
+  std::vector<double> angles;
+  for (const TargetAngle& target : targets) angles.push_back(target.degrees);
+  const AngleTally tally = run.tally_below(angles);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const double degrees = targets[k].degrees;
+    const double many = degrees <= claimed ? run.strategy.throughout.share : targets[k].largest_share;
+    if (!(tally.share(k) > many) || !(tally.share(k, n_at_ceiling(run, degrees)) > many)) continue;
+    const bool are_missed = degrees > claimed && k > effort.may_be_missed &&
+                            may_rise(run, targets[k - effort.may_be_missed - 1].degrees);
+    return are_missed ? std::span<const TargetAngle>() : targets.subspan(k);
+  }
+  return {};
 }
 
 /// Where many cells miss what is claimed: those that others, which nothing raises, have kept from their
 /// turn. Goes on, with more cells, while more than a few of those below an angle are mended, or the number of
-/// cells is in the way. With a surface that may change, what many cells miss was left out: it is worked for
-/// here, once also where the worst angle is beyond what is claimed, and that keeps it where it is.
+/// cells is in the way. With a surface that may change what was left out, for many cells miss it, beyond what
+/// is claimed as well, once.
 void raise_others(const Run& run) {
   if (!run.strategy.claimed || run.control.stopped()) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const double many = claimed.throughout.share;
-  const bool many_miss = share_that_may_rise(run, goal.degrees, many) > many;
-  if (!many_miss && !run.surface) return;
-  const std::span<const TargetAngle> targets =
-      run.surface ? left_out(run, run.strategy.targets.targets, /*whatever_lower=*/many_miss)
-                  : std::span(claimed.targets.targets);
+  std::span<const TargetAngle> targets;
+  if (run.surface)
+    targets = left_out(run, goal.degrees);
+  else if (share_that_may_rise(run, goal.degrees, many) > many)
+    targets = claimed.targets.targets;
   if (targets.empty()) return;
+  const bool many_miss = targets.front().degrees <= goal.degrees;  // what is claimed
   std::vector<double> angles;
   for (const TargetAngle& target : targets) angles.push_back(target.degrees);
   Run part = run.within(claimed.bounds);
@@ -151,15 +159,17 @@ void raise_others(const Run& run) {
     if (turn > 0)
       part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
     if (may_grow && turn + 1 < goal.turns && !part.has_room()) continue;
-    const std::vector<std::size_t> before = n_that_may_rise(run, angles);
+    std::vector<std::size_t> before;
+    if (may_grow) before = n_that_may_rise(run, angles);
     run.findings.forget_cell_bound();
-    raise_to_targets(part, targets, many_miss ? ManyMiss::kPastVain : ManyMiss::kWhileItRises);
+    raise_to_targets(part, targets, many_miss ? WhenManyMiss::kPastVain : WhenManyMiss::kWhileItRises);
     best.note();
+    if (!may_grow) break;
     const std::vector<std::size_t> now = n_that_may_rise(run, angles);
     const bool has_mended_some = !std::ranges::equal(now, before, [](std::size_t left, std::size_t n) {
       return static_cast<double>(left) >= (1 - kFewShare) * static_cast<double>(n);
     });
-    if (!may_grow || (!has_mended_some && !run.findings.met_cell_bound)) break;
+    if (!has_mended_some && !run.findings.met_cell_bound) break;
   }
   best.settle();
   trial.settle();

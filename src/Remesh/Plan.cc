@@ -114,13 +114,19 @@ void add_all_cells(Lines& lines, const Strategy& strategy) {
   lines.add("floor", say("cells below ", strategy.floor, " degrees, the input's worst"));
 }
 
-void add_targets(Lines& lines, const Strategy& strategy) {
+void add_targets(Lines& lines, const Strategy& strategy, bool frozen) {
   const PolishEffort& polish = strategy.polish;
   if (strategy.refine) add_refine(lines, "refine", *strategy.refine);
   lines.add("targets", say("degrees: ", listed(strategy.targets.targets)));
-  lines.add("targets", say("where more than ", percent(strategy.targets.targets.back().largest_share),
-                           " of the cells are below, only if the one before has left less than ",
-                           percent(strategy.targets.enough_left), " of those below it"));
+  std::string many = percent(strategy.targets.targets.back().largest_share);
+  if (const double first = strategy.targets.targets.front().largest_share;
+      first != strategy.targets.targets.back().largest_share)
+    many = say(percent(first), ", of the last ones ", many, ",");
+  std::string when = strategy.claimed ? "not before the end of the run" : "not at all";
+  if (frozen)
+    when = say("only if the one before has left less than ", percent(strategy.targets.enough_left),
+               " of those below it");
+  lines.add("targets", say("where more than ", many, " of the cells are below, ", when));
   if (strategy.targets.in_turn_beyond < strategy.targets.targets.back().degrees)
     lines.add("targets",
               say("beyond ", strategy.targets.in_turn_beyond, " only if the one before was reached"));
@@ -166,19 +172,20 @@ void add_goal(Lines& lines, const Strategy& strategy, const GoalEffort& goal) {
 }
 
 /// What goes on where less was reached than the run claims, in the order of Pipeline.cc.
-void add_claimed(Lines& lines, const Strategy& strategy) {
+void add_claimed(Lines& lines, const Strategy& strategy, bool frozen) {
   if (!strategy.claimed) return;
   const Strategy& claimed = *strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
-  const bool frozen = !strategy.without_goal && !strategy.frozen;
   const std::string below = say("below ", goal.degrees, " degrees");
   lines.add("claimed",
             say("where cells ", below, " may rise", frozen ? ", and the bound on cells was in the way" : "",
                 ": all cells, target by target up to that"));
-  if (claimed.bounds.max > 0)
+  if (claimed.bounds_asked.max == 0 && claimed.bounds.max > 0)
     lines.add("claimed",
               say("up to ", claimed.bounds.max, " cells; up to ", goal.turns - 1, " times ", goal.more_cells,
                   " as many, while the worst rises by ", goal.pays * goal.degrees, " degrees"));
+  else
+    add_bounds(lines, "claimed", claimed.bounds);
   const auto from_the_start = [&](const std::string& run, const std::string& when) {
     lines.add("from the start", say(run, when, "; the better of both"));
   };
@@ -186,13 +193,13 @@ void add_claimed(Lines& lines, const Strategy& strategy) {
     from_the_start(say("the run towards ", goal.degrees, " degrees"), " where the mesh is poor throughout");
   if (strategy.frozen) lines.add("frozen", say("the run with a frozen surface, where cells are ", below));
   if (strategy.flat) from_the_start("the run with a flat surface", say(" where cells are ", below));
-  const std::string many = percent(claimed.throughout.share);
-  lines.add("others", say("where more than ", many, " of the cells are ", below,
-                          ": the targets once more, past those that mend next to nothing"));
-  if (!frozen)
-    lines.add("others",
-              "also where so many are below a target beyond that it was left out, "
-              "and that keeps the worst angle down");
+  lines.add("others", say("where more than ", percent(claimed.throughout.share), " of the cells are ", below,
+                          ": the targets ", frozen ? "up to that" : "that so many miss",
+                          " once more, past those that mend next to nothing"));
+  if (!frozen && strategy.targets.targets.back().degrees > goal.degrees)
+    lines.add("others", say("also targets beyond that were left out, while they raise the worst angle, if "
+                            "cells miss no more than ",
+                            strategy.targets.may_be_missed, " of those below"));
   if (strategy.without_goal) from_the_start("the run without a goal", say(" where cells are ", below));
 }
 
@@ -222,6 +229,7 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
     return lines.text();
   }
   const Strategy& first = strategy.usual ? *strategy.usual : strategy;
+  const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
   add_bounds(lines, "cells", first.bounds);
   if (strategy.untangle) {
     lines.add("untangle", say(found.n_invalid,
@@ -239,9 +247,9 @@ std::string plan(const TetMesh& mesh, const ImproveOptions& options) {
   } else {
     add_all_cells(lines, first);
   }
-  add_targets(lines, first);
+  add_targets(lines, first, frozen);
   if (strategy.goal) add_goal(lines, strategy, *strategy.goal);
-  add_claimed(lines, first);
+  add_claimed(lines, first, frozen);
   if (strategy.any_cost) add_any_cost(lines, *strategy.any_cost);
   if (strategy.volume)
     lines.add("volume", say("moved back to ", percent(strategy.volume->enough), ", ", strategy.volume->passes,

@@ -111,12 +111,14 @@ struct StuckCell {
 /// How many cells each reason keeps, in the order of StuckReason.
 std::array<std::size_t, kStuckReasonNames.size()> count_reasons(const std::vector<StuckCell>& cells);
 
-/// The bound on the number of cells, where it was what stopped a run: of the cells below Result::stuck_below,
-/// a new vertex would raise some. Empty where it was not.
+/// The bound on the number of cells, where it was met: of the cells below Result::stuck_below, a new vertex
+/// would raise some, or there is no room for one. Empty where it was not.
 struct CellBoundMet {
-  std::size_t bound = 0;   ///< cells that there might be; 0: no bound was met
-  std::size_t cells = 0;   ///< of those below, with StuckReason::kMaxCells
-  std::size_t wanted = 0;  ///< ImproveOptions::max_cells that has room for a vertex at each of them
+  std::size_t bound = 0;  ///< cells that there might be; 0: no bound was met
+  std::size_t cells = 0;  ///< of those below, with StuckReason::kMaxCells
+  /// ImproveOptions::max_cells that has room for a vertex at each of them; 0 where there are none, and no one
+  /// vertex raises the worst cells: what more of them do is not known.
+  std::size_t wanted = 0;
 };
 
 struct Result {

@@ -141,9 +141,11 @@ CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck,
     met.cells += more > 0 ? 1 : 0;
     met.wanted += more;
   }
-  if (met.cells == 0) return {};
+  if (met.cells > 0)
+    met.wanted += n_cells;
+  else if (n_cells + kLeastRoom <= max_cells)
+    return {};
   met.bound = max_cells;
-  met.wanted += n_cells;
   return met;
 }
 

@@ -17,8 +17,8 @@ namespace {
 /// Whether vertices put in for many cells come to an end: not of goals that have met their own bound on
 /// cells. With a surface that may change they take many times as long as all else, and are for what that
 /// leaves.
-bool is_bounded(const Run& run, ManyMiss many = ManyMiss::kUsual) {
-  return run.bounds.max > 0 && (!run.surface || many != ManyMiss::kUsual);
+bool is_bounded(const Run& run, WhenManyMiss when_many_miss = WhenManyMiss::kUsual) {
+  return run.bounds.max > 0 && (!run.surface || when_many_miss != WhenManyMiss::kUsual);
 }
 
 /// One target of a mesh that is poor throughout. The rest of the bound on cells is for the last ones.
@@ -52,14 +52,14 @@ bool is_poor_throughout(const Run& run) {
   return lacks_vertices(run) || share_that_may_rise(run, effort.below, effort.share) > effort.share;
 }
 
-void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, ManyMiss many_miss) {
+void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, WhenManyMiss when_many_miss) {
   const TargetEffort& effort = run.strategy.targets;
   const ThroughoutEffort& throughout = run.strategy.throughout;
   std::vector<double> angles;
   for (const TargetAngle& target : targets) angles.push_back(target.degrees);
   AngleTally now = run.tally_below(angles);
-  const bool bounded = is_bounded(run, many_miss), is_poor = bounded && is_poor_throughout(run);
-  const bool goes_on = many_miss != ManyMiss::kWhileItRises;
+  const bool bounded = is_bounded(run, when_many_miss), is_poor = bounded && is_poor_throughout(run);
+  const bool goes_on = when_many_miss != WhenManyMiss::kWhileItRises;
   double last = 0;          // that was worked for
   bool has_brought = true;  // enough, the target before
   double vain_below = 0;    // the last target that has mended next to none of its cells
@@ -87,7 +87,7 @@ void raise_to_targets(const Run& run, std::span<const TargetAngle> targets, Many
       return;
     const double left = now.share(k, n_out);
     has_brought = left < effort.enough_left * share;
-    if (many_miss == ManyMiss::kPastVain && is_poor && left > (1 - kFewShare) * share) {
+    if (when_many_miss == WhenManyMiss::kPastVain && is_poor && left > (1 - kFewShare) * share) {
       vain_below = target.degrees;
       has_brought = true;
     }

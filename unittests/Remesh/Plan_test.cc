@@ -50,22 +50,32 @@ TEST(Plan, HasTheNumbersOfTheOptions) {
   EXPECT_TRUE(says(plan(mesh, options), {"jpdc2013", "7 iterations"}));
 }
 
-TEST(Plan, NamesWhatGoesOnBelowTheClaim) {
+TEST(Plan, NamesWhatGoesOnBelowTheClaimAndWhatWasLeftOut) {
   const TetMesh mesh = jittered(4, 0.2, 1);
   ImproveOptions options = serial();
-  EXPECT_TRUE(says(plan(mesh, options), {"claimed", "the bound on cells was in the way", "from the start",
-                                         "the run towards 15 degrees", "others"}));
+  EXPECT_TRUE(
+      says(plan(mesh, options),
+           {"only if the one before", "claimed", "the bound on cells was in the way", "times 1.5 as many",
+            "from the start", "the run towards 15 degrees", "others", "the targets up to that"}));
+  EXPECT_FALSE(says(plan(mesh, options), {"left out"}));
+  options.max_cells = 1000;
+  EXPECT_TRUE(says(plan(mesh, options), {"claimed", "above 1000 cells", "others"}));
+  EXPECT_FALSE(says(plan(mesh, options), {"as many"}));
+  options = serial();
   options.min_dihedral = 12;
   EXPECT_TRUE(says(plan(mesh, options), {"claimed", "below 12 degrees", "others"}));
   EXPECT_FALSE(says(plan(mesh, options), {"from the start"}));
   options.surface.mode = SurfaceMode::kFlat;
   EXPECT_TRUE(says(plan(mesh, options),
-                   {"claimed", "others", "it was left out", "from the start", "the run without a goal"}));
+                   {"not before the end of the run", "claimed", "others", "the targets that so many miss",
+                    "from the start", "the run without a goal"}));
+  EXPECT_FALSE(says(plan(mesh, options), {"targets beyond"})) << "there is none beyond 12 degrees";
   options.min_dihedral.reset();
   options.surface.mode = SurfaceMode::kFree;
-  EXPECT_TRUE(says(plan(mesh, options), {"claimed", "frozen", "from the start", "the run with a flat surface",
-                                         "others", "it was left out"}));
+  EXPECT_TRUE(says(plan(mesh, options), {"more than 35 %", "claimed", "frozen", "from the start",
+                                         "the run with a flat surface", "others", "targets beyond"}));
   options.iterations = 1;
+  EXPECT_TRUE(says(plan(mesh, options), {"of the cells are below, not at all"}));
   EXPECT_FALSE(says(plan(mesh, options), {"claimed"}));
 }
 

@@ -10,6 +10,7 @@
 #include "Quality/Statistics.hh"
 #include "Quality/UnfillableFaces.hh"
 #include "Remesh/Meshes.hh"
+#include "Remesh/Strategy.hh"
 #include "Remesh/Survey.hh"
 
 namespace hfr::test {
@@ -230,8 +231,8 @@ TEST(StuckCellsProperty, NoOptionLiftsTheCellsOfAnEdgeBeyondItsCeiling) {
   EXPECT_GT(n_lifted, 0U) << "nothing has changed after the first run";
 }
 
-TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelp) {
-  std::size_t n_blamed = 0;
+TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelpAndNamedWhereThereIsNoRoomForOne) {
+  std::size_t n_blamed = 0, n_named = 0;
   for (std::uint64_t s = 1; s <= 2; ++s) {
     TetMesh mesh = jittered(4, 0.3, s);
     ImproveOptions options = serial();
@@ -247,13 +248,18 @@ TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelp) {
     EXPECT_EQ(n_of(next.stuck, StuckReason::kMaxCells), 0U);
     EXPECT_EQ(next.cell_bound.bound, 0U);
     EXPECT_EQ(result.cell_bound.cells, n);
-    EXPECT_EQ(result.cell_bound.bound, n > 0 ? options.max_cells : 0);
-    if (n > 0) {
+    const bool has_room = mesh.n_cells() + PassEffort{}.cells_of_vertex <= options.max_cells;
+    EXPECT_EQ(result.cell_bound.bound, n > 0 || !has_room ? options.max_cells : 0);
+    if (n == 0) {
+      EXPECT_EQ(result.cell_bound.wanted, 0U);
+      n_named += result.cell_bound.bound > 0 ? 1 : 0;
+    } else {
       EXPECT_GT(result.cell_bound.wanted, options.max_cells);
       EXPECT_LT(next.stuck.size(), result.stuck.size()) << s;
     }
   }
   EXPECT_GT(n_blamed, 0U);
+  EXPECT_GT(n_named, 0U);
 }
 
 TEST(StuckCells, IterationsAreBlamedOnlyWhereTheyRanOut) {
