@@ -111,22 +111,30 @@ std::vector<std::size_t> n_that_may_rise(const Run& run, std::span<const double>
   return n;
 }
 
-/// With a surface that may change: the targets from the first one on that so many cells miss that it was left
-/// out, or up to `claimed` degrees so many that the mesh is poor. None where there is no such; nor where
-/// cells miss more of those below it than they may: then it is these that keep the worst angle down.
-std::span<const TargetAngle> left_out(const Run& run, double claimed) {
+/// Whether only a few cells are what keeps the worst angle below a target: they miss more of those below it
+/// than cells may.
+bool few_are_far_below(const Run& run, std::size_t target) {
   const TargetEffort& effort = run.strategy.targets;
-  const std::span<const TargetAngle> targets = effort.targets;
+  if (target <= effort.may_be_missed) return false;
+  const double degrees = effort.targets[target - effort.may_be_missed - 1].degrees;
+  const double share = share_that_may_rise(run, degrees, 0);
+  return share > 0 && share <= run.strategy.claimed->goal->few_miss;
+}
+
+/// With a surface that may change: the targets from the first one on that so many cells miss that it was left
+/// out, or up to `claimed` degrees so many that the mesh is poor. None where there is no such, or beyond that
+/// a few cells are what keeps the worst angle down.
+std::span<const TargetAngle> left_out(const Run& run, double claimed) {
+  const std::span<const TargetAngle> targets = run.strategy.targets.targets;
   std::vector<double> angles;
   for (const TargetAngle& target : targets) angles.push_back(target.degrees);
   const AngleTally tally = run.tally_below(angles);
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    const double degrees = targets[k].degrees;
-    const double many = degrees <= claimed ? run.strategy.throughout.share : targets[k].largest_share;
-    if (!(tally.share(k) > many) || !(tally.share(k, n_at_ceiling(run, degrees)) > many)) continue;
-    const bool are_missed = degrees > claimed && k > effort.may_be_missed &&
-                            may_rise(run, targets[k - effort.may_be_missed - 1].degrees);
-    return are_missed ? std::span<const TargetAngle>() : targets.subspan(k);
+    const bool is_claimed = angles[k] <= claimed;
+    const double many = is_claimed ? run.strategy.throughout.share : targets[k].largest_share;
+    if (!(tally.share(k) > many) || !(tally.share(k, n_at_ceiling(run, angles[k])) > many)) continue;
+    if (!is_claimed && few_are_far_below(run, k)) break;
+    return targets.subspan(k);
   }
   return {};
 }

@@ -197,9 +197,10 @@ void add_claimed(Lines& lines, const Strategy& strategy, bool frozen) {
                           ": the targets ", frozen ? "up to that" : "that so many miss",
                           " once more, past those that mend next to nothing"));
   if (!frozen && strategy.targets.targets.back().degrees > goal.degrees)
-    lines.add("others", say("also targets beyond that were left out, while they raise the worst angle, if "
-                            "cells miss no more than ",
-                            strategy.targets.may_be_missed, " of those below"));
+    lines.add("others",
+              say("also targets beyond that were left out, while they raise the worst angle, unless up to ",
+                  percent(goal.few_miss), " of the cells miss more than ", strategy.targets.may_be_missed,
+                  " of those below"));
   if (strategy.without_goal) from_the_start("the run without a goal", say(" where cells are ", below));
 }
 

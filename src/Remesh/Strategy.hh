@@ -232,9 +232,10 @@ struct TargetEffort {
   /// Where more cells than TargetAngle::largest_share miss a target, it is tried only after one that has left
   /// less than this share of the cells that missed it.
   double enough_left = 0.5;
-  /// With a surface that may change, the targets below one that was left out which cells may miss for it to
-  /// be worked for in the end, beyond what is claimed. With more, work for the many raises percentiles alone,
-  /// at nearly the price of the run: gaia_dog, free, the 1st one from 28.8 to 33.0 in 1.9 times the time.
+  /// With a surface that may change, the targets below one that was left out which a few cells may miss for
+  /// it to be worked for in the end, beyond what is claimed. Where they miss more, work for the many raises
+  /// percentiles alone, at nearly the price of the run: gaia_dog, free, the 1st one from 28.8 to 33.0 in 1.9
+  /// times the time.
   std::size_t may_be_missed = 1;
 };
 
@@ -350,7 +351,8 @@ struct GoalEffort {
   /// Where a larger share of the cells misses it, all cells are worked on before it is worked for: most would
   /// be touched anyway, and polished by themselves they would lose too many vertices.
   double many_miss = 0.2;
-  /// Where no larger share is left in the end, a frozen surface holds them, whatever is done to others.
+  /// Where no larger share is left in the end, a frozen surface holds them, whatever is done to others; and
+  /// where no larger one is far below the others, it says nothing of what these could come to.
   double few_miss = 0.01;
   bool polish_only = false;  ///< nothing but the polish, whatever it leaves
   bool goes_on = true;       ///< with all cells where the goal was missed; not where iterations are limited

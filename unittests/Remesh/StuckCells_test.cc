@@ -262,6 +262,21 @@ TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelpAndNamedWhereTh
   EXPECT_GT(n_named, 0U);
 }
 
+/// What a run claims may take it past its own bound; with a larger one it goes on beyond the claim.
+TEST(StuckCells, BoundThatARunWentPastForItsClaimIsNamedBeyondIt) {
+  generate::Arrays arrays = generate::jittered_box({4, 4, 4}, 0.2, 7);
+  for (Vec3& p : arrays.points) p.z *= 0.15;
+  TetMesh mesh = built(arrays), more = mesh;
+  const std::size_t usual = 119 * mesh.n_cells() / 100;
+  ImproveOptions options = serial();
+  const Result result = improve(mesh, options);
+  ASSERT_GE(result.after.min_dihedral.min, 15);
+  ASSERT_GT(mesh.n_cells(), usual);
+  EXPECT_EQ(result.cell_bound.bound, mesh.n_cells());
+  options.max_cells = 4 * mesh.n_cells();
+  EXPECT_GT(improve(more, options).after.min_dihedral.min, result.after.min_dihedral.min + 1);
+}
+
 TEST(StuckCells, IterationsAreBlamedOnlyWhereTheyRanOut) {
   TetMesh mesh = jittered(5, 0.3, 2);
   ImproveOptions options = serial();
