@@ -106,8 +106,7 @@ void print_limits(const Result& result) {
         "that\n",
         grouped(met.bound), grouped(met.cells), met.wanted);
   else if (met.bound > 0)
-    print("the bound of {} cells was met; with a larger --max-cells the run would have gone on\n",
-          grouped(met.bound));
+    print("the bound on cells was met; a larger --max-cells may bring more\n");
   const HeldCells& held = result.held;
   if (held.cells == 0 || !held.known) return;
   print(

@@ -43,15 +43,15 @@ StuckReason ended_by(const ImproveOptions& options, const Result& result) {
   return StuckReason::kNotFound;
 }
 
-/// The bound on cells that was met; 0: none. Beyond what a default run claims it keeps to its own, which what
-/// it claims may have taken it past.
+/// The bound on cells that was met, which a stage may have had for itself, and a larger one that was asked
+/// for; 0: none. Beyond what a default run claims it keeps to its own, past which that may have taken it.
 std::size_t bound_met(const Strategy& strategy, std::size_t n_cells, std::size_t max_cells_met,
                       double smallest) {
+  if (max_cells_met > 0) return std::max(max_cells_met, strategy.bounds_asked.max);
   const std::size_t bound = strategy.bounds.max;
   const bool is_beyond =
       strategy.course == Course::kDefault && strategy.claimed && smallest >= strategy.claimed->goal->degrees;
-  if (max_cells_met > 0 || !is_beyond || bound == 0 || n_cells + strategy.pass.cells_of_vertex <= bound)
-    return max_cells_met;
+  if (!is_beyond || bound == 0 || n_cells + strategy.pass.cells_of_vertex <= bound) return 0;
   return std::max(bound, n_cells);
 }
 

@@ -139,10 +139,10 @@ std::span<const TargetAngle> left_out(const Run& run, double claimed) {
   return {};
 }
 
-/// Where many cells miss what is claimed: those that others, which nothing raises, have kept from their
-/// turn. Goes on, with more cells, while more than a few of those below an angle are mended, or the number of
-/// cells is in the way. With a surface that may change what was left out, for many cells miss it, beyond what
-/// is claimed as well, once.
+/// Where many cells miss what is claimed: those that others, which nothing raises, have kept from their turn.
+/// Goes on, with more cells, while more than a few of those below an angle up to that are mended, or the
+/// number of cells is in the way. With a surface that may change all targets from the first one on that was
+/// left out, for many cells miss it; where that is beyond what is claimed, once.
 void raise_others(const Run& run) {
   if (!run.strategy.claimed || run.control.stopped()) return;
   const Strategy& claimed = *run.strategy.claimed;
@@ -155,8 +155,11 @@ void raise_others(const Run& run) {
     targets = claimed.targets.targets;
   if (targets.empty()) return;
   const bool many_miss = targets.front().degrees <= goal.degrees;  // what is claimed
-  std::vector<double> angles;
-  for (const TargetAngle& target : targets) angles.push_back(target.degrees);
+  std::vector<double> angles, claimed_angles;
+  for (const TargetAngle& target : targets) {
+    angles.push_back(target.degrees);
+    if (target.degrees <= goal.degrees) claimed_angles.push_back(target.degrees);
+  }
   Run part = run.within(claimed.bounds);
   const bool may_grow = many_miss && part.bounds.max > 0 && claimed.bounds_asked.max == 0;
   const Findings found = run.findings;
@@ -168,16 +171,17 @@ void raise_others(const Run& run) {
       part.bounds.max = static_cast<std::size_t>(goal.more_cells * static_cast<double>(part.bounds.max));
     if (may_grow && turn + 1 < goal.turns && !part.has_room()) continue;
     std::vector<std::size_t> before;
-    if (may_grow) before = n_that_may_rise(run, angles);
+    if (may_grow) before = n_that_may_rise(run, claimed_angles);
     run.findings.forget_cell_bound();
     raise_to_targets(part, targets, many_miss ? WhenManyMiss::kPastVain : WhenManyMiss::kWhileItRises);
     best.note();
     if (!may_grow) break;
-    const std::vector<std::size_t> now = n_that_may_rise(run, angles);
+    const std::vector<std::size_t> now = n_that_may_rise(run, claimed_angles);
     const bool has_mended_some = !std::ranges::equal(now, before, [](std::size_t left, std::size_t n) {
       return static_cast<double>(left) >= (1 - kFewShare) * static_cast<double>(n);
     });
-    if (!has_mended_some && !run.findings.met_cell_bound) break;
+    const bool are_left = std::ranges::any_of(now, [](std::size_t n) { return n > 0; });
+    if (!are_left || (!has_mended_some && !run.findings.met_cell_bound)) break;
   }
   best.settle();
   trial.settle();

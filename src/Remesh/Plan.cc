@@ -193,14 +193,14 @@ void add_claimed(Lines& lines, const Strategy& strategy, bool frozen) {
     from_the_start(say("the run towards ", goal.degrees, " degrees"), " where the mesh is poor throughout");
   if (strategy.frozen) lines.add("frozen", say("the run with a frozen surface, where cells are ", below));
   if (strategy.flat) from_the_start("the run with a flat surface", say(" where cells are ", below));
+  const std::string which = frozen ? "up to that once more" : "from the first on that so many miss";
   lines.add("others", say("where more than ", percent(claimed.throughout.share), " of the cells are ", below,
-                          ": the targets ", frozen ? "up to that" : "that so many miss",
-                          " once more, past those that mend next to nothing"));
+                          ": the targets ", which, ", past those that mend next to nothing"));
   if (!frozen && strategy.targets.targets.back().degrees > goal.degrees)
     lines.add("others",
-              say("also targets beyond that were left out, while they raise the worst angle, unless up to ",
+              say("where the first is beyond, once, while they raise the worst angle, unless up to ",
                   percent(goal.few_miss), " of the cells miss more than ", strategy.targets.may_be_missed,
-                  " of those below"));
+                  " of those below it"));
   if (strategy.without_goal) from_the_start("the run without a goal", say(" where cells are ", below));
 }
 

@@ -142,7 +142,7 @@ BulkEffort bulk_effort(const Asked& asked) {
 }
 
 /// With a surface that may change its shape, what many cells suffer from can be mended, too. Beyond the angle
-/// that such runs are for, that is dear: noisy surfaces would cost twice what they cost frozen.
+/// that such runs are for, that is dear on the way; what was left out is looked at in the end.
 double largest_share(const Asked& asked, double degrees) {
   constexpr double kFreeUpTo = 20, kUpToThere = 0.35, kBeyond = 0.2;
   if (!asked.is_free()) return kManyShare;

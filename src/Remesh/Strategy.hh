@@ -352,7 +352,8 @@ struct GoalEffort {
   /// be touched anyway, and polished by themselves they would lose too many vertices.
   double many_miss = 0.2;
   /// Where no larger share is left in the end, a frozen surface holds them, whatever is done to others; and
-  /// where no larger one is far below the others, it says nothing of what these could come to.
+  /// where no larger one is far below the others, these cells keep the worst angle down, and no target that
+  /// was left out for many.
   double few_miss = 0.01;
   bool polish_only = false;  ///< nothing but the polish, whatever it leaves
   bool goes_on = true;       ///< with all cells where the goal was missed; not where iterations are limited

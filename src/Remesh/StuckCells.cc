@@ -124,6 +124,7 @@ CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck,
   Op op{MinDihedral{}, quality};
   op.poor_below = dihedral_decision(degrees);
   const std::size_t n_cells = mesh.n_logical_cells();
+  const auto n_open = std::ranges::count(stuck, StuckReason::kNotFound, &StuckCell::reason);
   std::vector<std::size_t> n_more(stuck.size(), 0);
   par::for_each_dynamic(policy.for_items_of(Op::kSeedNanoseconds), stuck.size(), 1, [&](std::size_t i) {
     if (stuck[i].reason != StuckReason::kNotFound) return;
@@ -143,7 +144,7 @@ CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck,
   }
   if (met.cells > 0)
     met.wanted += n_cells;
-  else if (n_cells + kLeastRoom <= max_cells)
+  else if (n_open == 0 || n_cells + kLeastRoom <= max_cells)
     return {};
   met.bound = max_cells;
   return met;

@@ -24,8 +24,8 @@ std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const std
                                         par::Policy policy = {});
 
 /// Says kMaxCells of the cells without a reason of which VertexInsertion would raise the worst angle, with
-/// more cells than `max_cells`, and how many cells there would have to be for all of them; that there is no
-/// room for a vertex where there are none of these.
+/// more cells than `max_cells`, and how many cells there would have to be for all of them; where there are
+/// none, that there is no room for a vertex, if some have no reason.
 CellBoundMet blame_max_cells(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
                              std::size_t max_cells, par::Policy policy = {});
 

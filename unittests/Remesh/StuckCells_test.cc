@@ -231,8 +231,8 @@ TEST(StuckCellsProperty, NoOptionLiftsTheCellsOfAnEdgeBeyondItsCeiling) {
   EXPECT_GT(n_lifted, 0U) << "nothing has changed after the first run";
 }
 
-TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelpAndNamedWhereThereIsNoRoomForOne) {
-  std::size_t n_blamed = 0, n_named = 0;
+TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelp) {
+  std::size_t n_blamed = 0;
   for (std::uint64_t s = 1; s <= 2; ++s) {
     TetMesh mesh = jittered(4, 0.3, s);
     ImproveOptions options = serial();
@@ -248,18 +248,36 @@ TEST(StuckCells, BoundOnCellsIsBlamedOnlyWhereANewVertexWouldHelpAndNamedWhereTh
     EXPECT_EQ(n_of(next.stuck, StuckReason::kMaxCells), 0U);
     EXPECT_EQ(next.cell_bound.bound, 0U);
     EXPECT_EQ(result.cell_bound.cells, n);
-    const bool has_room = mesh.n_cells() + PassEffort{}.cells_of_vertex <= options.max_cells;
-    EXPECT_EQ(result.cell_bound.bound, n > 0 || !has_room ? options.max_cells : 0);
-    if (n == 0) {
-      EXPECT_EQ(result.cell_bound.wanted, 0U);
-      n_named += result.cell_bound.bound > 0 ? 1 : 0;
-    } else {
+    EXPECT_EQ(result.cell_bound.bound, n > 0 ? options.max_cells : 0);
+    if (n > 0) {
       EXPECT_GT(result.cell_bound.wanted, options.max_cells);
       EXPECT_LT(next.stuck.size(), result.stuck.size()) << s;
     }
   }
   EXPECT_GT(n_blamed, 0U);
-  EXPECT_GT(n_named, 0U);
+}
+
+/// No vertex raises a regular cell.
+TEST(StuckCells, BoundOnCellsIsNamedWhereThereIsNoRoomForAVertexAndACellHasNoOtherReason) {
+  const TetMesh mesh =
+      build({{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}, std::vector<Corners>{{0, 1, 2, 3}});
+  const auto met = [&](StuckReason reason, std::size_t max_cells) {
+    StuckCell cell;
+    cell.cell = C(0);
+    cell.degrees = 70.5;
+    cell.reason = reason;
+    std::vector<StuckCell> stuck = {cell};
+    const CellBoundMet found = blame_max_cells(mesh, stuck, 71, max_cells);
+    EXPECT_EQ(stuck[0].reason, reason);
+    EXPECT_EQ(found.cells, 0U);
+    EXPECT_EQ(found.wanted, 0U);
+    return found.bound;
+  };
+  EXPECT_EQ(met(StuckReason::kNotFound, 1), 1U);
+  EXPECT_EQ(met(StuckReason::kNotFound, 4), 4U);
+  EXPECT_EQ(met(StuckReason::kNotFound, 5), 0U) << "there is room for one";
+  EXPECT_EQ(met(StuckReason::kTimeLimit, 1), 0U);
+  EXPECT_EQ(met(StuckReason::kSurfaceCeiling, 1), 0U);
 }
 
 /// What a run claims may take it past its own bound; with a larger one it goes on beyond the claim.
