@@ -142,16 +142,18 @@ std::span<const TargetAngle> left_out(const Run& run, double claimed) {
 /// Where many cells miss what is claimed: those that others, which nothing raises, have kept from their turn.
 /// Goes on, with more cells, while more than a few of those below an angle up to that are mended, or the
 /// number of cells is in the way. With a surface that may change all targets from the first one on that was
-/// left out, for many cells miss it; where that is beyond what is claimed, once.
+/// left out, for many cells miss it; where that is beyond what is claimed, once. None while cells stay
+/// inverted or flat, which such a surface has been changed for in vain: what the others come to is worth
+/// little then.
 void raise_others(const Run& run) {
   if (!run.strategy.claimed || run.control.stopped()) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const double many = claimed.throughout.share;
   std::span<const TargetAngle> targets;
-  if (run.surface)
+  if (run.surface && run.survey().n_invalid == 0)
     targets = left_out(run, goal.degrees);
-  else if (share_that_may_rise(run, goal.degrees, many) > many)
+  else if (!run.surface && share_that_may_rise(run, goal.degrees, many) > many)
     targets = claimed.targets.targets;
   if (targets.empty()) return;
   const bool many_miss = targets.front().degrees <= goal.degrees;  // what is claimed
