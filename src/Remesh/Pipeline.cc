@@ -142,18 +142,17 @@ std::span<const TargetAngle> left_out(const Run& run, double claimed) {
 /// Where many cells miss what is claimed: those that others, which nothing raises, have kept from their turn.
 /// Goes on, with more cells, while more than a few of those below an angle up to that are mended, or the
 /// number of cells is in the way. With a surface that may change all targets from the first one on that was
-/// left out, for many cells miss it; where that is beyond what is claimed, once. None while cells stay
-/// inverted or flat, which such a surface has been changed for in vain: what the others come to is worth
-/// little then.
+/// left out, for many cells miss it; once where that is beyond what is claimed, or where cells stay inverted
+/// or flat: more often takes as long as all else.
 void raise_others(const Run& run) {
   if (!run.strategy.claimed || run.control.stopped()) return;
   const Strategy& claimed = *run.strategy.claimed;
   const GoalEffort& goal = *claimed.goal;
   const double many = claimed.throughout.share;
   std::span<const TargetAngle> targets;
-  if (run.surface && run.survey().n_invalid == 0)
+  if (run.surface)
     targets = left_out(run, goal.degrees);
-  else if (!run.surface && share_that_may_rise(run, goal.degrees, many) > many)
+  else if (share_that_may_rise(run, goal.degrees, many) > many)
     targets = claimed.targets.targets;
   if (targets.empty()) return;
   const bool many_miss = targets.front().degrees <= goal.degrees;  // what is claimed
@@ -163,7 +162,8 @@ void raise_others(const Run& run) {
     if (target.degrees <= goal.degrees) claimed_angles.push_back(target.degrees);
   }
   Run part = run.within(claimed.bounds);
-  const bool may_grow = many_miss && part.bounds.max > 0 && claimed.bounds_asked.max == 0;
+  const bool is_once = !many_miss || (run.surface && run.survey().n_invalid > 0);
+  const bool may_grow = !is_once && part.bounds.max > 0 && claimed.bounds_asked.max == 0;
   const Findings found = run.findings;
   const Revision usual = run.control.revision();
   Trial trial(run, angles);
