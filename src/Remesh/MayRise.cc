@@ -2,6 +2,9 @@
 #include "Remesh/MayRise.hh"
 
 #include <algorithm>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "Quality/Metrics.hh"
 #include "Remesh/SmallestDihedrals.hh"
@@ -14,30 +17,54 @@
 namespace hfr {
 namespace {
 
-/// Cells below `degrees` with the proofs of what holds them; of a mesh in parts those of this one.
-std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
-  std::vector<CellHandle> cells = cells_below(run.mesh, degrees, run.policy(), run.known());
-  if (run.is_part()) std::erase_if(cells, [&](CellHandle c) { return !run.parts()->is_own(c); });
-  std::vector<StuckCell> low = kept_from_rising(run.mesh, run.work.frozen, cells, kLeastRise, run.policy());
+/// Cells below `degrees`, without proofs; of a mesh in parts those of this one.
+struct LowCells {
+  std::vector<StuckCell> cells;  ///< ascending
+  bool all_positive;             ///< all cells of the mesh, or that this part holds
+
+  LowCells(const Run& run, double degrees)
+      : cells(without_proofs(run.mesh, cells_below(run.mesh, degrees, run.policy(), run.known()),
+                             run.policy())),
+        all_positive(are_positive(cells)) {
+    if (run.is_part()) std::erase_if(cells, [&](const StuckCell& c) { return !run.parts()->is_own(c.cell); });
+  }
+};
+
+/// Notes what holds these cells of `low`.
+void prove(const Run& run, const LowCells& low, std::span<StuckCell> cells) {
+  prove_kept(run.mesh, run.work.frozen, cells, kLeastRise, low.all_positive, run.policy());
+  if (!run.surface) return;
   // What a feature holds, the faces at it hold as well while they stay, which is quicker to see.
-  const auto is_kept = [&] {
-    const bool here =
-        std::any_of(low.begin(), low.end(), [](const StuckCell& c) { return is_proof(c.reason); });
-    return run.is_part() ? run.parts()->sum(here ? 1 : 0) > 0 : here;
-  };
-  if (run.surface && is_kept()) blame_features(run, low, kLargestGoal);
-  return low;
+  const bool here = std::ranges::any_of(cells, [](const StuckCell& c) { return is_proof(c.reason); });
+  if (run.is_part() ? run.parts()->sum(here ? 1 : 0) > 0 : here) blame_features(run, cells, kLargestGoal);
+}
+
+std::vector<StuckCell> with_proofs(const Run& run, double degrees) {
+  LowCells low(run, degrees);
+  prove(run, low, low.cells);
+  return std::move(low.cells);
 }
 
 bool is_at_ceiling(const StuckCell& cell) {
   return is_proof(cell.reason) && cell.ceiling <= cell.degrees + kLeastRise;
 }
 
-/// Smallest dihedral of the cells below `degrees` that may rise; `degrees` where there is none.
+/// Smallest dihedral of the cells below `degrees` that may rise; `degrees` where there is none. With a frozen
+/// surface from the worst cell on, twice as many at a time: the first that may rise is the answer. Features
+/// are found in the whole surface each time.
 double smallest_below(const Run& run, double degrees) {
+  LowCells low(run, degrees);
+  std::span<StuckCell> left(low.cells);
+  std::ranges::stable_sort(left, {}, &StuckCell::degrees);
   double smallest = degrees;
-  for (const StuckCell& cell : with_proofs(run, degrees))
-    if (!is_at_ceiling(cell)) smallest = std::min(smallest, cell.degrees);
+  std::size_t n = run.surface ? std::max(left.size(), std::size_t{1}) : kFewCells;
+  for (bool first = true; first || (smallest == degrees && !left.empty()); first = false, n *= 2) {
+    const std::span<StuckCell> worst = left.first(std::min(n, left.size()));
+    left = left.subspan(worst.size());
+    prove(run, low, worst);
+    for (const StuckCell& cell : worst)
+      if (!is_at_ceiling(cell)) smallest = std::min(smallest, cell.degrees);
+  }
   return run.is_part() ? run.parts()->min(smallest) : smallest;
 }
 

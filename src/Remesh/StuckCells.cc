@@ -2,7 +2,10 @@
 #include "Remesh/StuckCells.hh"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <optional>
 
 #include "Operators/Operator.hh"
 #include "Operators/VertexInsertion.hh"
@@ -46,14 +49,39 @@ bool has_cell(const TetMesh& mesh, const Wedge& wedge, VertexHandle a, VertexHan
   return true;
 }
 
+/// Tells edges of a cell that no wedge of positive cells can be the proof of: a wedge is no narrower than
+/// what the cell takes of it, and holds none of its cells below half of that.
+class WideAngles {
+ public:
+  WideAngles(const TetMesh& mesh, CellHandle c, double degrees) : degrees_(degrees) {
+    const auto p = corners(mesh, c);
+    frame_ = hfr_make_frame(to_real3(p[0]), to_real3(p[1]), to_real3(p[2]), to_real3(p[3]));
+    cosine_ = std::cos(2 * degrees * std::numbers::pi / 180);
+  }
+  bool has(int edge) const {
+    constexpr double kMargin = 1e-9;  // more than rounding
+    if (degrees_ >= 90) return false;
+    const hfr_cos_sin angle = hfr_dihedral_cos_sin(frame_, edge);
+    return angle.cosine < (cosine_ - kMargin) * std::hypot(angle.cosine, angle.sine);
+  }
+
+ private:
+  double degrees_, cosine_;
+  hfr_tet_frame frame_;
+};
+
 /// Notes the proof by one of the cell's edges that keeps it below `degrees`: one of the surface, if there is
 /// one, then that with the lowest ceiling, then that with the smaller vertices. `frozen`: see
-/// constrained_vertices().
-void prove(const TetMesh& mesh, std::span<const std::uint8_t> frozen, double degrees, StuckCell& stuck) {
+/// constrained_vertices(). `all_positive`: the cells round its edges are.
+void prove(const TetMesh& mesh, std::span<const std::uint8_t> frozen, double degrees, bool all_positive,
+           StuckCell& stuck) {
+  std::optional<WideAngles> wide;
   for (int e = 0; e < 6; ++e) {
     const auto& ends = kEdgeCorners[static_cast<std::size_t>(e)];
     const auto [a, b] = std::minmax(mesh.cell(stuck.cell).v[ends[0]], mesh.cell(stuck.cell).v[ends[1]]);
     if (!frozen[a.idx()] || !frozen[b.idx()]) continue;  // no face there is constrained
+    if (all_positive && !wide) wide.emplace(mesh, stuck.cell, degrees);
+    if (wide && wide->has(e)) continue;
     const auto found = wedges_at(mesh, stuck.cell, e);
     if (!found) continue;
     for (const Wedge& wedge : found->wedges) {
@@ -79,14 +107,21 @@ void prove(const TetMesh& mesh, std::span<const std::uint8_t> frozen, double deg
 
 }  // namespace
 
-std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
-                                        std::span<const CellHandle> cells, double by, par::Policy policy) {
-  std::vector<StuckCell> kept(cells.size());
-  par::for_each(policy, cells.size(), [&](std::size_t i) {
-    kept[i] = unproven(mesh, cells[i]);
-    prove(mesh, frozen, kept[i].degrees + by, kept[i]);
-  });
-  return kept;
+std::vector<StuckCell> without_proofs(const TetMesh& mesh, std::span<const CellHandle> cells,
+                                      par::Policy policy) {
+  std::vector<StuckCell> stuck(cells.size());
+  par::for_each(policy, cells.size(), [&](std::size_t i) { stuck[i] = unproven(mesh, cells[i]); });
+  return stuck;
+}
+
+bool are_positive(std::span<const StuckCell> cells) {
+  return std::ranges::all_of(cells, [](const StuckCell& cell) { return cell.degrees > kRounding; });
+}
+
+void prove_kept(const TetMesh& mesh, std::span<const std::uint8_t> frozen, std::span<StuckCell> cells,
+                double by, bool all_positive, par::Policy policy) {
+  par::for_each(policy, cells.size(),
+                [&](std::size_t i) { prove(mesh, frozen, cells[i].degrees + by, all_positive, cells[i]); });
 }
 
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
@@ -95,11 +130,10 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
   std::vector<std::uint8_t> on_fold(unfillable.empty() ? 0 : mesh.n_vertices(), 0);
   for (HalfFaceHandle h : unfillable)
     for (VertexHandle v : mesh.halfface_vertices(h)) on_fold[v.idx()] = 1;
-  const std::vector<CellHandle> low = cells_below(mesh, degrees, policy);
-  std::vector<StuckCell> cells(low.size());
-  par::for_each(policy, low.size(), [&](std::size_t i) {
+  std::vector<StuckCell> cells = without_proofs(mesh, cells_below(mesh, degrees, policy), policy);
+  const bool all_positive = are_positive(cells);
+  par::for_each(policy, cells.size(), [&](std::size_t i) {
     StuckCell& stuck = cells[i];
-    stuck = unproven(mesh, low[i]);
     const auto p = corners(mesh, stuck.cell);
     bool folds = false;
     for (VertexHandle v : mesh.cell(stuck.cell).v) {
@@ -109,7 +143,7 @@ std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
     if (folds && orientation(p[0], p[1], p[2], p[3]) <= 0)
       stuck.reason = StuckReason::kFoldedSurface;
     else
-      prove(mesh, frozen, degrees, stuck);
+      prove(mesh, frozen, degrees, all_positive, stuck);
   });
   return cells;
 }

@@ -17,11 +17,16 @@ namespace hfr {
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
                                    std::span<const HalfFaceHandle> unfillable, par::Policy policy = {});
 
-/// For each of these cells, what is proven to keep it from rising by so many degrees; not what needs the fold
-/// of a boundary, and without the number of vertices that may not move. `frozen`: constrained_vertices().
-std::vector<StuckCell> kept_from_rising(const TetMesh& mesh, std::span<const std::uint8_t> frozen,
-                                        std::span<const CellHandle> cells, double by,
-                                        par::Policy policy = {});
+/// These cells with their smallest dihedrals, in this order, and no reason yet but kNotFound.
+std::vector<StuckCell> without_proofs(const TetMesh& mesh, std::span<const CellHandle> cells,
+                                      par::Policy policy = {});
+/// Whether each of them has a positive angle. Of all cells below an angle: whether all of the mesh have.
+bool are_positive(std::span<const StuckCell> cells);
+/// Notes of each what is proven to keep it from rising by so many degrees; not what needs the fold of a
+/// boundary, and without the number of vertices that may not move. `frozen`: constrained_vertices().
+/// `all_positive`: see are_positive(), of the cells round the edges of these; fewer edges are looked at then.
+void prove_kept(const TetMesh& mesh, std::span<const std::uint8_t> frozen, std::span<StuckCell> cells,
+                double by, bool all_positive, par::Policy policy = {});
 
 /// Says kMaxCells of the cells without a reason of which VertexInsertion would raise the worst angle, with
 /// more cells than `max_cells`, and how many cells there would have to be for all of them; where there are

@@ -177,7 +177,7 @@ std::vector<CellHandle> cells_of(std::span<const StuckCell> stuck) {
 }
 
 /// `ceilings`: of each of the cells.
-void blame(std::vector<StuckCell>& stuck, std::span<const FeatureCeiling> ceilings, double degrees,
+void blame(std::span<StuckCell> stuck, std::span<const FeatureCeiling> ceilings, double degrees,
            const SurfaceOptions& options) {
   for (std::size_t i = 0; i < stuck.size(); ++i) {
     StuckReason& limit = stuck[i].reason;
@@ -199,12 +199,12 @@ void blame(std::vector<StuckCell>& stuck, std::span<const FeatureCeiling> ceilin
 
 }  // namespace
 
-void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+void blame_features(const TetMesh& mesh, std::span<StuckCell> stuck, double degrees,
                     const SurfaceOptions& options, par::Policy policy) {
   blame(stuck, feature_ceilings(mesh, cells_of(stuck), options, policy), degrees, options);
 }
 
-void blame_features(const Run& run, std::vector<StuckCell>& stuck, double degrees) {
+void blame_features(const Run& run, std::span<StuckCell> stuck, double degrees) {
   const SurfaceOptions& options = run.surface->options();
   if (run.is_part())
     blame(stuck, run.parts()->feature_ceilings(cells_of(stuck), options), degrees, options);

@@ -85,10 +85,10 @@ HeldCells held_cells(const TetMesh& mesh, const std::vector<StuckCell>& stuck, d
 
 /// With a surface that may change: proofs by faces that do not stay are taken back, and what the features
 /// keep below the angle is said to be.
-void blame_features(const TetMesh& mesh, std::vector<StuckCell>& stuck, double degrees,
+void blame_features(const TetMesh& mesh, std::span<StuckCell> stuck, double degrees,
                     const SurfaceOptions& options, par::Policy policy);
 /// Of a run with a surface; where its mesh is in parts, all processes ask, each with its own cells.
-void blame_features(const Run& run, std::vector<StuckCell>& stuck, double degrees);
+void blame_features(const Run& run, std::span<StuckCell> stuck, double degrees);
 
 }  // namespace hfr
 

@@ -66,7 +66,7 @@ HeldCells held_cells(const TetMesh&, const std::vector<StuckCell>& stuck, double
   held.cells = cells_held_back(stuck).size();
   return held;
 }
-void blame_features(const TetMesh&, std::vector<StuckCell>&, double, const SurfaceOptions&, par::Policy) {}
-void blame_features(const Run&, std::vector<StuckCell>&, double) {}
+void blame_features(const TetMesh&, std::span<StuckCell>, double, const SurfaceOptions&, par::Policy) {}
+void blame_features(const Run&, std::span<StuckCell>, double) {}
 
 }  // namespace hfr
