@@ -32,6 +32,14 @@ struct Confine {
   Vec3 axis;
 };
 
+/// Whether the worst value comes to `gain` times the old one if it rises once more as from `before` to `now`;
+/// true where an old one is not positive.
+inline bool is_within_reach(const Site& before, const Site& now, double gain) {
+  if (!(before.old_worst > 0 && now.old_worst > 0)) return true;
+  const double rise_before = before.new_worst / before.old_worst, rise = now.new_worst / now.old_worst;
+  return rise >= gain || rise * rise >= gain * rise_before;
+}
+
 /// Finds cavities for a new vertex, on behalf of cell `centre`, which is known to a rim. `is_cut` tells the
 /// outer half-faces that the vertex lies in: they get no cell.
 template <class Metric, class IsCut = NoneIsCut>
@@ -75,8 +83,9 @@ class Digger {
   }
 
   /// Moves the vertex of what was dug, digs on from there, and so on until it brings no more or there were
-  /// max_digs of them, the one that found `best` included.
-  Site follow_up(Site best, int max_digs, Confine confine = {}) const {
+  /// max_digs of them, the one that found `best` included. It ends as well where the worst value is not
+  /// `gain` times the old one yet, nor would be if the next move brought as much as the last.
+  Site follow_up(Site best, int max_digs, double gain, Confine confine = {}) const {
     for (int i = 1; i < max_digs && best.new_worst > 0; ++i) {
       const GrownCells now = replay(best.growth);
       MaxMinForm form(best.place, MaxMinForm::kAnglesOf<Metric>);
@@ -90,7 +99,9 @@ class Digger {
       if (moved == best.place) break;
       const Site next = dig(now, moved);
       if (!(next.new_worst > best.new_worst)) break;
+      const bool may_come_to_it = is_within_reach(best, next, gain);
       best = next;
+      if (!may_come_to_it) break;
     }
     return best;
   }

@@ -5,6 +5,7 @@
 
 #include "HalfFace/Check.hh"
 #include "Operators/Clusters.hh"
+#include "Operators/Dig.hh"
 
 namespace hfr::test {
 namespace {
@@ -56,6 +57,25 @@ TEST(GrownCells, OuterFacesAreThoseOfTheCellsAndNoVertexGoesUnder) {
   }
   EXPECT_GT(grown, 500);
   EXPECT_GT(refused, 200);
+}
+
+TEST(Dig, APlaceIsWithinReachWhereAsMuchAgainWouldDo) {
+  const auto site = [](double old_worst, double new_worst) {
+    detail::Site s;
+    s.old_worst = old_worst;
+    s.new_worst = new_worst;
+    return s;
+  };
+  const auto within = [&](double before, double now, double gain) {
+    return detail::is_within_reach(site(0.1, 0.1 * before), site(0.2, 0.2 * now), gain);
+  };
+  EXPECT_TRUE(within(1.0, 1.3, 1.6));   // 1.69
+  EXPECT_FALSE(within(1.0, 1.2, 1.6));  // 1.44
+  EXPECT_TRUE(within(1.59, 1.61, 1.6));
+  EXPECT_TRUE(within(0.5, 0.8, 1.02));  // 1.28, and not yet as good as what goes
+  EXPECT_FALSE(within(0.9, 0.95, 1.02));
+  EXPECT_TRUE(detail::is_within_reach(site(0, 0.1), site(0.1, 0.11), 1.6));  // of a flat cell any is
+  EXPECT_TRUE(detail::is_within_reach(site(0.1, 0.1), site(-0.1, 0.11), 1.6));
 }
 
 template <class Metric>
