@@ -11,6 +11,7 @@
 #include "Remesh/SurfaceRun.hh"
 #include "Remesh/Surfaces.hh"
 #include "Surface/Features.hh"
+#include "Surface/PlanarUnfold.hh"
 #include "Surface/SurfaceUnfold.hh"
 
 namespace hfr::mpi {
@@ -171,6 +172,19 @@ PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& opt
                                const std::function<bool()>& stopped)
     : impl_(new Impl{parts, policy, options, {}, {}, 0, 0, 0}) {
   WholeSurface now = gather(parts, options);
+  const auto move = [&](const std::vector<Vec3>& points) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (const VertexHandle v = parts.vertex_at(now.numbers[i]); v.is_valid())
+        parts.part().set_point(v, points[i]);
+  };
+  if (unfold) {  // which keeps the shape: what is measured is against the layers that add up to it
+    PlanarUnfolding done;
+    if (const auto points = unfold_planes(now.arrays, options, stopped, done)) {
+      move(*points);
+      now = gather(parts, options);
+    }
+    if (done.n_folded > 0) passes.push_back(report_of(done));
+  }
   if (measure) {
     impl_->before = now.triangles(/*of_boundary=*/false);
     impl_->volume = enclosed_volume(now.triangles(/*of_boundary=*/true));
@@ -179,10 +193,7 @@ PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& opt
   impl_->bound = surface::allowed_distance(now.arrays, options);
   if (unfold) {
     SurfaceUnfolding done;
-    if (const auto points = hfr::unfold(now.arrays, options, policy, stopped, done))
-      for (std::size_t i = 0; i < points->size(); ++i)
-        if (const VertexHandle v = parts.vertex_at(now.numbers[i]); v.is_valid())
-          parts.part().set_point(v, (*points)[i]);
+    if (const auto points = hfr::unfold(now.arrays, options, policy, stopped, done)) move(*points);
     if (done.n_folded > 0) passes.push_back(report_of(done));
     impl_->unfold_needs = done.needs;
     // What is left of the distance; the surface is taken as it is now.

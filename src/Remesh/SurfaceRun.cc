@@ -10,6 +10,7 @@
 #include "Remesh/StuckCells.hh"
 #include "Remesh/Surfaces.hh"
 #include "Surface/HeldCells.hh"
+#include "Surface/PlanarUnfold.hh"
 #include "Surface/SurfaceMesh.hh"
 #include "Surface/SurfaceUnfold.hh"
 
@@ -70,6 +71,10 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   if (options.surface.mode == SurfaceMode::kFrozen) return;
   impl_->policy = options.policy;
   impl_->measure = options.statistics;
+  if (unfold) {  // which keeps the shape: what is measured is against the layers that add up to it
+    const PlanarUnfolding done = unfold_planes(mesh, options.surface, options.policy, stopped);
+    if (done.n_folded > 0) passes.push_back(report_of(done));
+  }
   if (impl_->measure) {
     impl_->before = surface_triangles(mesh, options.policy);
     impl_->volume = enclosed_volume(mesh);
@@ -88,14 +93,25 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   impl_->surface = std::make_unique<SurfaceMesh>(mesh, wanted, options.policy);
 }
 
-PassReport report_of(const SurfaceUnfolding& unfolding) {
+namespace {
+
+PassReport unfolding_report(std::size_t n_folded, std::size_t n_moved) {
   PassReport pass;
   pass.stage = "unfold";
   pass.op = "surface unfold";
   pass.iteration = 1;
-  pass.seeds = pass.candidates = unfolding.n_folded;
-  pass.winners = unfolding.n_moved;
+  pass.seeds = pass.candidates = n_folded;
+  pass.winners = n_moved;
   return pass;
+}
+
+}  // namespace
+
+PassReport report_of(const SurfaceUnfolding& unfolding) {
+  return unfolding_report(unfolding.n_folded, unfolding.n_moved);
+}
+PassReport report_of(const PlanarUnfolding& unfolding) {
+  return unfolding_report(unfolding.n_folded, unfolding.n_moved);
 }
 
 SurfaceMesh* SurfaceRun::get() const { return impl_->surface.get(); }

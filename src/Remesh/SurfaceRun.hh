@@ -34,9 +34,11 @@ class SurfaceRun {
   std::unique_ptr<Impl> impl_;
 };
 
+struct PlanarUnfolding;
 struct SurfaceUnfolding;
 /// The line of a report on it.
 PassReport report_of(const SurfaceUnfolding& unfolding);
+PassReport report_of(const PlanarUnfolding& unfolding);
 
 /// The part of a flat surface that a patch has, for the time of a try on a copy of it; see SurfaceMesh. None
 /// where `whole` is null.

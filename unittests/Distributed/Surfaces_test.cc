@@ -150,6 +150,10 @@ TEST_F(SurfacesInParts, LabelsAndInterfacesHaveTheBytesOfSharedMemory) {
 TEST_F(SurfacesInParts, TangledMeshesHaveTheBytesOfSharedMemory) {
   for (const SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
     run(jittered(2, 0.8, 5), on_surface(mode, 12));
+    TetMesh lowered = kuhn_box(4);  // a lid that has passed vertices of the walls and their edges
+    for (VertexHandle v : lowered.vertices())
+      if (const Vec3 p = lowered.point(v); p.z == 1) lowered.set_point(v, {p.x, p.y, 0.6});
+    run(lowered, on_surface(mode, 12));
     ImproveOptions options = on_surface(mode, 20, /*polish_only=*/true);
     options.surface.hausdorff = 0.1;  // of which unfolding takes more than half
     run(built(generate::cylinder(3, 8, 1, 2, 0, 65)), options);

@@ -1,0 +1,561 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// In the plane what Operators/Unfold.cc does in space: Garanzha, Kaporin, Kudryavtseva, Protais, Ray &
+// Sokolov, Foldover-free maps in 50 lines of code, 2021, one vertex at a time. Only + - * / and √.
+#include "Surface/PlanarUnfold.hh"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <utility>
+
+#include "HalfFace/Layers.hh"
+
+namespace hfr {
+namespace {
+
+using surface::Arrays;
+using surface::corners;
+using surface::scaled_normal;
+using surface::unit;
+
+/// Of the mean edge: what lies no further from a plane is in it.
+constexpr double kInPlane = 1e-9;
+/// Rings of faces round a fold whose vertices move: one number after the other is tried, the last is all.
+constexpr std::array<int, 5> kRings = {2, 4, 8, 16, kAllLayers};
+constexpr int kSpreading = 60;  // passes that send each vertex to the mean of its neighbours, at first
+constexpr int kPasses = 200;    // of the energy, at most
+constexpr int kPatience = 40;   // of these without fewer folds
+constexpr int kSteps = 3;       // of Newton's method at a vertex, as many halvings of each
+/// ε of a star without folds, in mean regular triangles.
+constexpr double kFirmness = 0.02;
+/// Of a regular triangle with its edges, the least area of one that is no fold.
+constexpr double kLeastArea = 1e-6;
+
+struct Point2 {
+  double x = 0, y = 0;
+
+  friend Point2 operator+(Point2 a, Point2 b) { return {a.x + b.x, a.y + b.y}; }
+  friend Point2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
+  friend Point2 operator*(double s, Point2 a) { return {s * a.x, s * a.y}; }
+  friend bool operator==(Point2, Point2) = default;
+};
+double dot(Point2 a, Point2 b) { return a.x * b.x + a.y * b.y; }
+double cross(Point2 a, Point2 b) { return a.x * b.y - a.y * b.x; }
+
+/// A triangle as its vertex at x sees it: the other two, in turn.
+struct Side {
+  Point2 a, b;
+
+  double sum2(Point2 x) const { return dot(b - a, b - a) + dot(x - a, x - a) + dot(x - b, x - b); }
+  double twice_area(Point2 x) const { return cross(b - a, x - a); }
+};
+/// Twice the area of a regular triangle with this sum of squared edges.
+double regular_area(double sum2) { return sum2 / (2.0 * std::sqrt(3.0)); }
+
+/// S / χ, where 1/χ = 2 / (D + r), or without loss of digits 2 (r - D) / ε².
+double energy_of(double s, double d, double eps2) {
+  const double r = std::sqrt(d * d + eps2);
+  return s * 2.0 * (d < 0 ? (r - d) / eps2 : 1.0 / (d + r));
+}
+double energy(std::span<const Side> sides, Point2 x, double eps2) {
+  double sum = 0;
+  for (const Side& side : sides) sum += energy_of(side.sum2(x), side.twice_area(x), eps2);
+  return sum;
+}
+
+/// The step to where a quadratic form with this gradient and Hessian (xx, xy, yy) is least.
+std::optional<Point2> solve(const std::array<double, 3>& h, Point2 g) {
+  const double det = h[0] * h[2] - h[1] * h[1];
+  if (!(h[0] > 0 && det > 1e-12 * h[0] * h[2])) return std::nullopt;
+  return Point2{(h[1] * g.y - h[2] * g.x) / det, (h[1] * g.x - h[0] * g.y) / det};
+}
+
+/// Newton's step. What the gradients of S and of 1/χ add to the Hessian is left out where it makes it
+/// indefinite.
+std::optional<Point2> newton_step(std::span<const Side> sides, Point2 x, double eps2) {
+  Point2 gradient;
+  std::array<double, 3> convex{}, mixed{};
+  for (const Side& side : sides) {
+    const double s = side.sum2(x), d = side.twice_area(x);
+    const double r = std::sqrt(d * d + eps2), e = energy_of(s, d, eps2);
+    const Point2 along = side.b - side.a, n{-along.y, along.x};
+    const Point2 gs = (1.0 / s) * (4.0 * x - 2.0 * (side.a + side.b));
+    gradient = gradient + e * (gs - (1.0 / r) * n);
+    const double flat = 4.0 * e / s, steep = e * (r + d) / (r * r * r), both = -e / r;
+    convex[0] += flat + steep * n.x * n.x;
+    convex[1] += steep * n.x * n.y;
+    convex[2] += flat + steep * n.y * n.y;
+    mixed[0] += 2.0 * both * gs.x * n.x;
+    mixed[1] += both * (gs.x * n.y + gs.y * n.x);
+    mixed[2] += 2.0 * both * gs.y * n.y;
+  }
+  std::array<double, 3> full = convex;
+  for (std::size_t i = 0; i < full.size(); ++i) full[i] += mixed[i];
+  if (const auto step = solve(full, gradient)) return step;
+  return solve(convex, gradient);
+}
+
+/// Where a vertex at x makes the energy of its triangles less.
+Point2 unfold_star(std::span<const Side> sides, Point2 x) {
+  double lowest = 0, regular = 0;
+  for (const Side& side : sides) {
+    lowest = std::min(lowest, side.twice_area(x));
+    regular += regular_area(side.sum2(x));
+  }
+  const double firm = kFirmness * regular / static_cast<double>(sides.size());
+  const double eps2 = 4.0 * firm * (firm - lowest);
+  if (!(eps2 > 0)) return x;
+  double now = energy(sides, x, eps2);
+  for (int i = 0; i < kSteps; ++i) {
+    const auto step = newton_step(sides, x, eps2);
+    if (!step) break;
+    double length = 1, next = now;
+    for (int halving = 0; halving <= kSteps; ++halving, length *= 0.5) {
+      next = energy(sides, x + length * *step, eps2);
+      if (next < now) break;
+    }
+    if (!(next < now)) break;
+    x = x + length * *step;
+    now = next;
+  }
+  return x;
+}
+
+using Faces = std::vector<std::uint32_t>;
+
+/// The faces of the whole surface at each vertex.
+class Stars {
+ public:
+  explicit Stars(const Arrays& arrays) : first_(arrays.points.size() + 1, 0) {
+    for (const auto& f : arrays.faces)
+      for (VertexHandle v : f) ++first_[v.idx() + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    faces_.resize(first_.back());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for (std::size_t i = 0; i < arrays.faces.size(); ++i)
+      for (VertexHandle v : arrays.faces[i]) faces_[next[v.idx()]++] = static_cast<std::uint32_t>(i);
+  }
+  std::span<const std::uint32_t> at(VertexHandle v) const {
+    return {faces_.data() + first_[v.idx()], first_[v.idx() + 1] - first_[v.idx()]};
+  }
+
+ private:
+  std::vector<std::size_t> first_;
+  Faces faces_;
+};
+
+/// Plane facets: sets of faces that hang together over edges of two faces each, between what has the same
+/// labels, in one plane; whichever way they look. Each begins at its largest face.
+class PlaneFacets {
+ public:
+  explicit PlaneFacets(const Arrays& arrays) : edges_(surface::find_edges(arrays)) {
+    std::vector<std::array<std::uint32_t, 3>> next(arrays.faces.size(), {kNone, kNone, kNone});
+    for (const surface::Edge& e : edges_)
+      if (may_be_inside(arrays, e))
+        for (std::size_t i = 0; i < 2; ++i) next[e.f[i]][e.k[i]] = e.f[1 - i];
+    std::vector<double> area;
+    for (const auto& f : arrays.faces) area.push_back(norm(scaled_normal(corners(arrays.points, f))));
+    Faces order(arrays.faces.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::uint32_t f) { return area[f]; });
+    tolerance_ = kInPlane * surface::mean_edge(arrays);
+    number_.assign(arrays.faces.size(), kNone);
+    for (std::uint32_t first : order) {
+      if (number_[first] != kNone) continue;
+      const Triangle t = corners(arrays.points, arrays.faces[first]);
+      const Vec3 normal = unit(scaled_normal(t));
+      const auto is_in_plane = [&](VertexHandle v) {
+        return std::abs(dot(normal, arrays.points[v.idx()] - t[0])) <= tolerance_;
+      };
+      const auto number = static_cast<std::uint32_t>(faces_.size());
+      number_[first] = number;
+      Faces& faces = faces_.emplace_back(1, first);
+      for (std::size_t i = 0; i < faces.size(); ++i) {
+        for (std::uint32_t g : next[faces[i]]) {
+          if (g == kNone || number_[g] != kNone || !std::ranges::all_of(arrays.faces[g], is_in_plane))
+            continue;
+          number_[g] = number;
+          faces.push_back(g);
+        }
+      }
+    }
+  }
+
+  /// By facet, its faces.
+  std::span<const Faces> faces() const { return faces_; }
+  std::uint32_t of(std::uint32_t face) const { return number_[face]; }
+  const std::vector<surface::Edge>& edges() const { return edges_; }
+  double tolerance() const { return tolerance_; }
+  /// Whether no facet goes on over the edge.
+  bool is_rim(const surface::Edge& e) const { return !e.manifold || of(e.f[0]) != of(e.f[1]); }
+
+ private:
+  static constexpr std::uint32_t kNone = ~0U;
+
+  static bool may_be_inside(const Arrays& arrays, const surface::Edge& e) {
+    if (!e.manifold || std::ranges::binary_search(arrays.locked_edges, std::array{e.a, e.b})) return false;
+    const auto same = [&](const auto& of) { return of[e.f[0]] == of[e.f[1]]; };
+    return same(arrays.patch) && same(arrays.inward) && same(arrays.regions) && !arrays.locked[e.f[0]] &&
+           !arrays.locked[e.f[1]];
+  }
+
+  std::vector<surface::Edge> edges_;
+  std::vector<std::uint32_t> number_;
+  std::vector<Faces> faces_;
+  double tolerance_ = 0;
+};
+
+/// Straight edges between two planes, from corner to corner. Their inner vertices may slide along them.
+class StraightEdges {
+ public:
+  StraightEdges(const PlaneFacets& facets, const Stars& stars, std::span<const std::uint8_t> held,
+                std::size_t n_vertices)
+      : facets_(facets), stars_(stars), held_(held), rim_(n_vertices) {
+    for (std::uint32_t i = 0; i < facets.edges().size(); ++i)
+      if (const surface::Edge& e = facets.edges()[i]; facets.is_rim(e))
+        for (VertexHandle v : {e.a, e.b}) rim_[v.idx()].push_back(i);
+  }
+
+  /// Puts vertices that have passed one another back in order, each edge between its ends; returns how many
+  /// have moved.
+  std::size_t unfold(std::span<Vec3> points) const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < rim_.size(); ++i) {
+      if (slides(VertexHandle(i))) continue;
+      for (std::uint32_t first : rim_[i]) {
+        const std::vector<VertexHandle> chain = chain_from(VertexHandle(i), first);
+        if (chain.size() > 2 && chain.front() < chain.back()) n += unfold(chain, points);
+      }
+    }
+    return n;
+  }
+
+ private:
+  bool slides(VertexHandle v) const {
+    const auto& rim = rim_[v.idx()];
+    if (held_[v.idx()] || rim.size() != 2) return false;
+    std::array<std::array<std::uint32_t, 2>, 2> sides;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const surface::Edge& e = facets_.edges()[rim[i]];
+      if (!e.manifold || e.locked) return false;
+      sides[i] = {facets_.of(e.f[0]), facets_.of(e.f[1])};
+      std::ranges::sort(sides[i]);
+    }
+    return sides[0] == sides[1] && std::ranges::all_of(stars_.at(v), [&](std::uint32_t f) {
+             return std::ranges::find(sides[0], facets_.of(f)) != sides[0].end();
+           });
+  }
+  std::vector<VertexHandle> chain_from(VertexHandle v, std::uint32_t edge) const {
+    std::vector<VertexHandle> chain = {v};
+    for (;;) {
+      const surface::Edge& e = facets_.edges()[edge];
+      const VertexHandle next = e.a == chain.back() ? e.b : e.a;
+      chain.push_back(next);
+      if (!slides(next)) return chain;
+      const auto& rim = rim_[next.idx()];
+      edge = rim[0] == edge ? rim[1] : rim[0];
+    }
+  }
+  /// As few vertices as have room there are spread evenly: half of what all of the edge would have.
+  std::size_t unfold(const std::vector<VertexHandle>& chain, std::span<Vec3> points) const {
+    const Vec3 origin = points[chain.front().idx()];
+    const Vec3 along = points[chain.back().idx()] - origin;
+    const double length = norm(along);
+    const Vec3 axis = unit(along);
+    std::vector<double> at;
+    for (VertexHandle v : chain) {
+      const Vec3 p = points[v.idx()] - origin;
+      at.push_back(dot(p, axis));
+      if (!(norm(p - at.back() * axis) <= facets_.tolerance())) return 0;
+    }
+    const std::size_t last = chain.size() - 1;
+    const double least = 0.5 * length / static_cast<double>(last);
+    if (!(least > facets_.tolerance())) return 0;
+    const std::vector<double> before = at;
+    for (std::size_t i = 0; i < last; ++i) {
+      if (at[i + 1] > at[i]) continue;
+      std::size_t low = i, high = i + 1;
+      const auto step = [&] { return (at[high] - at[low]) / static_cast<double>(high - low); };
+      while ((low > 0 || high < last) && step() < least) {
+        if (low > 0) --low;
+        if (high < last) ++high;
+      }
+      const double gap = step(), from = at[low];
+      for (std::size_t k = low + 1; k < high; ++k) at[k] = from + static_cast<double>(k - low) * gap;
+      i = high - 1;  // what lies before has stayed in order
+    }
+    std::size_t n = 0;
+    for (std::size_t i = 1; i < last; ++i) {
+      if (at[i] == before[i]) continue;
+      points[chain[i].idx()] = points[chain[i].idx()] + (at[i] - before[i]) * axis;
+      ++n;
+    }
+    return n;
+  }
+
+  const PlaneFacets& facets_;
+  const Stars& stars_;
+  std::span<const std::uint8_t> held_;
+  std::vector<std::vector<std::uint32_t>> rim_;  // by vertex, the edges of its rims
+};
+
+/// One plane facet, seen from the side to which most of its area looks.
+class Facet {
+ public:
+  Facet(const Arrays& arrays, std::span<const Vec3> points, const Stars& stars, const PlaneFacets& facets,
+        std::uint32_t number)
+      : arrays_(arrays), stars_(stars), facets_(facets), number_(number) {
+    Vec3 sum;
+    const Faces& faces = facets.faces()[number];
+    std::uint32_t largest = faces.front();
+    const auto area = [&](std::uint32_t f) { return scaled_normal(corners(points, arrays_.faces[f])); };
+    for (std::uint32_t f : faces) {
+      sum = sum + area(f);
+      if (norm2(area(f)) > norm2(area(largest))) largest = f;
+    }
+    const Triangle t = corners(points, arrays_.faces[largest]);
+    at_.resize(points.size());
+    Vec3 up = unit(scaled_normal(t));
+    if (dot(sum, up) < 0) up = -1.0 * up;
+    x_ = unit(t[1] - t[0]);
+    y_ = cross(up, x_);
+    for (std::uint32_t f : faces)
+      for (VertexHandle v : arrays_.faces[f]) {
+        const Vec3 p = points[v.idx()] - t[0];
+        at_[v.idx()] = {dot(p, x_), dot(p, y_)};
+      }
+  }
+
+  /// Its faces that look the wrong way or have no area.
+  Faces folded() const {
+    Faces found;
+    std::ranges::copy_if(facets_.faces()[number_], std::back_inserter(found),
+                         [&](std::uint32_t f) { return is_folded(f); });
+    return found;
+  }
+  bool is_folded(std::uint32_t f) const {
+    const auto& v = arrays_.faces[f];
+    const Side side{at(v[0]), at(v[1])};
+    return !(side.twice_area(at(v[2])) > kLeastArea * regular_area(side.sum2(at(v[2]))));
+  }
+  /// Moves the vertices round one fold that nothing holds until no face at them is folded, in as few rings as
+  /// that takes; false, and nothing moves, where no number of rings does.
+  bool unfold(const Faces& fold, std::span<const std::uint8_t> held, const std::function<bool()>& stopped) {
+    std::size_t n_before = 0;
+    for (int rings : kRings) {
+      const std::vector<VertexHandle> vertices = movable(fold, rings, held);
+      if (vertices.size() == n_before) return false;
+      n_before = vertices.size();
+      if (unfold(fold, vertices, stopped)) return true;
+    }
+    return false;
+  }
+  /// Brings the points to where they are now since `before`; returns how many have moved.
+  std::size_t move(std::span<Vec3> points, const Facet& before) const {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point2 by = at_[i] - before.at_[i];
+      if (by == Point2{}) continue;
+      points[i] = points[i] + (by.x * x_ + by.y * y_);
+      ++n;
+    }
+    return n;
+  }
+
+ private:
+  bool unfold(const Faces& fold, const std::vector<VertexHandle>& vertices,
+              const std::function<bool()>& stopped) {
+    Faces faces = fold;
+    for (VertexHandle v : vertices) faces.insert(faces.end(), stars_.at(v).begin(), stars_.at(v).end());
+    std::ranges::sort(faces);
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    const std::vector<Point2> before = at_;
+    for (int spreading : {0, kSpreading}) {
+      at_ = before;
+      for (int pass = 0; pass < spreading; ++pass)
+        for (VertexHandle v : vertices) at_[v.idx()] = middle_of_neighbours(v);
+      std::size_t fewest = faces.size() + 1;
+      for (int pass = 0, idle = 0; pass < kPasses && idle < kPatience && !stopped(); ++pass, ++idle) {
+        for (VertexHandle v : vertices) at_[v.idx()] = unfold_star(sides_of(v), at_[v.idx()]);
+        const auto n = static_cast<std::size_t>(
+            std::ranges::count_if(faces, [&](std::uint32_t f) { return is_folded(f); }));
+        if (n == 0) return true;
+        if (n < fewest) idle = 0;
+        fewest = std::min(fewest, n);
+      }
+    }
+    at_ = before;
+    return false;
+  }
+  Point2 at(VertexHandle v) const { return at_[v.idx()]; }
+  std::vector<Side> sides_of(VertexHandle v) const {
+    std::vector<Side> sides;
+    for (std::uint32_t f : stars_.at(v)) {
+      const auto& corner = arrays_.faces[f];
+      const auto k = static_cast<std::size_t>(std::ranges::find(corner, v) - corner.begin());
+      sides.push_back({at(corner[(k + 1) % 3]), at(corner[(k + 2) % 3])});
+    }
+    return sides;
+  }
+  Point2 middle_of_neighbours(VertexHandle v) const {
+    Point2 sum;
+    const std::vector<Side> sides = sides_of(v);
+    for (const Side& side : sides) sum = sum + (side.a + side.b);
+    return (0.5 / static_cast<double>(sides.size())) * sum;
+  }
+  /// Vertices of these faces and of so many rings of the facet's faces round them, all of whose faces are in
+  /// the facet and that are not held; ascending.
+  std::vector<VertexHandle> movable(std::span<const std::uint32_t> folds, int rings,
+                                    std::span<const std::uint8_t> held) const {
+    Faces near(folds.begin(), folds.end());
+    std::vector<std::uint8_t> seen(arrays_.faces.size(), 0);
+    for (std::uint32_t f : near) seen[f] = 1;
+    const auto around = [&](std::span<const std::uint32_t> rim, auto&& reach) {
+      for (std::uint32_t f : rim)
+        for (VertexHandle v : arrays_.faces[f])
+          for (std::uint32_t g : stars_.at(v)) reach(g);
+    };
+    grow_layers(near, rings, around, [&](std::uint32_t f) {
+      return facets_.of(f) == number_ && std::exchange(seen[f], std::uint8_t{1}) == 0;
+    });
+    std::vector<VertexHandle> vertices;
+    for (std::uint32_t f : near)
+      for (VertexHandle v : arrays_.faces[f])
+        if (!held[v.idx()] &&
+            std::ranges::all_of(stars_.at(v), [&](std::uint32_t g) { return facets_.of(g) == number_; }))
+          vertices.push_back(v);
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  const Arrays& arrays_;
+  const Stars& stars_;
+  const PlaneFacets& facets_;
+  std::uint32_t number_;
+  Vec3 x_, y_;              // axes in the plane
+  std::vector<Point2> at_;  // by vertex of the surface
+};
+
+/// Vertices that stay wherever they are.
+std::vector<std::uint8_t> held_vertices(const Arrays& arrays) {
+  std::vector<std::uint8_t> held(arrays.points.size(), 0);
+  const auto hold = [&](const auto& vertices) {
+    for (VertexHandle v : vertices) held[v.idx()] = 1;
+  };
+  hold(arrays.locked_vertices);
+  for (const auto& e : arrays.locked_edges) hold(e);
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i)
+    if (arrays.locked[i] || arrays.interface[i]) hold(arrays.faces[i]);
+  return held;
+}
+
+/// Of these faces one set that hangs together at vertices: that of the first.
+Faces first_fold(const Arrays& arrays, const Stars& stars, const Faces& folded) {
+  std::vector<std::uint8_t> is_left(arrays.faces.size(), 0);
+  for (std::uint32_t f : folded) is_left[f] = 1;
+  Faces fold = {folded.front()};
+  is_left[fold.front()] = 0;
+  const auto around = [&](std::span<const std::uint32_t> rim, auto&& reach) {
+    for (std::uint32_t f : rim)
+      for (VertexHandle v : arrays.faces[f])
+        for (std::uint32_t g : stars.at(v)) reach(g);
+  };
+  grow_layers(fold, kAllLayers, around,
+              [&](std::uint32_t f) { return std::exchange(is_left[f], std::uint8_t{0}) != 0; });
+  return fold;
+}
+
+/// Opens the folds of all facets, after its straight edges if `edges` says so.
+class PlaneUnfolder {
+ public:
+  PlaneUnfolder(const Arrays& arrays, const std::function<bool()>& stopped)
+      : arrays_(arrays),
+        stopped_(stopped),
+        stars_(arrays),
+        facets_(arrays),
+        held_(held_vertices(arrays)),
+        points_(arrays.points.begin(), arrays.points.end()) {}
+
+  const std::vector<Vec3>& points() const { return points_; }
+
+  PlanarUnfolding unfold_facets() {
+    PlanarUnfolding done;
+    for (std::uint32_t i = 0; i < facets_.faces().size(); ++i)
+      if (!all_look_alike(facets_.faces()[i])) unfold_facet(i, done);
+    return done;
+  }
+  std::size_t unfold_edges() { return StraightEdges(facets_, stars_, held_, points_.size()).unfold(points_); }
+
+ private:
+  bool stopped() const { return stopped_ && stopped_(); }
+  bool all_look_alike(const Faces& faces) const {
+    Vec3 sum;
+    const auto area = [&](std::uint32_t f) { return scaled_normal(corners(points_, arrays_.faces[f])); };
+    for (std::uint32_t f : faces) sum = sum + area(f);
+    return std::ranges::all_of(faces, [&](std::uint32_t f) { return dot(area(f), sum) > 0; });
+  }
+  void unfold_facet(std::uint32_t number, PlanarUnfolding& done) {
+    const Facet before(arrays_, points_, stars_, facets_, number);
+    Facet now = before;
+    Faces left = now.folded();
+    done.n_folded += left.size();
+    while (!left.empty() && !stopped()) {
+      const Faces fold = first_fold(arrays_, stars_, left);
+      if (now.unfold(fold, held_, [&] { return stopped(); })) {
+        std::erase_if(left, [&](std::uint32_t f) { return !now.is_folded(f); });
+        continue;
+      }
+      done.n_left += fold.size();
+      std::erase_if(left, [&](std::uint32_t f) { return std::ranges::find(fold, f) != fold.end(); });
+    }
+    done.n_left += left.size();
+    done.n_moved += now.move(points_, before);
+  }
+
+  const Arrays& arrays_;
+  const std::function<bool()>& stopped_;
+  Stars stars_;
+  PlaneFacets facets_;
+  std::vector<std::uint8_t> held_;
+  std::vector<Vec3> points_;
+};
+
+}  // namespace
+
+std::optional<std::vector<Vec3>> unfold_planes(const Arrays& arrays, const SurfaceOptions& options,
+                                               const std::function<bool()>& stopped, PlanarUnfolding& done) {
+  done = {};
+  if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
+  PlaneUnfolder facets(arrays, stopped);
+  PlaneUnfolder all = facets;
+  done = facets.unfold_facets();
+  std::vector<Vec3> points = facets.points();
+  if (done.n_left > 0) {  // as where an edge between two walls is folded itself
+    const std::size_t n_on_edges = all.unfold_edges();
+    if (n_on_edges > 0) {
+      PlanarUnfolding more = all.unfold_facets();
+      if (more.n_left < done.n_left) {
+        done = {.n_folded = done.n_folded, .n_left = more.n_left, .n_moved = more.n_moved + n_on_edges};
+        points = all.points();
+      }
+    }
+  }
+  if (done.n_moved == 0) return std::nullopt;
+  return points;
+}
+
+PlanarUnfolding unfold_planes(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy,
+                              const std::function<bool()>& stopped) {
+  PlanarUnfolding done;
+  const auto points = unfold_planes(surface::gather(mesh, options, policy), options, stopped, done);
+  if (!points) return done;
+  for (VertexHandle v : mesh.vertices())
+    if ((*points)[v.idx()] != mesh.point(v)) mesh.set_point(v, (*points)[v.idx()]);
+  return done;
+}
+
+}  // namespace hfr
