@@ -23,7 +23,7 @@ struct FaceRecord {
   std::array<std::uint64_t, 3> v{};
   std::array<std::int32_t, 2> regions{};
   std::int32_t patch = 0;
-  std::uint8_t inward = 0, interface = 0, fixed = 0, locked = 0;
+  std::uint8_t at_invalid = 0, inward = 0, interface = 0, fixed = 0, locked = 0;
 };
 struct PointRecord {
   std::uint64_t number = 0;
@@ -61,6 +61,7 @@ WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options) {
     for (std::size_t k = 0; k < 3; ++k) f.v[k] = number(own.faces[i][k]);
     f.regions = {own.regions[i][0], own.regions[i][1]};
     f.patch = own.patch[i];
+    f.at_invalid = own.at_invalid[i];
     f.inward = own.inward[i];
     f.interface = own.interface[i];
     f.fixed = own.fixed[i];
@@ -91,6 +92,7 @@ WholeSurface gather(DistributedMesh& parts, const SurfaceOptions& options) {
   for (const FaceRecord& f : faces) {
     arrays.faces.push_back({whole.handle(f.v[0]), whole.handle(f.v[1]), whole.handle(f.v[2])});
     arrays.patch.push_back(f.patch);
+    arrays.at_invalid.push_back(f.at_invalid);
     arrays.inward.push_back(f.inward);
     arrays.interface.push_back(f.interface);
     arrays.regions.push_back({f.regions[0], f.regions[1]});
@@ -161,6 +163,7 @@ struct PartSurfaceRun::Impl {
   par::Policy policy;
   SurfaceOptions options;
   std::unique_ptr<PartSurface> surface;
+  std::vector<Triangle> input;   // before plane walls were opened, where they were looked at
   std::vector<Triangle> before;  // where it is to be measured
   double volume = 0;             // enclosed before
   double bound = 0;              // largest distance allowed
@@ -170,7 +173,7 @@ struct PartSurfaceRun::Impl {
 PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& options, bool measure,
                                bool unfold, par::Policy policy, std::vector<PassReport>& passes,
                                const std::function<bool()>& stopped)
-    : impl_(new Impl{parts, policy, options, {}, {}, 0, 0, 0}) {
+    : impl_(new Impl{parts, policy, options, {}, {}, {}, 0, 0, 0}) {
   WholeSurface now = gather(parts, options);
   const auto move = [&](const std::vector<Vec3>& points) {
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -178,12 +181,13 @@ PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& opt
         parts.part().set_point(v, points[i]);
   };
   if (unfold) {  // which keeps the shape: what is measured is against the layers that add up to it
+    if (measure) impl_->input = now.triangles(/*of_boundary=*/false);
     PlanarUnfolding done;
     if (const auto points = unfold_planes(now.arrays, options, stopped, done)) {
       move(*points);
       now = gather(parts, options);
+      passes.push_back(report_of(done));
     }
-    if (done.n_folded > 0) passes.push_back(report_of(done));
   }
   if (measure) {
     impl_->before = now.triangles(/*of_boundary=*/false);
@@ -216,7 +220,8 @@ SurfaceReport PartSurfaceRun::report() const {
   report.feature_edges = surface.n_feature_edges();
   if (impl_->before.empty()) return report;
   const WholeSurface now = gather(impl_->parts, impl_->options);
-  measure_surfaces(impl_->before, now.triangles(/*of_boundary=*/false), impl_->volume,
+  const std::vector<Triangle> after = now.triangles(/*of_boundary=*/false);
+  measure_surfaces(after == impl_->input ? after : impl_->before, after, impl_->volume,
                    enclosed_volume(now.triangles(/*of_boundary=*/true)), impl_->policy, report);
   return report;
 }

@@ -52,9 +52,11 @@ struct RegionChange {
 /// no statistics are asked for. Lengths are in the mesh's units.
 struct SurfaceReport {
   SurfaceMode mode = SurfaceMode::kFrozen;
-  double bound = 0;      ///< largest distance that was allowed
-  double hausdorff = 0;  ///< largest distance of the result from the input or of the input from the result
-  double diagonal = 0;   ///< of the input's bounding box
+  double bound = 0;  ///< largest distance that was allowed
+  /// Largest distance of the result from the input or of the input from the result. The input has its plane
+  /// walls opened here, where they were folded over and that has not been taken back.
+  double hausdorff = 0;
+  double diagonal = 0;  ///< of the bounding box of that input
   /// Distance to allow (SurfaceOptions::hausdorff) for folds of the surface to be unfolded, where what was
   /// allowed does not do; 0 otherwise.
   double unfold_needs = 0;

@@ -57,7 +57,8 @@ std::map<int, double> region_volumes(const TetMesh& mesh) {
 struct SurfaceRun::Impl {
   par::Policy policy;
   bool measure = false;
-  std::vector<Triangle> before;
+  std::vector<Triangle> input;   // before plane walls were opened, where they were looked at
+  std::vector<Triangle> before;  // and after
   double volume = 0;
   std::map<int, double> regions;  // their volumes
   double bound = 0;               // largest distance allowed
@@ -72,8 +73,9 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   impl_->policy = options.policy;
   impl_->measure = options.statistics;
   if (unfold) {  // which keeps the shape: what is measured is against the layers that add up to it
+    if (impl_->measure) impl_->input = surface_triangles(mesh, options.policy);
     const PlanarUnfolding done = unfold_planes(mesh, options.surface, options.policy, stopped);
-    if (done.n_folded > 0) passes.push_back(report_of(done));
+    if (done.n_moved > 0) passes.push_back(report_of(done));
   }
   if (impl_->measure) {
     impl_->before = surface_triangles(mesh, options.policy);
@@ -95,10 +97,10 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
 
 namespace {
 
-PassReport unfolding_report(std::size_t n_folded, std::size_t n_moved) {
+PassReport unfolding_report(const char* op, std::size_t n_folded, std::size_t n_moved) {
   PassReport pass;
   pass.stage = "unfold";
-  pass.op = "surface unfold";
+  pass.op = op;
   pass.iteration = 1;
   pass.seeds = pass.candidates = n_folded;
   pass.winners = n_moved;
@@ -108,10 +110,10 @@ PassReport unfolding_report(std::size_t n_folded, std::size_t n_moved) {
 }  // namespace
 
 PassReport report_of(const SurfaceUnfolding& unfolding) {
-  return unfolding_report(unfolding.n_folded, unfolding.n_moved);
+  return unfolding_report("surface unfold", unfolding.n_folded, unfolding.n_moved);
 }
 PassReport report_of(const PlanarUnfolding& unfolding) {
-  return unfolding_report(unfolding.n_folded, unfolding.n_moved);
+  return unfolding_report("plane unfold", unfolding.n_folded, unfolding.n_moved);
 }
 
 SurfaceMesh* SurfaceRun::get() const { return impl_->surface.get(); }
@@ -125,7 +127,8 @@ SurfaceReport SurfaceRun::report(const TetMesh& mesh) const {
   report.feature_edges = impl_->surface->n_feature_edges();
   if (!impl_->measure) return report;
   const std::vector<Triangle> after = surface_triangles(mesh, impl_->policy);
-  measure_surfaces(impl_->before, after, impl_->volume, enclosed_volume(mesh), impl_->policy, report);
+  measure_surfaces(after == impl_->input ? after : impl_->before, after, impl_->volume, enclosed_volume(mesh),
+                   impl_->policy, report);
   for (const auto& [region, volume] : region_volumes(mesh))
     report.regions.push_back({region, impl_->regions[region], volume});
   return report;

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "Parallel/DisjointSets.hh"
+#include "Quality/CellQuality.hh"
 #include "Surface/InputSurface.hh"
 
 namespace hfr::surface {
@@ -277,6 +278,7 @@ void add_face(const TetMesh& mesh, HalfFaceHandle h, const FixedFaces& fixed, Ar
   const int* label = entry < labels.size() ? &labels.entries()[entry].value : nullptr;
   arrays.faces.push_back({f[0], f[2], f[1]});
   arrays.halffaces.push_back(h);
+  arrays.at_invalid.push_back(orientation(mesh, cell_of(h)) > 0 ? 0 : 1);
   arrays.patch.push_back(label ? *label : 0);
   const bool inward = label && CyclicOrder::key(labels.entries()[entry].vertices) == CyclicOrder::key(f);
   arrays.inward.push_back(inward ? 1 : 0);
@@ -346,6 +348,7 @@ Arrays gather(const TriangleMesh& mesh, const SurfaceOptions& options) {
   arrays.points = mesh.points;
   arrays.faces = mesh.triangles;
   arrays.halffaces.resize(arrays.faces.size());
+  arrays.at_invalid.resize(arrays.faces.size());
   arrays.patch = mesh.patches;
   arrays.patch.resize(arrays.faces.size());
   arrays.inward.resize(arrays.faces.size());

@@ -21,6 +21,7 @@ struct Arrays {
   std::span<const Vec3> points;                    ///< per vertex; those of the mesh
   std::vector<std::array<VertexHandle, 3>> faces;  ///< seen from outside, or from the larger region
   std::vector<HalfFaceHandle> halffaces;           ///< inside of each; invalid where there are no cells
+  std::vector<std::uint8_t> at_invalid;            ///< the cell inside is inverted or flat
   std::vector<int> patch;                          ///< label, 0 = none
   std::vector<std::uint8_t> inward;                ///< the label names the face as seen from inside
   std::vector<std::uint8_t> interface;             ///< between two regions

@@ -7,22 +7,26 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <map>
 #include <numeric>
 #include <span>
 #include <utility>
 
 #include "HalfFace/Layers.hh"
+#include "Surface/FaceStars.hh"
 
 namespace hfr {
 namespace {
 
 using surface::Arrays;
 using surface::corners;
+using surface::FaceStars;
 using surface::scaled_normal;
 using surface::unit;
 
-/// Of the mean edge: what lies no further from a plane is in it.
-constexpr double kInPlane = 1e-9;
+/// Of the mean edge: what lies no further from a plane is in it. The first is for flat mode.
+constexpr double kInFlatPlane = 1e-12, kInPlane = 1e-6;
 /// Rings of faces round a fold whose vertices move: one number after the other is tried, the last is all.
 constexpr std::array<int, 5> kRings = {2, 4, 8, 16, kAllLayers};
 constexpr int kSpreading = 60;  // passes that send each vertex to the mean of its neighbours, at first
@@ -126,32 +130,20 @@ Point2 unfold_star(std::span<const Side> sides, Point2 x) {
 
 using Faces = std::vector<std::uint32_t>;
 
-/// The faces of the whole surface at each vertex.
-class Stars {
- public:
-  explicit Stars(const Arrays& arrays) : first_(arrays.points.size() + 1, 0) {
-    for (const auto& f : arrays.faces)
-      for (VertexHandle v : f) ++first_[v.idx() + 1];
-    std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    faces_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < arrays.faces.size(); ++i)
-      for (VertexHandle v : arrays.faces[i]) faces_[next[v.idx()]++] = static_cast<std::uint32_t>(i);
-  }
-  std::span<const std::uint32_t> at(VertexHandle v) const {
-    return {faces_.data() + first_[v.idx()], first_[v.idx() + 1] - first_[v.idx()]};
-  }
-
- private:
-  std::vector<std::size_t> first_;
-  Faces faces_;
-};
+/// Tells the faces at the vertices of some faces, for grow_layers().
+auto faces_round(const Arrays& arrays, const FaceStars& stars) {
+  return [&](std::span<const std::uint32_t> rim, auto&& reach) {
+    for (std::uint32_t f : rim)
+      for (VertexHandle v : arrays.faces[f])
+        for (std::uint32_t g : stars.at(v)) reach(g);
+  };
+}
 
 /// Plane facets: sets of faces that hang together over edges of two faces each, between what has the same
 /// labels, in one plane; whichever way they look. Each begins at its largest face.
 class PlaneFacets {
  public:
-  explicit PlaneFacets(const Arrays& arrays) : edges_(surface::find_edges(arrays)) {
+  PlaneFacets(const Arrays& arrays, SurfaceMode mode) : edges_(surface::find_edges(arrays)) {
     std::vector<std::array<std::uint32_t, 3>> next(arrays.faces.size(), {kNone, kNone, kNone});
     for (const surface::Edge& e : edges_)
       if (may_be_inside(arrays, e))
@@ -161,7 +153,7 @@ class PlaneFacets {
     Faces order(arrays.faces.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, std::ranges::greater(), [&](std::uint32_t f) { return area[f]; });
-    tolerance_ = kInPlane * surface::mean_edge(arrays);
+    tolerance_ = (mode == SurfaceMode::kFlat ? kInFlatPlane : kInPlane) * surface::mean_edge(arrays);
     number_.assign(arrays.faces.size(), kNone);
     for (std::uint32_t first : order) {
       if (number_[first] != kNone) continue;
@@ -208,10 +200,31 @@ class PlaneFacets {
   double tolerance_ = 0;
 };
 
+/// The points, and what they were since it was asked for last.
+class Points {
+ public:
+  explicit Points(std::span<const Vec3> points) : points_(points.begin(), points.end()) {}
+
+  const std::vector<Vec3>& get() const { return points_; }
+  void move(VertexHandle v, Vec3 by) {
+    before_.emplace_back(v, points_[v.idx()]);
+    points_[v.idx()] = points_[v.idx()] + by;
+  }
+  void keep() { before_.clear(); }
+  void put_back() {
+    for (auto at = before_.rbegin(); at != before_.rend(); ++at) points_[at->first.idx()] = at->second;
+    before_.clear();
+  }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<std::pair<VertexHandle, Vec3>> before_;
+};
+
 /// Straight edges between two planes, from corner to corner. Their inner vertices may slide along them.
 class StraightEdges {
  public:
-  StraightEdges(const PlaneFacets& facets, const Stars& stars, std::span<const std::uint8_t> held,
+  StraightEdges(const PlaneFacets& facets, const FaceStars& stars, std::span<const std::uint8_t> held,
                 std::size_t n_vertices)
       : facets_(facets), stars_(stars), held_(held), rim_(n_vertices) {
     for (std::uint32_t i = 0; i < facets.edges().size(); ++i)
@@ -219,18 +232,28 @@ class StraightEdges {
         for (VertexHandle v : {e.a, e.b}) rim_[v.idx()].push_back(i);
   }
 
-  /// Puts vertices that have passed one another back in order, each edge between its ends; returns how many
-  /// have moved.
-  std::size_t unfold(std::span<Vec3> points) const {
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < rim_.size(); ++i) {
-      if (slides(VertexHandle(i))) continue;
-      for (std::uint32_t first : rim_[i]) {
-        const std::vector<VertexHandle> chain = chain_from(VertexHandle(i), first);
-        if (chain.size() > 2 && chain.front() < chain.back()) n += unfold(chain, points);
+  /// Puts vertices that have passed one another back in order along the edges of a facet, each between its
+  /// ends. Returns the facets whose rims have changed, ascending.
+  std::vector<std::uint32_t> unfold(std::uint32_t facet, const Arrays& arrays, Points& points) const {
+    std::vector<VertexHandle> vertices;
+    for (std::uint32_t f : facets_.faces()[facet])
+      std::ranges::copy_if(arrays.faces[f], std::back_inserter(vertices),
+                           [&](VertexHandle v) { return !rim_[v.idx()].empty() && !slides(v); });
+    std::ranges::sort(vertices);
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    std::vector<std::uint32_t> changed;
+    for (VertexHandle v : vertices) {
+      for (std::uint32_t first : rim_[v.idx()]) {
+        const surface::Edge& e = facets_.edges()[first];
+        if (!e.manifold || (facets_.of(e.f[0]) != facet && facets_.of(e.f[1]) != facet)) continue;
+        const std::vector<VertexHandle> chain = chain_from(v, first);
+        if (chain.size() < 3 || !(chain.front() < chain.back()) || !unfold(chain, points)) continue;
+        for (std::uint32_t f : e.f) changed.push_back(facets_.of(f));
       }
     }
-    return n;
+    std::ranges::sort(changed);
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    return changed;
   }
 
  private:
@@ -240,7 +263,7 @@ class StraightEdges {
     std::array<std::array<std::uint32_t, 2>, 2> sides;
     for (std::size_t i = 0; i < 2; ++i) {
       const surface::Edge& e = facets_.edges()[rim[i]];
-      if (!e.manifold || e.locked) return false;
+      if (!e.manifold) return false;
       sides[i] = {facets_.of(e.f[0]), facets_.of(e.f[1])};
       std::ranges::sort(sides[i]);
     }
@@ -259,21 +282,22 @@ class StraightEdges {
       edge = rim[0] == edge ? rim[1] : rim[0];
     }
   }
-  /// As few vertices as have room there are spread evenly: half of what all of the edge would have.
-  std::size_t unfold(const std::vector<VertexHandle>& chain, std::span<Vec3> points) const {
-    const Vec3 origin = points[chain.front().idx()];
-    const Vec3 along = points[chain.back().idx()] - origin;
+  /// Spreads as few vertices as have half the room there that all of the edge would give them evenly; false
+  /// where none moves.
+  bool unfold(const std::vector<VertexHandle>& chain, Points& points) const {
+    const Vec3 origin = points.get()[chain.front().idx()];
+    const Vec3 along = points.get()[chain.back().idx()] - origin;
     const double length = norm(along);
     const Vec3 axis = unit(along);
     std::vector<double> at;
     for (VertexHandle v : chain) {
-      const Vec3 p = points[v.idx()] - origin;
+      const Vec3 p = points.get()[v.idx()] - origin;
       at.push_back(dot(p, axis));
-      if (!(norm(p - at.back() * axis) <= facets_.tolerance())) return 0;
+      if (!(norm(p - at.back() * axis) <= facets_.tolerance())) return false;
     }
     const std::size_t last = chain.size() - 1;
     const double least = 0.5 * length / static_cast<double>(last);
-    if (!(least > facets_.tolerance())) return 0;
+    if (!(least > facets_.tolerance())) return false;
     const std::vector<double> before = at;
     for (std::size_t i = 0; i < last; ++i) {
       if (at[i + 1] > at[i]) continue;
@@ -287,29 +311,35 @@ class StraightEdges {
       for (std::size_t k = low + 1; k < high; ++k) at[k] = from + static_cast<double>(k - low) * gap;
       i = high - 1;  // what lies before has stayed in order
     }
-    std::size_t n = 0;
-    for (std::size_t i = 1; i < last; ++i) {
-      if (at[i] == before[i]) continue;
-      points[chain[i].idx()] = points[chain[i].idx()] + (at[i] - before[i]) * axis;
-      ++n;
-    }
-    return n;
+    for (std::size_t i = 1; i < last; ++i)
+      if (at[i] != before[i]) points.move(chain[i], (at[i] - before[i]) * axis);
+    return at != before;
   }
 
   const PlaneFacets& facets_;
-  const Stars& stars_;
+  const FaceStars& stars_;
   std::span<const std::uint8_t> held_;
   std::vector<std::vector<std::uint32_t>> rim_;  // by vertex, the edges of its rims
+};
+
+/// What facets share, so that each takes as long as it is large.
+struct Scratch {
+  std::vector<std::uint32_t> number;   ///< per vertex: that within the facet at hand
+  std::vector<std::uint8_t> is_asked;  ///< per face: 0 between uses
 };
 
 /// One plane facet, seen from the side to which most of its area looks.
 class Facet {
  public:
-  Facet(const Arrays& arrays, std::span<const Vec3> points, const Stars& stars, const PlaneFacets& facets,
-        std::uint32_t number)
-      : arrays_(arrays), stars_(stars), facets_(facets), number_(number) {
-    Vec3 sum;
+  Facet(const Arrays& arrays, std::span<const Vec3> points, const FaceStars& stars, const PlaneFacets& facets,
+        std::uint32_t number, std::span<const std::uint8_t> held, Scratch& scratch)
+      : arrays_(arrays), stars_(stars), facets_(facets), number_(number), scratch_(scratch) {
     const Faces& faces = facets.faces()[number];
+    for (std::uint32_t f : faces)
+      vertices_.insert(vertices_.end(), arrays.faces[f].begin(), arrays.faces[f].end());
+    std::ranges::sort(vertices_);
+    vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+    Vec3 sum;
     std::uint32_t largest = faces.front();
     const auto area = [&](std::uint32_t f) { return scaled_normal(corners(points, arrays_.faces[f])); };
     for (std::uint32_t f : faces) {
@@ -317,52 +347,69 @@ class Facet {
       if (norm2(area(f)) > norm2(area(largest))) largest = f;
     }
     const Triangle t = corners(points, arrays_.faces[largest]);
-    at_.resize(points.size());
     Vec3 up = unit(scaled_normal(t));
     if (dot(sum, up) < 0) up = -1.0 * up;
     x_ = unit(t[1] - t[0]);
     y_ = cross(up, x_);
-    for (std::uint32_t f : faces)
-      for (VertexHandle v : arrays_.faces[f]) {
-        const Vec3 p = points[v.idx()] - t[0];
-        at_[v.idx()] = {dot(p, x_), dot(p, y_)};
-      }
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const VertexHandle v = vertices_[i];
+      scratch.number[v.idx()] = static_cast<std::uint32_t>(i);
+      const Vec3 p = points[v.idx()] - t[0];
+      at_.push_back({dot(p, x_), dot(p, y_)});
+      moves_.push_back(!held[v.idx()] && std::ranges::all_of(stars.at(v), [&](std::uint32_t g) {
+        return facets.of(g) == number;
+      }));
+    }
+    before_ = at_;
   }
 
-  /// Its faces that look the wrong way or have no area.
-  Faces folded() const {
-    Faces found;
-    std::ranges::copy_if(facets_.faces()[number_], std::back_inserter(found),
-                         [&](std::uint32_t f) { return is_folded(f); });
-    return found;
-  }
   bool is_folded(std::uint32_t f) const {
     const auto& v = arrays_.faces[f];
     const Side side{at(v[0]), at(v[1])};
     return !(side.twice_area(at(v[2])) > kLeastArea * regular_area(side.sum2(at(v[2]))));
   }
-  /// Moves the vertices round one fold that nothing holds until no face at them is folded, in as few rings as
-  /// that takes; false, and nothing moves, where no number of rings does.
-  bool unfold(const Faces& fold, std::span<const std::uint8_t> held, const std::function<bool()>& stopped) {
+  /// Its faces that look the wrong way or have no area, in sets that hang together at vertices.
+  std::vector<Faces> folds() const {
+    Faces folded;
+    std::ranges::copy_if(facets_.faces()[number_], std::back_inserter(folded),
+                         [&](std::uint32_t f) { return is_folded(f); });
+    for (std::uint32_t f : folded) scratch_.is_asked[f] = 1;
+    std::vector<Faces> folds;
+    for (std::uint32_t first : folded) {
+      if (!std::exchange(scratch_.is_asked[first], std::uint8_t{0})) continue;
+      grow_layers(folds.emplace_back(1, first), kAllLayers, faces_round(arrays_, stars_),
+                  [&](std::uint32_t f) { return std::exchange(scratch_.is_asked[f], std::uint8_t{0}) != 0; });
+    }
+    return folds;
+  }
+  /// Moves the vertices round one fold until no face at them is folded, in as few rings as that takes; false,
+  /// and nothing moves, where no number of rings does.
+  bool unfold(const Faces& fold, const std::function<bool()>& stopped) {
+    // A face that none of its vertices can open stays a fold.
+    const auto may_open = [&](std::uint32_t f) {
+      return std::ranges::any_of(arrays_.faces[f], [&](VertexHandle v) { return moves(v); });
+    };
+    if (!std::ranges::all_of(fold, may_open)) return false;
     std::size_t n_before = 0;
     for (int rings : kRings) {
-      const std::vector<VertexHandle> vertices = movable(fold, rings, held);
+      if (rings == kAllLayers && all_are_vain_) return false;
+      const std::vector<VertexHandle> vertices = movable(fold, rings);
       if (vertices.size() == n_before) return false;
       n_before = vertices.size();
-      if (unfold(fold, vertices, stopped)) return true;
+      if (unfold(fold, vertices, stopped)) {
+        all_are_vain_ = false;
+        return true;
+      }
+      all_are_vain_ = all_are_vain_ || rings == kAllLayers;
     }
     return false;
   }
-  /// Brings the points to where they are now since `before`; returns how many have moved.
-  std::size_t move(std::span<Vec3> points, const Facet& before) const {
-    std::size_t n = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const Point2 by = at_[i] - before.at_[i];
-      if (by == Point2{}) continue;
-      points[i] = points[i] + (by.x * x_ + by.y * y_);
-      ++n;
+  /// Brings the points to where they are now.
+  void move(Points& points) const {
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const Point2 by = at_[i] - before_[i];
+      if (by != Point2{}) points.move(vertices_[i], by.x * x_ + by.y * y_);
     }
-    return n;
   }
 
  private:
@@ -372,14 +419,18 @@ class Facet {
     for (VertexHandle v : vertices) faces.insert(faces.end(), stars_.at(v).begin(), stars_.at(v).end());
     std::ranges::sort(faces);
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    const std::vector<Point2> before = at_;
+    std::vector<Point2> before;
+    for (VertexHandle v : vertices) before.push_back(at(v));
+    const auto put_back = [&] {
+      for (std::size_t i = 0; i < vertices.size(); ++i) at(vertices[i]) = before[i];
+    };
     for (int spreading : {0, kSpreading}) {
-      at_ = before;
-      for (int pass = 0; pass < spreading; ++pass)
-        for (VertexHandle v : vertices) at_[v.idx()] = middle_of_neighbours(v);
+      put_back();
+      for (int pass = 0; pass < spreading && !stopped(); ++pass)
+        for (VertexHandle v : vertices) at(v) = middle_of_neighbours(v);
       std::size_t fewest = faces.size() + 1;
       for (int pass = 0, idle = 0; pass < kPasses && idle < kPatience && !stopped(); ++pass, ++idle) {
-        for (VertexHandle v : vertices) at_[v.idx()] = unfold_star(sides_of(v), at_[v.idx()]);
+        for (VertexHandle v : vertices) at(v) = unfold_star(sides_of(v), at(v));
         const auto n = static_cast<std::size_t>(
             std::ranges::count_if(faces, [&](std::uint32_t f) { return is_folded(f); }));
         if (n == 0) return true;
@@ -387,10 +438,13 @@ class Facet {
         fewest = std::min(fewest, n);
       }
     }
-    at_ = before;
+    put_back();
     return false;
   }
-  Point2 at(VertexHandle v) const { return at_[v.idx()]; }
+  Point2& at(VertexHandle v) { return at_[scratch_.number[v.idx()]]; }
+  Point2 at(VertexHandle v) const { return at_[scratch_.number[v.idx()]]; }
+  /// Whether all faces of the vertex are in the facet and nothing holds it.
+  bool moves(VertexHandle v) const { return moves_[scratch_.number[v.idx()]]; }
   std::vector<Side> sides_of(VertexHandle v) const {
     std::vector<Side> sides;
     for (std::uint32_t f : stars_.at(v)) {
@@ -406,38 +460,34 @@ class Facet {
     for (const Side& side : sides) sum = sum + (side.a + side.b);
     return (0.5 / static_cast<double>(sides.size())) * sum;
   }
-  /// Vertices of these faces and of so many rings of the facet's faces round them, all of whose faces are in
-  /// the facet and that are not held; ascending.
-  std::vector<VertexHandle> movable(std::span<const std::uint32_t> folds, int rings,
-                                    std::span<const std::uint8_t> held) const {
-    Faces near(folds.begin(), folds.end());
-    std::vector<std::uint8_t> seen(arrays_.faces.size(), 0);
-    for (std::uint32_t f : near) seen[f] = 1;
-    const auto around = [&](std::span<const std::uint32_t> rim, auto&& reach) {
-      for (std::uint32_t f : rim)
-        for (VertexHandle v : arrays_.faces[f])
-          for (std::uint32_t g : stars_.at(v)) reach(g);
-    };
-    grow_layers(near, rings, around, [&](std::uint32_t f) {
-      return facets_.of(f) == number_ && std::exchange(seen[f], std::uint8_t{1}) == 0;
+  /// Vertices that move, of these faces and of so many rings of the facet's faces round them; ascending.
+  std::vector<VertexHandle> movable(const Faces& fold, int rings) const {
+    Faces near = fold;
+    for (std::uint32_t f : near) scratch_.is_asked[f] = 1;
+    grow_layers(near, rings, faces_round(arrays_, stars_), [&](std::uint32_t f) {
+      return facets_.of(f) == number_ && std::exchange(scratch_.is_asked[f], std::uint8_t{1}) == 0;
     });
     std::vector<VertexHandle> vertices;
-    for (std::uint32_t f : near)
-      for (VertexHandle v : arrays_.faces[f])
-        if (!held[v.idx()] &&
-            std::ranges::all_of(stars_.at(v), [&](std::uint32_t g) { return facets_.of(g) == number_; }))
-          vertices.push_back(v);
+    for (std::uint32_t f : near) {
+      scratch_.is_asked[f] = 0;
+      std::ranges::copy_if(arrays_.faces[f], std::back_inserter(vertices),
+                           [&](VertexHandle v) { return moves(v); });
+    }
     std::ranges::sort(vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     return vertices;
   }
 
   const Arrays& arrays_;
-  const Stars& stars_;
+  const FaceStars& stars_;
   const PlaneFacets& facets_;
   std::uint32_t number_;
-  Vec3 x_, y_;              // axes in the plane
-  std::vector<Point2> at_;  // by vertex of the surface
+  Scratch& scratch_;
+  std::vector<VertexHandle> vertices_;  // ascending
+  std::vector<Point2> at_, before_;     // of these
+  std::vector<std::uint8_t> moves_;
+  Vec3 x_, y_;                 // axes in the plane
+  bool all_are_vain_ = false;  // moving all vertices has not helped as they stand
 };
 
 /// Vertices that stay wherever they are.
@@ -453,75 +503,118 @@ std::vector<std::uint8_t> held_vertices(const Arrays& arrays) {
   return held;
 }
 
-/// Of these faces one set that hangs together at vertices: that of the first.
-Faces first_fold(const Arrays& arrays, const Stars& stars, const Faces& folded) {
-  std::vector<std::uint8_t> is_left(arrays.faces.size(), 0);
-  for (std::uint32_t f : folded) is_left[f] = 1;
-  Faces fold = {folded.front()};
-  is_left[fold.front()] = 0;
-  const auto around = [&](std::span<const std::uint32_t> rim, auto&& reach) {
-    for (std::uint32_t f : rim)
-      for (VertexHandle v : arrays.faces[f])
-        for (std::uint32_t g : stars.at(v)) reach(g);
-  };
-  grow_layers(fold, kAllLayers, around,
-              [&](std::uint32_t f) { return std::exchange(is_left[f], std::uint8_t{0}) != 0; });
-  return fold;
-}
-
-/// Opens the folds of all facets, after its straight edges if `edges` says so.
+/// Opens the folds of all facets, then those that only straight edges have room for.
 class PlaneUnfolder {
  public:
-  PlaneUnfolder(const Arrays& arrays, const std::function<bool()>& stopped)
+  PlaneUnfolder(const Arrays& arrays, SurfaceMode mode, const std::function<bool()>& stopped)
       : arrays_(arrays),
-        stopped_(stopped),
+        stopped_([&stopped] { return stopped && stopped(); }),
         stars_(arrays),
-        facets_(arrays),
+        facets_(arrays, mode),
         held_(held_vertices(arrays)),
-        points_(arrays.points.begin(), arrays.points.end()) {}
+        points_(arrays.points),
+        scratch_{std::vector<std::uint32_t>(arrays.points.size(), 0),
+                 std::vector<std::uint8_t>(arrays.faces.size(), 0)} {}
 
-  const std::vector<Vec3>& points() const { return points_; }
+  const std::vector<Vec3>& points() const { return points_.get(); }
 
-  PlanarUnfolding unfold_facets() {
+  PlanarUnfolding unfold() {
     PlanarUnfolding done;
-    for (std::uint32_t i = 0; i < facets_.faces().size(); ++i)
-      if (!all_look_alike(facets_.faces()[i])) unfold_facet(i, done);
+    for (std::uint32_t i = 0; i < facets_.faces().size() && !stopped_(); ++i) {
+      if (all_look_alike(facets_.faces()[i])) continue;
+      const Outcome outcome = unfold(i, /*is_rim_moved=*/false);
+      done.n_folded += outcome.n_folded;
+      outcomes_[i] = outcome;
+    }
+    points_.keep();
+    if (std::ranges::any_of(outcomes_, [](const auto& o) { return o.second.n_left > 0; })) unfold_edges();
+    for (const auto& [facet, outcome] : outcomes_) done.n_left += outcome.n_left;
+    for (std::size_t i = 0; i < points().size(); ++i)
+      done.n_moved += points()[i] == arrays_.points[i] ? 0 : 1;
     return done;
   }
-  std::size_t unfold_edges() { return StraightEdges(facets_, stars_, held_, points_.size()).unfold(points_); }
 
  private:
-  bool stopped() const { return stopped_ && stopped_(); }
+  struct Outcome {
+    std::size_t n_folded = 0, n_left = 0;
+    bool has_slit = false;  ///< what looks like a fold, and has sound cells behind it
+  };
+
   bool all_look_alike(const Faces& faces) const {
     Vec3 sum;
-    const auto area = [&](std::uint32_t f) { return scaled_normal(corners(points_, arrays_.faces[f])); };
+    const auto area = [&](std::uint32_t f) { return scaled_normal(corners(points(), arrays_.faces[f])); };
     for (std::uint32_t f : faces) sum = sum + area(f);
     return std::ranges::all_of(faces, [&](std::uint32_t f) { return dot(area(f), sum) > 0; });
   }
-  void unfold_facet(std::uint32_t number, PlanarUnfolding& done) {
-    const Facet before(arrays_, points_, stars_, facets_, number);
-    Facet now = before;
-    Faces left = now.folded();
-    done.n_folded += left.size();
-    while (!left.empty() && !stopped()) {
-      const Faces fold = first_fold(arrays_, stars_, left);
-      if (now.unfold(fold, held_, [&] { return stopped(); })) {
-        std::erase_if(left, [&](std::uint32_t f) { return !now.is_folded(f); });
+  /// The two sides of a slit lie on one another as the layers of a fold do; but cells behind what a fold has
+  /// turned over are inverted.
+  bool is_fold(const Faces& faces) const {
+    const auto n = std::ranges::count_if(faces, [&](std::uint32_t f) { return arrays_.at_invalid[f] != 0; });
+    return 2 * static_cast<std::size_t>(n) > faces.size();
+  }
+  /// `is_rim_moved`: which folds faces of any cells.
+  Outcome unfold(std::uint32_t number, bool is_rim_moved) {
+    Facet facet(arrays_, points(), stars_, facets_, number, held_, scratch_);
+    Outcome outcome;
+    std::vector<Faces> folds = facet.folds();
+    const std::size_t n_all = folds.size();
+    if (!is_rim_moved) std::erase_if(folds, [&](const Faces& fold) { return !is_fold(fold); });
+    outcome.has_slit = folds.size() < n_all;
+    const auto is_open = [&](const Faces& fold) {
+      return std::ranges::none_of(fold, [&](std::uint32_t f) { return facet.is_folded(f); });
+    };
+    for (const Faces& fold : folds) {
+      outcome.n_folded += fold.size();
+      if (!stopped_() && !is_open(fold)) facet.unfold(fold, stopped_);
+    }
+    for (const Faces& fold : folds)
+      outcome.n_left += static_cast<std::size_t>(
+          std::ranges::count_if(fold, [&](std::uint32_t f) { return facet.is_folded(f); }));
+    facet.move(points_);
+    return outcome;
+  }
+  /// Facet by facet of those with folds left: puts the vertices of its straight edges back in order, and
+  /// unfolds what that has changed. It stays where fewer faces are folded.
+  void unfold_edges() {
+    const StraightEdges edges(facets_, stars_, held_, arrays_.points.size());
+    std::vector<std::uint32_t> facets;
+    for (const auto& [facet, outcome] : outcomes_)
+      if (outcome.n_left > 0) facets.push_back(facet);
+    for (std::uint32_t facet : facets) {
+      if (stopped_() || outcomes_[facet].n_left == 0) continue;
+      std::map<std::uint32_t, Outcome> now;
+      std::size_t n_before = 0, n_left = 0;
+      bool has_slit = false;
+      for (std::uint32_t i : edges.unfold(facet, arrays_, points_)) {
+        const auto known = outcomes_.find(i);
+        if (known != outcomes_.end()) {
+          n_before += known->second.n_left;
+          has_slit = has_slit || known->second.has_slit;
+        }
+        now[i];
+      }
+      for (auto& [i, outcome] : now) {
+        if (has_slit) break;
+        outcome = unfold(i, /*is_rim_moved=*/true);
+        n_left += outcome.n_left;
+      }
+      if (has_slit || stopped_() || n_left >= n_before) {
+        points_.put_back();
         continue;
       }
-      done.n_left += fold.size();
-      std::erase_if(left, [&](std::uint32_t f) { return std::ranges::find(fold, f) != fold.end(); });
+      points_.keep();
+      for (const auto& [i, outcome] : now) outcomes_[i] = outcome;
     }
-    done.n_left += left.size();
-    done.n_moved += now.move(points_, before);
   }
 
   const Arrays& arrays_;
-  const std::function<bool()>& stopped_;
-  Stars stars_;
+  std::function<bool()> stopped_;
+  FaceStars stars_;
   PlaneFacets facets_;
   std::vector<std::uint8_t> held_;
-  std::vector<Vec3> points_;
+  Points points_;
+  Scratch scratch_;
+  std::map<std::uint32_t, Outcome> outcomes_;  // of facets whose faces do not all look alike
 };
 
 }  // namespace
@@ -530,22 +623,10 @@ std::optional<std::vector<Vec3>> unfold_planes(const Arrays& arrays, const Surfa
                                                const std::function<bool()>& stopped, PlanarUnfolding& done) {
   done = {};
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
-  PlaneUnfolder facets(arrays, stopped);
-  PlaneUnfolder all = facets;
-  done = facets.unfold_facets();
-  std::vector<Vec3> points = facets.points();
-  if (done.n_left > 0) {  // as where an edge between two walls is folded itself
-    const std::size_t n_on_edges = all.unfold_edges();
-    if (n_on_edges > 0) {
-      PlanarUnfolding more = all.unfold_facets();
-      if (more.n_left < done.n_left) {
-        done = {.n_folded = done.n_folded, .n_left = more.n_left, .n_moved = more.n_moved + n_on_edges};
-        points = all.points();
-      }
-    }
-  }
+  PlaneUnfolder unfolder(arrays, options.mode, stopped);
+  done = unfolder.unfold();
   if (done.n_moved == 0) return std::nullopt;
-  return points;
+  return unfolder.points();
 }
 
 PlanarUnfolding unfold_planes(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy,

@@ -14,18 +14,24 @@
 namespace hfr {
 
 struct PlanarUnfolding {
-  std::size_t n_folded = 0;  ///< faces of plane facets that look the wrong way, or have no area
+  std::size_t n_folded = 0;  ///< faces in folds of plane facets
   std::size_t n_left = 0;    ///< of these, after it
   std::size_t n_moved = 0;   ///< vertices
 };
 
 /// Where a plane facet is folded over onto itself, as a wall whose vertices stayed while the body that ends
 /// at it moved, its inner vertices move within the plane until all of its triangles look the same way. Then
-/// they cover what the rim of the facet encloses, once, which is what the layers of the fold add up to: the
-/// shape is that of the rim, and no distance is asked for, even where the fold reached out over the rim.
-/// The rim stays, as does what is fixed or labelled otherwise; the vertices round one fold move if that
-/// leaves none of it, else they stay. Cells may become inverted by it: to be done before these are mended.
-/// Nothing is done in frozen mode. `stopped`, asked often: true ends it with the folds that are done.
+/// they cover what the rim of the facet encloses, once where it does not cross itself, which is what the
+/// layers of the fold add up to: no distance is asked for, even where the fold reached out over the rim.
+/// Where that leaves folds, vertices of straight edges between two facets are put back in order along them.
+///
+/// A facet is what hangs together over edges of two faces with the same labels, within 1e-12 of the mean edge
+/// of a plane in flat mode, 1e-6 in free mode. A fold is a set of its faces that look the other way than most
+/// of its area, or have less than 1e-6 of the area of a regular triangle, if most of them are faces of
+/// inverted or flat cells: the two sides of a slit are none. The vertices round a fold move if that leaves
+/// none of it, else they stay, as does what is fixed, periodic or of an interface. Cells may become inverted
+/// by it: to be done before these are mended. Nothing is done in frozen mode. `stopped`, asked often: true
+/// ends it with the folds that are done.
 PlanarUnfolding unfold_planes(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {},
                               const std::function<bool()>& stopped = {});
 /// The same of a surface as arrays: the points of all vertices, nothing where none moves.

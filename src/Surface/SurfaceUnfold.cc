@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "HalfFace/Layers.hh"
+#include "Surface/FaceStars.hh"
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
 #include "Surface/SurfaceLayers.hh"
@@ -21,6 +22,7 @@ namespace {
 
 using surface::Arrays;
 using surface::corners;
+using surface::FaceStars;
 using surface::scaled_normal;
 using surface::SurfaceLayers;
 using surface::unit;
@@ -39,27 +41,6 @@ constexpr double kAgainst = -0.2;
 constexpr double kOneSided = 0.2;
 /// Share of the distance allowed that unfolding may use up.
 constexpr double kShare = 0.8;
-
-/// Which faces use a vertex.
-class Stars {
- public:
-  explicit Stars(const Arrays& arrays) : first_(arrays.points.size() + 1, 0) {
-    for (const auto& f : arrays.faces)
-      for (VertexHandle v : f) ++first_[v.idx() + 1];
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    faces_.resize(first_.back());
-    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-    for (std::size_t i = 0; i < arrays.faces.size(); ++i)
-      for (VertexHandle v : arrays.faces[i]) faces_[next[v.idx()]++] = static_cast<std::uint32_t>(i);
-  }
-  std::span<const std::uint32_t> at(VertexHandle v) const {
-    return {faces_.data() + first_[v.idx()], first_[v.idx() + 1] - first_[v.idx()]};
-  }
-
- private:
-  std::vector<std::size_t> first_;
-  std::vector<std::uint32_t> faces_;
-};
 
 /// The surface of one call, whose points are its own.
 class Unfolder {
@@ -263,7 +244,7 @@ class Unfolder {
 
   const Arrays& arrays_;
   const SurfaceOptions& options_;
-  Stars stars_;
+  FaceStars stars_;
   double reach_;  // of layers
   std::vector<Vec3> points_;
 };

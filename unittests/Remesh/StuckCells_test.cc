@@ -36,6 +36,31 @@ TEST(StuckCells, NoneAreBelowWhatAllMeet) {
   EXPECT_TRUE(stuck_cells(mesh, 5, {}).empty());
 }
 
+TEST(StuckCells, WhatIsProvenIsTheSameWithoutALookAtEdgesWhereNothingCanBe) {
+  std::size_t n_proofs = 0;
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (const TetMesh& mesh :
+         {jittered(4, 0.2, seed), wedge(2.0 * static_cast<double>(seed)), kuhn_box(3)}) {
+      const std::vector<std::uint8_t> frozen = constrained_vertices(mesh);
+      std::vector<StuckCell> cells = without_proofs(mesh, cells_below(mesh, 60, {}));
+      ASSERT_TRUE(are_positive(cells));
+      for (double by : {0.01, 2.0, 30.0}) {
+        std::vector<StuckCell> quick = cells, all = cells;
+        prove_kept(mesh, frozen, quick, by, /*all_positive=*/true);
+        prove_kept(mesh, frozen, all, by, /*all_positive=*/false);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+          EXPECT_EQ(quick[i].reason, all[i].reason);
+          EXPECT_EQ(quick[i].ceiling, all[i].ceiling);
+          EXPECT_EQ(quick[i].a, all[i].a);
+          EXPECT_EQ(quick[i].b, all[i].b);
+          n_proofs += is_proof(all[i].reason) ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(n_proofs, 100U);
+}
+
 TEST(StuckCells, EveryCellBelowTheAngleIsListedOnce) {
   const TetMesh mesh = jittered(4, 0.24, 3);
   const auto stuck = stuck_cells(mesh, 30, {});

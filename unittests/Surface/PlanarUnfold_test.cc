@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include "Remesh/Improve.hh"
@@ -201,6 +202,75 @@ TEST(PlanarUnfold, VerticesStayOnTheirSideOfABorderOfLabels) {
     }
   }
   EXPECT_EQ(n_on_seam, 8U);
+}
+
+/// A block on a wider one, all of it one region, that stands free from x = 2 to its end at x = 3.
+TEST(PlanarUnfold, TheSidesOfASlitAreNoFold) {
+  const generate::Arrays box = generate::box({4, 2, 2}, {0, 0, 0}, {4, 2, 2});
+  std::vector<Vec3> points = box.points;
+  std::vector<std::array<Index, 4>> cells;
+  std::map<Index, Index> doubled;
+  for (auto t : box.cells) {
+    Vec3 middle;
+    for (Index v : t) middle = middle + 0.25 * box.points[v];
+    if (middle.z > 1 && middle.x > 3) continue;
+    for (Index& v : t) {
+      if (!(middle.z > 1 && box.points[v].z == 1 && box.points[v].x > 2)) continue;
+      const auto [at, is_new] = doubled.try_emplace(v, static_cast<Index>(points.size()));
+      if (is_new) points.push_back(box.points[v]);
+      v = at->second;
+    }
+    cells.push_back(t);
+  }
+  TetMesh mesh = build(points, cells);
+  mesh.collect_garbage({.drop_unused_vertices = true});
+  ASSERT_EQ(doubled.size(), 3U);
+  for (SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    SurfaceOptions options;
+    options.mode = mode;
+    const PlanarUnfolding done = unfold_planes(mesh, options);
+    EXPECT_EQ(done.n_folded, 0U);
+    EXPECT_EQ(done.n_moved, 0U);
+  }
+}
+
+TEST(PlanarUnfold, OfTwoLidsTheOneThatCannotOpenStaysAsItIs) {
+  TetMesh folded = built(generate::box({4, 4, 12}, {0, 0, 0}, {4, 4, 12}));
+  SurfaceOptions options = flat();
+  for (VertexHandle v : folded.vertices()) {
+    const Vec3 p = folded.point(v);
+    if (p.z == 0) folded.set_point(v, {p.x, p.y, 1.5});
+    if (p.z == 12) folded.set_point(v, {p.x, p.y, 10.5});
+    if (p.z > 0 && p.z < 3) options.fixed_vertices.push_back(v);
+  }
+  TetMesh mesh = folded;
+  const PlanarUnfolding done = unfold_planes(mesh, options);
+  EXPECT_EQ(done.n_left, done.n_folded / 2);
+  for (VertexHandle v : mesh.vertices()) {
+    const Vec3 p = folded.point(v), q = mesh.point(v);
+    if (p.z <= 3) {
+      EXPECT_EQ(q, p);
+    } else {
+      EXPECT_LE(q.z, p.x > 0 && p.x < 4 && p.y > 0 && p.y < 4 ? 11 : 10.5);
+    }
+  }
+}
+
+TEST(PlanarUnfold, AStopOnTheWayLeavesWallsThatAreOpenOrAsTheyWere) {
+  const TetMesh folded = with_lowered_lid(5);
+  std::size_t n_asked = 0;
+  TetMesh whole = folded;
+  unfold_planes(whole, flat(), {}, [&] { return ++n_asked == 0; });
+  ASSERT_GT(n_asked, 20U);
+  for (std::size_t last = 1; last < n_asked; last += n_asked / 20) {
+    TetMesh mesh = folded;
+    std::size_t n = 0;
+    const PlanarUnfolding done = unfold_planes(mesh, flat(), {}, [&] { return ++n >= last; });
+    EXPECT_LE(done.n_left, done.n_folded) << last;
+    std::size_t n_moved = 0;
+    for (VertexHandle v : mesh.vertices()) n_moved += mesh.point(v) == folded.point(v) ? 0 : 1;
+    EXPECT_EQ(n_moved, done.n_moved) << last;
+  }
 }
 
 TEST(PlanarUnfold, DoesNothingWhereNothingMayChangeOrIsFolded) {
