@@ -7,6 +7,7 @@ square body that moves through resting vertices, over the walls that it ends at:
 come in, and for each surface mode the inverted and flat ones that are left, the worst angle and the seconds.
 
 usage: bench/folded_walls.py TOOL [TOOL ...] [--cubes N] [--modes frozen,flat,free]
+       bench/folded_walls.py --write FOLDER [--cubes N]    only writes the meshes
 """
 import argparse
 import itertools
@@ -28,8 +29,9 @@ def box(n, is_there=lambda middle: True):
             for axis in order:
                 corner[axis] += 1
                 cell.append(tuple(corner))
-            even = order in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
-            cells.append([number.setdefault(c, len(number)) for c in (cell if even else [cell[0], cell[2], cell[1], cell[3]])])
+            if order not in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+                cell[1], cell[2] = cell[2], cell[1]
+            cells.append([number.setdefault(c, len(number)) for c in cell])
     return [list(map(float, p)) for p in number], cells
 
 
@@ -43,11 +45,10 @@ def lid(n, depth):
 
 def body(n, depth):
     low, high = 0.375 * n, 0.625 * n
-    inside = [lambda x: low < x < high] * 2
-    points, cells = box((n, n, n // 2), lambda m: not all(f(x) for f, x in zip(inside, m)))
+    points, cells = box((n // 2, n, n), lambda middle: not all(low < x < high for x in middle[1:]))
     for p in points:
-        if all(low <= x <= high for x in p[:2]):
-            p[0] += depth * n
+        if all(low <= x <= high for x in p[1:]):
+            p[1] += depth * n
     return points, cells
 
 
@@ -69,12 +70,17 @@ def run(tool, path, mode):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tools", nargs="+", metavar="TOOL")
+    parser.add_argument("tools", nargs="*", metavar="TOOL")
+    parser.add_argument("--write", type=pathlib.Path, metavar="FOLDER")
     parser.add_argument("--cubes", type=int, default=8, help="along a side, a multiple of 8 (8)")
     parser.add_argument("--modes", default="frozen,flat,free")
     args = parser.parse_args()
     modes = args.modes.split(",")
     cases = [("lid", lid, depth) for depth in (0.2, 0.5, 0.8)] + [("body", body, depth) for depth in (0.2, 0.3)]
+    if args.write:
+        for name, make, depth in cases:
+            write(args.write / f"{name}-{depth}.mesh", *make(args.cubes, depth))
+        return
     print("| | cells | inverted | " + " | ".join(f"{m}: left, worst angle, s" for m in modes) + " |")
     print("|---" * (3 + len(modes)) + "|")
     with tempfile.TemporaryDirectory() as folder:

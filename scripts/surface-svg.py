@@ -8,6 +8,11 @@ docs/pictures/folded-cylinder.svg comes from:
   hfremesh c.mesh -o free.mesh --surface free --hausdorff 0.03
   hfremesh convert c.mesh -o c.off; hfremesh convert free.mesh -o free.off
   scripts/surface-svg.py docs/pictures/folded-cylinder.svg c.off free.off
+docs/pictures/folded-wall.svg comes from:
+  bench/folded_walls.py --write .
+  hfremesh body-0.3.mesh -o open.mesh --surface flat
+  hfremesh convert body-0.3.mesh -o a.off; hfremesh convert open.mesh -o b.off
+  scripts/surface-svg.py docs/pictures/folded-wall.svg a.off b.off
 """
 import sys
 

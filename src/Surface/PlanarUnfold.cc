@@ -17,6 +17,7 @@
 #include "Surface/FaceStars.hh"
 
 namespace hfr {
+namespace planes {
 namespace {
 
 using surface::Arrays;
@@ -618,12 +619,13 @@ class PlaneUnfolder {
 };
 
 }  // namespace
+}  // namespace planes
 
-std::optional<std::vector<Vec3>> unfold_planes(const Arrays& arrays, const SurfaceOptions& options,
+std::optional<std::vector<Vec3>> unfold_planes(const surface::Arrays& arrays, const SurfaceOptions& options,
                                                const std::function<bool()>& stopped, PlanarUnfolding& done) {
   done = {};
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
-  PlaneUnfolder unfolder(arrays, options.mode, stopped);
+  planes::PlaneUnfolder unfolder(arrays, options.mode, stopped);
   done = unfolder.unfold();
   if (done.n_moved == 0) return std::nullopt;
   return unfolder.points();
