@@ -63,6 +63,7 @@ def write(path, points, cells):
 
 def run(tool, path, mode):
     report = path.with_suffix(".json")
+    report.unlink(missing_ok=True)
     subprocess.run([tool, path, "-o", path.with_suffix(".out.mesh"), "--surface", mode, "--threads", "1", "-q",
                     "--json", report], check=False, stderr=subprocess.DEVNULL)
     return json.loads(report.read_text())
@@ -75,6 +76,8 @@ def main():
     parser.add_argument("--cubes", type=int, default=8, help="along a side, a multiple of 8 (8)")
     parser.add_argument("--modes", default="frozen,flat,free")
     args = parser.parse_args()
+    if args.cubes < 8 or args.cubes % 8 != 0:
+        parser.error("--cubes must be a multiple of 8")
     modes = args.modes.split(",")
     cases = [("lid", lid, depth) for depth in (0.2, 0.5, 0.8)] + [("body", body, depth) for depth in (0.2, 0.3)]
     if args.write:

@@ -187,6 +187,8 @@ PartSurfaceRun::PartSurfaceRun(DistributedMesh& parts, const SurfaceOptions& opt
       move(*points);
       now = gather(parts, options);
       passes.push_back(report_of(done));
+    } else {
+      impl_->input.clear();
     }
   }
   if (measure) {

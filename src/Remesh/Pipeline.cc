@@ -240,7 +240,8 @@ void run_towards_claim(const Run& run, Beginning from, std::optional<Best::Begin
   from.put_back(run);
   const Findings found = std::exchange(
       run.findings, {.is_folded = run.findings.is_folded, .may_cover_twice = run.findings.may_cover_twice});
-  run_towards_goal(run.with(strategy), *strategy.goal);
+  const Run part = run.with(strategy);
+  if (!run_towards_goal(part, *strategy.goal)) raise_others(part);
   if (smallest_that_may_rise(run, strategy.goal->degrees) > before + kLeastRise) {
     best.note();
     CellBounds bounds = run.bounds;

@@ -75,7 +75,10 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   if (unfold) {  // which keeps the shape: what is measured is against the layers that add up to it
     if (impl_->measure) impl_->input = surface_triangles(mesh, options.policy);
     const PlanarUnfolding done = unfold_planes(mesh, options.surface, options.policy, stopped);
-    if (done.n_moved > 0) passes.push_back(report_of(done));
+    if (done.n_moved > 0)
+      passes.push_back(report_of(done));
+    else
+      impl_->input.clear();
   }
   if (impl_->measure) {
     impl_->before = surface_triangles(mesh, options.policy);

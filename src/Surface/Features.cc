@@ -409,6 +409,8 @@ double diagonal(const Arrays& arrays) {
   return norm(high - low);
 }
 
+double flat_tolerance(const Arrays& arrays) { return kCoplanar * diagonal(arrays); }
+
 double mean_edge(const Arrays& arrays) {
   double sum = 0;
   for (const auto& f : arrays.faces) {
@@ -503,7 +505,7 @@ void find_motion_constraints(const Arrays& arrays, const SurfaceOptions& options
                              std::span<const Vec3> normal, std::span<const MotionConstraint> planes,
                              Features& found) {
   const bool flat = options.mode != SurfaceMode::kFree;
-  const double tolerance = kCoplanar * diagonal(arrays);
+  const double tolerance = flat_tolerance(arrays);
   std::vector<std::uint8_t> on_surface;
   std::vector<Incidence> at = incidences(arrays, on_surface);
   count_features(found, at);
@@ -528,7 +530,7 @@ Features find_features(const Arrays& arrays, const SurfaceOptions& options, doub
   Features found;
   found.edges = find_edges(arrays);
   std::vector<MotionConstraint> planes;
-  if (flat) found.facet = find_facets(arrays, found.edges, kCoplanar * diagonal(arrays), planes);
+  if (flat) found.facet = find_facets(arrays, found.edges, flat_tolerance(arrays), planes);
   const std::vector<Vec3> normal = normals(arrays);
   const std::vector<std::uint8_t> only_turns = mark_edges(arrays, found.edges, [&](const Edge& e) {
     return flat ? found.facet[e.f[0]] != found.facet[e.f[1]] : dot(normal[e.f[0]], normal[e.f[1]]) < cosine;

@@ -72,6 +72,8 @@ double allowed_distance(const Arrays& arrays, const SurfaceOptions& options);
 double diagonal(const Arrays& arrays);
 /// Mean length of the triangles' edges; 0 without any.
 double mean_edge(const Arrays& arrays);
+/// Vertices no further from a plane or line count as in it in flat mode.
+double flat_tolerance(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.
 inline double six_volume(const Triangle& t, Vec3 from) {
   return dot(t[0] - from, cross(t[1] - from, t[2] - from));

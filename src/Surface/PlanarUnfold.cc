@@ -26,8 +26,8 @@ using surface::FaceStars;
 using surface::scaled_normal;
 using surface::unit;
 
-/// Of the mean edge: what lies no further from a plane is in it. The first is for flat mode.
-constexpr double kInFlatPlane = 1e-12, kInPlane = 1e-6;
+/// Of the mean edge: in free mode, what lies no further from a plane is in it, if the distance allows that.
+constexpr double kInPlane = 1e-6;
 /// Rings of faces round a fold whose vertices move: one number after the other is tried, the last is all.
 constexpr std::array<int, 5> kRings = {2, 4, 8, 16, kAllLayers};
 constexpr int kSpreading = 60;  // passes that send each vertex to the mean of its neighbours, at first
@@ -144,7 +144,9 @@ auto faces_round(const Arrays& arrays, const FaceStars& stars) {
 /// labels, in one plane; whichever way they look. Each begins at its largest face.
 class PlaneFacets {
  public:
-  PlaneFacets(const Arrays& arrays, SurfaceMode mode) : edges_(surface::find_edges(arrays)) {
+  /// What lies within `tolerance` of a plane is in it.
+  PlaneFacets(const Arrays& arrays, double tolerance)
+      : edges_(surface::find_edges(arrays)), tolerance_(tolerance) {
     std::vector<std::array<std::uint32_t, 3>> next(arrays.faces.size(), {kNone, kNone, kNone});
     for (const surface::Edge& e : edges_)
       if (may_be_inside(arrays, e))
@@ -154,7 +156,6 @@ class PlaneFacets {
     Faces order(arrays.faces.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, std::ranges::greater(), [&](std::uint32_t f) { return area[f]; });
-    tolerance_ = (mode == SurfaceMode::kFlat ? kInFlatPlane : kInPlane) * surface::mean_edge(arrays);
     number_.assign(arrays.faces.size(), kNone);
     for (std::uint32_t first : order) {
       if (number_[first] != kNone) continue;
@@ -198,7 +199,7 @@ class PlaneFacets {
   std::vector<surface::Edge> edges_;
   std::vector<std::uint32_t> number_;
   std::vector<Faces> faces_;
-  double tolerance_ = 0;
+  double tolerance_;
 };
 
 /// The points, and what they were since it was asked for last.
@@ -383,8 +384,13 @@ class Facet {
     }
     return folds;
   }
-  /// Moves the vertices round one fold until no face at them is folded, in as few rings as that takes; false,
-  /// and nothing moves, where no number of rings does.
+  /// The vertices of these faces stay from now on.
+  void hold(const Faces& faces) {
+    for (std::uint32_t f : faces)
+      for (VertexHandle v : arrays_.faces[f]) moves_[scratch_.number[v.idx()]] = 0;
+  }
+  /// Moves the vertices round one fold until none of its faces is folded any more, and no other has come to
+  /// be, in as few rings as that takes; false, and nothing moves, where no number of rings does.
   bool unfold(const Faces& fold, const std::function<bool()>& stopped) {
     // A face that none of its vertices can open stays a fold.
     const auto may_open = [&](std::uint32_t f) {
@@ -397,10 +403,7 @@ class Facet {
       const std::vector<VertexHandle> vertices = movable(fold, rings);
       if (vertices.size() == n_before) return false;
       n_before = vertices.size();
-      if (unfold(fold, vertices, stopped)) {
-        all_are_vain_ = false;
-        return true;
-      }
+      if (unfold(fold, vertices, stopped)) return true;
       all_are_vain_ = all_are_vain_ || rings == kAllLayers;
     }
     return false;
@@ -420,6 +423,9 @@ class Facet {
     for (VertexHandle v : vertices) faces.insert(faces.end(), stars_.at(v).begin(), stars_.at(v).end());
     std::ranges::sort(faces);
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    std::erase_if(faces, [&](std::uint32_t f) {  // other folds
+      return is_folded(f) && std::ranges::find(fold, f) == fold.end();
+    });
     std::vector<Point2> before;
     for (VertexHandle v : vertices) before.push_back(at(v));
     const auto put_back = [&] {
@@ -488,7 +494,7 @@ class Facet {
   std::vector<Point2> at_, before_;     // of these
   std::vector<std::uint8_t> moves_;
   Vec3 x_, y_;                 // axes in the plane
-  bool all_are_vain_ = false;  // moving all vertices has not helped as they stand
+  bool all_are_vain_ = false;  // moving all vertices has not opened one fold
 };
 
 /// Vertices that stay wherever they are.
@@ -507,11 +513,11 @@ std::vector<std::uint8_t> held_vertices(const Arrays& arrays) {
 /// Opens the folds of all facets, then those that only straight edges have room for.
 class PlaneUnfolder {
  public:
-  PlaneUnfolder(const Arrays& arrays, SurfaceMode mode, const std::function<bool()>& stopped)
+  PlaneUnfolder(const Arrays& arrays, double tolerance, const std::function<bool()>& stopped)
       : arrays_(arrays),
         stopped_([&stopped] { return stopped && stopped(); }),
         stars_(arrays),
-        facets_(arrays, mode),
+        facets_(arrays, tolerance),
         held_(held_vertices(arrays)),
         points_(arrays.points),
         scratch_{std::vector<std::uint32_t>(arrays.points.size(), 0),
@@ -521,8 +527,9 @@ class PlaneUnfolder {
 
   PlanarUnfolding unfold() {
     PlanarUnfolding done;
-    for (std::uint32_t i = 0; i < facets_.faces().size() && !stopped_(); ++i) {
+    for (std::uint32_t i = 0; i < facets_.faces().size(); ++i) {
       if (all_look_alike(facets_.faces()[i])) continue;
+      if (stopped_()) break;
       const Outcome outcome = unfold(i, /*is_rim_moved=*/false);
       done.n_folded += outcome.n_folded;
       outcomes_[i] = outcome;
@@ -559,6 +566,9 @@ class PlaneUnfolder {
     Outcome outcome;
     std::vector<Faces> folds = facet.folds();
     const std::size_t n_all = folds.size();
+    if (!is_rim_moved)
+      for (const Faces& fold : folds)
+        if (!is_fold(fold)) facet.hold(fold);
     if (!is_rim_moved) std::erase_if(folds, [&](const Faces& fold) { return !is_fold(fold); });
     outcome.has_slit = folds.size() < n_all;
     const auto is_open = [&](const Faces& fold) {
@@ -625,7 +635,11 @@ std::optional<std::vector<Vec3>> unfold_planes(const surface::Arrays& arrays, co
                                                const std::function<bool()>& stopped, PlanarUnfolding& done) {
   done = {};
   if (options.mode == SurfaceMode::kFrozen || arrays.faces.empty()) return std::nullopt;
-  planes::PlaneUnfolder unfolder(arrays, options.mode, stopped);
+  const double least = surface::flat_tolerance(arrays);
+  const double most = std::max(least, planes::kInPlane * surface::mean_edge(arrays));
+  const bool is_flat = options.mode == SurfaceMode::kFlat;
+  planes::PlaneUnfolder unfolder(
+      arrays, is_flat ? least : std::clamp(surface::allowed_distance(arrays, options), least, most), stopped);
   done = unfolder.unfold();
   if (done.n_moved == 0) return std::nullopt;
   return unfolder.points();

@@ -25,13 +25,14 @@ struct PlanarUnfolding {
 /// layers of the fold add up to: no distance is asked for, even where the fold reached out over the rim.
 /// Where that leaves folds, vertices of straight edges between two facets are put back in order along them.
 ///
-/// A facet is what hangs together over edges of two faces with the same labels, within 1e-12 of the mean edge
-/// of a plane in flat mode, 1e-6 in free mode. A fold is a set of its faces that look the other way than most
-/// of its area, or have less than 1e-6 of the area of a regular triangle, if most of them are faces of
-/// inverted or flat cells: the two sides of a slit are none. The vertices round a fold move if that leaves
-/// none of it, else they stay, as does what is fixed, periodic or of an interface. Cells may become inverted
-/// by it: to be done before these are mended. Nothing is done in frozen mode. `stopped`, asked often: true
-/// ends it with the folds that are done.
+/// A facet is what hangs together over edges of two faces with the same labels in a plane: as exactly as flat
+/// mode asks for; in free mode within the distance allowed, and 1e-6 of the mean edge. A fold is a set of
+/// faces that look the other way than most of the area of their facet, with what has less than 1e-6 of the
+/// area of a regular triangle there, if most of them are faces of inverted or flat cells: the two sides of a
+/// slit are none, and their vertices stay. The vertices round a fold move if none of its faces is left folded
+/// and no other comes to be; else they stay, as does what is fixed, periodic or of an interface. Cells may
+/// become inverted by it: to be done before these are mended. Nothing is done in frozen mode. `stopped`,
+/// asked often: true ends it with the folds that are done.
 PlanarUnfolding unfold_planes(TetMesh& mesh, const SurfaceOptions& options, par::Policy policy = {},
                               const std::function<bool()>& stopped = {});
 /// The same of a surface as arrays: the points of all vertices, nothing where none moves.

@@ -15,16 +15,17 @@ enum class SurfaceMode {
   kFrozen,  ///< nothing
   kFlat,    ///< new triangulations of planar facets and straight feature edges: the shape stays the same
   kFree,    ///< the shape stays within a distance
-};
+};          // with folded plane walls opened, in both: see docs/surface.md, "Folds"
 
 struct SurfaceOptions {
   SurfaceMode mode = SurfaceMode::kFrozen;
   /// Degrees: an edge at which the surface turns by more is a feature. In flat mode every edge is one at
   /// which it turns at all.
   double feature_angle = 40;
-  /// Largest distance from the input surface and of it from the result, in the mesh's units. Default: three
-  /// tenths of the mean edge length of the surface, but no more than 0.005 of the diagonal of its bounding
-  /// box. 0: only coplanar changes, as in flat mode.
+  /// Largest distance from the input surface and of it from the result, in the mesh's units; folded plane
+  /// walls of the input count as they are once opened (docs/surface.md, "Folds"). Default: three tenths of
+  /// the mean edge length of the surface, but no more than 0.005 of the diagonal of its bounding box. 0: only
+  /// coplanar changes, as in flat mode.
   std::optional<double> hausdorff;
   /// Degrees that a new triangle may be turned against the input beneath it.
   double normal_angle = 50;

@@ -204,18 +204,18 @@ TEST(PlanarUnfold, VerticesStayOnTheirSideOfABorderOfLabels) {
   EXPECT_EQ(n_on_seam, 8U);
 }
 
-/// A block on a wider one, all of it one region, that stands free from x = 2 to its end at x = 3.
-TEST(PlanarUnfold, TheSidesOfASlitAreNoFold) {
-  const generate::Arrays box = generate::box({4, 2, 2}, {0, 0, 0}, {4, 2, 2});
+/// A block on a wider one, all of it one region, that stands free from x = 3 to its end at x = 6.
+TetMesh slitted() {
+  const generate::Arrays box = generate::box({8, 4, 2}, {0, 0, 0}, {8, 4, 2});
   std::vector<Vec3> points = box.points;
   std::vector<std::array<Index, 4>> cells;
   std::map<Index, Index> doubled;
   for (auto t : box.cells) {
     Vec3 middle;
     for (Index v : t) middle = middle + 0.25 * box.points[v];
-    if (middle.z > 1 && middle.x > 3) continue;
+    if (middle.z > 1 && middle.x > 6) continue;
     for (Index& v : t) {
-      if (!(middle.z > 1 && box.points[v].z == 1 && box.points[v].x > 2)) continue;
+      if (!(middle.z > 1 && box.points[v].z == 1 && box.points[v].x > 3)) continue;
       const auto [at, is_new] = doubled.try_emplace(v, static_cast<Index>(points.size()));
       if (is_new) points.push_back(box.points[v]);
       v = at->second;
@@ -224,14 +224,55 @@ TEST(PlanarUnfold, TheSidesOfASlitAreNoFold) {
   }
   TetMesh mesh = build(points, cells);
   mesh.collect_garbage({.drop_unused_vertices = true});
-  ASSERT_EQ(doubled.size(), 3U);
+  return mesh;
+}
+
+TEST(PlanarUnfold, TheSidesOfASlitAreNoFold) {
   for (SurfaceMode mode : {SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    TetMesh mesh = slitted();
     SurfaceOptions options;
     options.mode = mode;
     const PlanarUnfolding done = unfold_planes(mesh, options);
     EXPECT_EQ(done.n_folded, 0U);
     EXPECT_EQ(done.n_moved, 0U);
   }
+}
+
+TEST(PlanarUnfold, ASlitStaysBesideAFoldThatOpens) {
+  TetMesh folded = slitted();
+  for (VertexHandle v : folded.vertices())
+    if (folded.point(v) == Vec3{7, 2, 1}) folded.set_point(v, {5.6, 2, 1});
+  TetMesh mesh = folded;
+  const PlanarUnfolding done = unfold_planes(mesh, in_planes());
+  EXPECT_GT(done.n_folded, 0U);
+  EXPECT_EQ(done.n_left, 0U);
+  EXPECT_GT(done.n_moved, 0U);
+  for (CellHandle c : mesh.cells()) {
+    for (VertexHandle v : mesh.cell(c).v) {
+      const bool is_above =
+          std::ranges::any_of(mesh.cell(c).v, [&](VertexHandle w) { return mesh.point(w).z == 2; });
+      if (is_above) {
+        EXPECT_EQ(mesh.point(v), folded.point(v));
+      }
+    }
+  }
+}
+
+TEST(PlanarUnfold, AFoldOpensBesideOneThatCannot) {
+  TetMesh folded = built(generate::box({8, 8, 2}, {0, 0, 0}, {8, 8, 2}));
+  SurfaceOptions options = in_planes();
+  for (VertexHandle v : folded.vertices()) {
+    const Vec3 p = folded.point(v);
+    if (p == Vec3{2, 4, 2}) folded.set_point(v, {3.4, 4, 2});
+    if (p == Vec3{6, 4, 2}) folded.set_point(v, {4.6, 4, 2});
+    if (p.z == 2 && std::abs(p.x - 6) <= 1 && std::abs(p.y - 4) <= 1) options.fixed_vertices.push_back(v);
+  }
+  TetMesh mesh = folded;
+  const PlanarUnfolding done = unfold_planes(mesh, options);
+  EXPECT_GT(done.n_left, 0U);
+  EXPECT_EQ(done.n_left, done.n_folded / 2);
+  EXPECT_EQ(n_turned(mesh), done.n_left);
+  for (VertexHandle v : options.fixed_vertices) EXPECT_EQ(mesh.point(v), folded.point(v));
 }
 
 TEST(PlanarUnfold, OfTwoLidsTheOneThatCannotOpenStaysAsItIs) {
