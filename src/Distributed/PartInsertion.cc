@@ -87,6 +87,7 @@ RoundCounts insert(DistributedMesh& parts, const Ranks::Dig& dig, const Turns& t
   return round_on_cutout(parts, dig.look, turns.now, depth, [&](Cutout& cutout) {
     VertexInsertion<M> op{metric, cutout.work().quality, dig.gain};
     if (!dig.may_add_poor_cells) op.poor_below = dig.look.below;
+    op.leaves_early = dig.leaves_early;
     op.rim = &cutout.rim();
     if (turns.now.size() + turns.waiting.size() > dig.many) {
       op.max_sites = static_cast<std::size_t>(dig.sites_of_many);

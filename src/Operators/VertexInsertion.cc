@@ -126,7 +126,7 @@ void VertexInsertion<Metric>::evaluate_part(const TetMesh& mesh, Parts& parts, i
   }
   if (step == 0) return dig_first(mesh, parts.seed.cell, part, digger, parts.sites);
   detail::Site& site = parts.sites[parts.followed[part]];
-  site = digger.follow_up(site, kMaxDigs, gain);
+  site = digger.follow_up(site, kMaxDigs, leaves_early ? gain : 0.0);
   const double least = gain < 1 ? gain * site.old_worst : std::max(gain * site.old_worst, site.old_worst);
   if (!(site.new_worst > least) || multiplies_poor(mesh, *this, site)) site.new_worst = -HFR_INFINITY;
 }

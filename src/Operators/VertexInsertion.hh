@@ -48,6 +48,8 @@ struct VertexInsertion {
   std::size_t max_sites = kMaxSites;  ///< first places that are followed up, the most promising ones
   /// Share of the worst value asked for that a first place must come to by itself to be followed up.
   double least_promise = 0;
+  /// Leaves a place that a move of the vertex does not bring to the gain, unless as much again would.
+  bool leaves_early = false;
   /// Where positive, a new vertex may make at most kMorePoor cells more that are below it than there were.
   /// One that only raised the worst of its cells would leave several poor ones in the place of one.
   double poor_below = 0;

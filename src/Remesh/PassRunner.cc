@@ -361,6 +361,7 @@ std::size_t PassRunner<Metric>::insert_pass(const Turn& turn) {
     const RoundCounts counts = round<Op>(
         [&](auto& round, const Worklist& cells) {
           Op op{metric_, run.work.quality, insert_gain_};
+          op.leaves_early = effort.leaves_early;
           if (!turn.focus.everything() && !run.may_add_poor_cells) op.poor_below = turn.focus.below;
           std::vector<typename Op::Seed> seeds;
           for (CellHandle c : worst_apart(cells, turn.focus)) seeds.emplace_back(c);

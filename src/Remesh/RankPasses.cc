@@ -103,7 +103,8 @@ std::size_t RankPasses::insert(const char* name, const Turn& turn, double gain) 
                  run.may_add_poor_cells,
                  effort.few_seeds,
                  effort.sites_of_many,
-                 effort.promise_of_many};
+                 effort.promise_of_many,
+                 effort.leaves_early};
   RoundCounts total;
   std::size_t first = 0;
   for (int r = 0; r < effort.insert_rounds && !run.control.stopped(); ++r) {

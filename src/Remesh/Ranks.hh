@@ -80,6 +80,7 @@ class Ranks {
     /// With more cells than `many`, these hold in place of VertexInsertion's own.
     std::uint64_t many = 0, sites_of_many = 0;
     double promise_of_many = 0;
+    bool leaves_early = false;  ///< VertexInsertion::leaves_early
   };
   /// One round of cluster search over such cells.
   struct Search {

@@ -93,6 +93,7 @@ PassEffort pass_effort(const Asked& asked) {
   if (options.device.kind == DeviceChoice::Kind::kOpenCl) pass.device_from = 0;
   pass.device_only_smooths = options.hybrid;
   if (asked.is_frozen()) pass.promise_of_many = 0.5;
+  pass.leaves_early = asked.is_frozen();
   // A cell that is all but flat is best mended by what leaves most.
   pass.first_edge_does = asked.has_goal() && *options.min_dihedral > kPlainGoal;
   return pass;
@@ -347,6 +348,7 @@ Strategy strategy_of_patch(const Strategy& whole) {
       has(patch.pass.ops, Ops::kEdge) + has(patch.pass.ops, Ops::kFace) + has(patch.pass.ops, Ops::kNode);
   patch.pass.selection = n_kinds < 2 ? Selection::kByKind : Selection::kMixedOnAngles;
   if (!whole.patch.has_surface) patch.pass.promise_of_many = 0.5;
+  patch.pass.leaves_early = whole.pass.leaves_early;
   patch.polish.iterations = whole.patch.iterations;
   patch.polish.dig_share = 4;  // as many vertices as it takes
   patch.polish.selection = patch.pass.selection;

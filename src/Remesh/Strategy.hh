@@ -135,6 +135,8 @@ struct PassEffort {
   /// Least promise of such a site; see VertexInsertion::least_promise. With a frozen surface nearly half of
   /// the cells have no site of more, and one in twelve of these a plan.
   double promise_of_many = 0;
+  /// VertexInsertion::leaves_early: not in flat and free, where vertices that take long are missed.
+  bool leaves_early = false;
   /// Where so many vertices of a curved surface are looked at, or one in `many_moves_share` of the mesh, the
   /// worst cell of a star has to rise by `move_gain` for its vertex to move: moves cost far more there than
   /// inside, and each calls for others.

@@ -65,7 +65,7 @@ auto SurfaceSplit<Metric>::evaluate(const TetMesh& mesh, const Seed& seed) const
   const detail::Digger<Metric, CutFaces> digger(mesh, metric, quality, max_cells,
                                                 CellHandle(seed.edge.idx() / 6), is_cut, rim);
   const detail::Site best =
-      digger.follow_up(digger.dig(cells, 0.5 * (mesh.point(a) + mesh.point(b))), kMaxDigs, gain,
+      digger.follow_up(digger.dig(cells, 0.5 * (mesh.point(a) + mesh.point(b))), kMaxDigs, /*gain=*/0,
                        {on_curve ? MaxMinForm::Room::kLine : MaxMinForm::Room::kPlane, axis});
   // Smaller inverted cells would look better in some metrics, and be cut again without end.
   if (!(best.new_worst > 0) || !(best.new_worst > std::max(gain * best.old_worst, best.old_worst)))
