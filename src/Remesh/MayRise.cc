@@ -54,16 +54,22 @@ bool is_at_ceiling(const StuckCell& cell) {
 /// are found in the whole surface each time.
 double smallest_below(const Run& run, double degrees) {
   LowCells low(run, degrees);
-  std::span<StuckCell> left(low.cells);
-  std::ranges::stable_sort(left, {}, &StuckCell::degrees);
   double smallest = degrees;
-  std::size_t n = run.surface ? std::max(left.size(), std::size_t{1}) : kFewCells;
-  for (bool first = true; first || (smallest == degrees && !left.empty()); first = false, n *= 2) {
-    const std::span<StuckCell> worst = left.first(std::min(n, left.size()));
-    left = left.subspan(worst.size());
-    prove(run, low, worst);
-    for (const StuckCell& cell : worst)
+  const auto look_at = [&](std::span<StuckCell> cells) {
+    prove(run, low, cells);
+    for (const StuckCell& cell : cells)
       if (!is_at_ceiling(cell)) smallest = std::min(smallest, cell.degrees);
+  };
+  if (run.surface) {
+    look_at(low.cells);
+  } else {
+    std::span<StuckCell> left(low.cells);
+    std::ranges::stable_sort(left, {}, &StuckCell::degrees);
+    for (std::size_t n = kFewCells; smallest == degrees && !left.empty(); n *= 2) {
+      const std::size_t n_now = std::min(n, left.size());
+      look_at(left.first(n_now));
+      left = left.subspan(n_now);
+    }
   }
   return run.is_part() ? run.parts()->min(smallest) : smallest;
 }

@@ -52,6 +52,16 @@ std::map<int, double> region_volumes(const TetMesh& mesh) {
   return volumes;
 }
 
+PassReport unfolding_report(const char* op, std::size_t n_folded, std::size_t n_moved) {
+  PassReport pass;
+  pass.stage = "unfold";
+  pass.op = op;
+  pass.iteration = 1;
+  pass.seeds = pass.candidates = n_folded;
+  pass.winners = n_moved;
+  return pass;
+}
+
 }  // namespace
 
 struct SurfaceRun::Impl {
@@ -97,20 +107,6 @@ SurfaceRun::SurfaceRun(TetMesh& mesh, const ImproveOptions& options, bool unfold
   }
   impl_->surface = std::make_unique<SurfaceMesh>(mesh, wanted, options.policy);
 }
-
-namespace {
-
-PassReport unfolding_report(const char* op, std::size_t n_folded, std::size_t n_moved) {
-  PassReport pass;
-  pass.stage = "unfold";
-  pass.op = op;
-  pass.iteration = 1;
-  pass.seeds = pass.candidates = n_folded;
-  pass.winners = n_moved;
-  return pass;
-}
-
-}  // namespace
 
 PassReport report_of(const SurfaceUnfolding& unfolding) {
   return unfolding_report("surface unfold", unfolding.n_folded, unfolding.n_moved);

@@ -13,6 +13,7 @@
 #include "Parallel/DisjointSets.hh"
 #include "Quality/CellQuality.hh"
 #include "Surface/InputSurface.hh"
+#include "Surface/PlaneFacets.hh"
 
 namespace hfr::surface {
 namespace {
@@ -21,49 +22,14 @@ namespace {
 /// changes the volume by no more than that length times the area.
 constexpr double kCoplanar = 1e-13;
 
-/// Planar facets: grown from the largest face that is in none yet, over edges where the surface does not turn
-/// back, as long as all corners lie in the plane.
+/// Planar facets, over edges where the surface does not turn back, and their planes.
 std::vector<std::uint32_t> find_facets(const Arrays& arrays, const std::vector<Edge>& edges, double tolerance,
                                        std::vector<MotionConstraint>& planes) {
-  constexpr std::uint32_t kNone = ~0U;
-  const std::size_t n = arrays.faces.size();
-  std::vector<Vec3> normal(n);
-  std::vector<std::uint32_t> order(n);
-  std::vector<std::array<std::uint32_t, 3>> across(n, {kNone, kNone, kNone});
-  for (std::size_t i = 0; i < n; ++i) normal[i] = scaled_normal(corners(arrays.points, arrays.faces[i]));
-  for (const Edge& e : edges) {
-    if (!e.manifold) continue;
-    across[e.f[0]][e.k[0]] = e.f[1];
-    across[e.f[1]][e.k[1]] = e.f[0];
-  }
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t x, std::uint32_t y) { return norm2(normal[x]) > norm2(normal[y]); });
-  std::vector<std::uint32_t> facet(n, kNone);
-  std::vector<std::uint32_t> front;
-  for (std::uint32_t seed : order) {
-    if (facet[seed] != kNone) continue;
-    const auto number = static_cast<std::uint32_t>(planes.size());
-    const MotionConstraint plane{SurfaceKind::kFacet, arrays.points[arrays.faces[seed][0].idx()],
-                                 unit(normal[seed])};
-    planes.push_back(plane);
-    facet[seed] = number;
-    front.assign(1, seed);
-    while (!front.empty()) {
-      const std::uint32_t f = front.back();
-      front.pop_back();
-      for (std::uint32_t g : across[f]) {
-        if (g == kNone || facet[g] != kNone || !(dot(normal[g], plane.axis) > 0)) continue;
-        const bool flat = std::all_of(arrays.faces[g].begin(), arrays.faces[g].end(), [&](VertexHandle v) {
-          return std::abs(dot(arrays.points[v.idx()] - plane.anchor, plane.axis)) <= tolerance;
-        });
-        if (!flat) continue;
-        facet[g] = number;
-        front.push_back(g);
-      }
-    }
-  }
-  return facet;
+  PlaneFacets facets = grow_facets(arrays, edges, tolerance, Look::kAlike, [](const Edge&) { return true; });
+  for (std::uint32_t f : facets.largest)
+    planes.push_back({SurfaceKind::kFacet, arrays.points[arrays.faces[f][0].idx()],
+                      unit(scaled_normal(corners(arrays.points, arrays.faces[f])))});
+  return std::move(facets.number);
 }
 
 /// Edges that are features by their angle alone, in connected sets that fit into a box of a few times the
@@ -407,6 +373,18 @@ double diagonal(const Arrays& arrays) {
     }
   }
   return norm(high - low);
+}
+
+std::vector<std::uint8_t> held_vertices(const Arrays& arrays) {
+  std::vector<std::uint8_t> held(arrays.points.size(), 0);
+  const auto hold = [&](const auto& vertices) {
+    for (VertexHandle v : vertices) held[v.idx()] = 1;
+  };
+  hold(arrays.locked_vertices);
+  for (const auto& e : arrays.locked_edges) hold(e);
+  for (std::size_t i = 0; i < arrays.faces.size(); ++i)
+    if (arrays.locked[i] || arrays.interface[i]) hold(arrays.faces[i]);
+  return held;
 }
 
 double flat_tolerance(const Arrays& arrays) { return kCoplanar * diagonal(arrays); }

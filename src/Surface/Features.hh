@@ -72,6 +72,9 @@ double allowed_distance(const Arrays& arrays, const SurfaceOptions& options);
 double diagonal(const Arrays& arrays);
 /// Mean length of the triangles' edges; 0 without any.
 double mean_edge(const Arrays& arrays);
+/// Flags of the vertices that stay when folds are opened: fixed ones, ends of edges that stay, and corners of
+/// faces that stay or are of an interface.
+std::vector<std::uint8_t> held_vertices(const Arrays& arrays);
 /// Vertices no further from a plane or line count as in it in flat mode.
 double flat_tolerance(const Arrays& arrays);
 /// Six times the volume between a triangle and a point, positive seen from outside.

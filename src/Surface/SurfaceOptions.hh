@@ -15,7 +15,7 @@ enum class SurfaceMode {
   kFrozen,  ///< nothing
   kFlat,    ///< new triangulations of planar facets and straight feature edges: the shape stays the same
   kFree,    ///< the shape stays within a distance
-};          // with folded plane walls opened, in both: see docs/surface.md, "Folds"
+};
 
 struct SurfaceOptions {
   SurfaceMode mode = SurfaceMode::kFrozen;

@@ -198,13 +198,7 @@ class Unfolder {
   /// at whose edges all layers count.
   std::vector<std::uint8_t> held_vertices(const std::vector<std::uint8_t>& folds,
                                           const Faces& layered) const {
-    std::vector<std::uint8_t> held(points_.size(), 0);
-    for (VertexHandle v : arrays_.locked_vertices) held[v.idx()] = 1;
-    for (const auto& e : arrays_.locked_edges)
-      for (VertexHandle v : e) held[v.idx()] = 1;
-    for (std::size_t i = 0; i < arrays_.faces.size(); ++i)
-      if (arrays_.locked[i] || arrays_.interface[i])
-        for (VertexHandle v : arrays_.faces[i]) held[v.idx()] = 1;
+    std::vector<std::uint8_t> held = surface::held_vertices(arrays_);
     SurfaceOptions turning = options_;
     turning.mode = SurfaceMode::kFree;  // facets of flat mode end at folds
     // Slivers and whole stars at a fold turn any way; a feature is an edge whose two sides differ as well.

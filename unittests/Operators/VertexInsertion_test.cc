@@ -78,6 +78,29 @@ TEST(Dig, APlaceIsWithinReachWhereAsMuchAgainWouldDo) {
   EXPECT_TRUE(detail::is_within_reach(site(0.1, 0.1), site(-0.1, 0.11), 1.6));
 }
 
+TEST(VertexInsertion, LeavingEarlyFindsNoOtherPlansAndMissesFew) {
+  int n_all = 0, n_early = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const TetMesh mesh = jittered(4, 0.24, seed);
+    const std::vector<double> quality = qualities(mesh, MinSine2{});
+    VertexInsertion<MinSine2> all{MinSine2{}, quality, 1.6};
+    VertexInsertion<MinSine2> early = all;
+    early.leaves_early = true;
+    for (CellHandle c : mesh.cells()) {
+      const auto plan = all.evaluate(mesh, CellSeed(c)), quick = early.evaluate(mesh, CellSeed(c));
+      n_all += plan ? 1 : 0;
+      n_early += quick ? 1 : 0;
+      if (!quick) continue;
+      ASSERT_TRUE(plan);
+      EXPECT_GT(quick->new_worst, 1.6 * quick->old_worst);
+      EXPECT_LE(quick->new_worst, plan->new_worst);
+    }
+  }
+  EXPECT_GT(n_all, 50);
+  EXPECT_LT(n_early, n_all);
+  EXPECT_GT(n_early, 9 * n_all / 10);
+}
+
 template <class Metric>
 class VertexInsertionMetrics : public testing::Test {};
 using AllMetrics = testing::Types<VolumeLength, MinSine2, MinDihedral>;

@@ -131,5 +131,13 @@ TEST(Strategy, TriesOnPatchesHaveNoBoundsAndOneThread) {
   EXPECT_TRUE(has(connecting.pass.ops, Ops::kEdge));
 }
 
+TEST(Strategy, PlacesForVerticesAreLeftEarlyWithAFrozenSurfaceAlone) {
+  for (SurfaceMode mode : {SurfaceMode::kFrozen, SurfaceMode::kFlat, SurfaceMode::kFree}) {
+    const Strategy strategy = resolve(options_in(mode), kValid, kCells);
+    EXPECT_EQ(strategy.pass.leaves_early, mode == SurfaceMode::kFrozen);
+    EXPECT_EQ(strategy_of_patch(strategy).pass.leaves_early, mode == SurfaceMode::kFrozen);
+  }
+}
+
 }  // namespace
 }  // namespace hfr::test

@@ -15,6 +15,13 @@ inline ImproveOptions with(SurfaceMode mode) {
   return options;
 }
 
+/// Options of a surface alone.
+inline SurfaceOptions flat_surface() {
+  SurfaceOptions options;
+  options.mode = SurfaceMode::kFlat;
+  return options;
+}
+
 /// Changes that a run made to the surface.
 inline std::size_t surface_changes(const Result& result) {
   std::size_t n = 0;

@@ -17,12 +17,6 @@
 namespace hfr::test {
 namespace {
 
-SurfaceOptions in_planes() {
-  SurfaceOptions options;
-  options.mode = SurfaceMode::kFlat;
-  return options;
-}
-
 /// A box of 8 x 8 x 2 cubes, the side of one of them 1, without the four cubes in the middle.
 TetMesh framed() {
   const generate::Arrays box = generate::box({8, 8, 2}, {0, 0, 0}, {8, 8, 2});
@@ -71,7 +65,7 @@ TEST(PlanarUnfold, OpensWallsThatAreFoldedOverTheRimOfAHole) {
     const TetMesh before = framed(), folded = with_moved_hole(by);
     ASSERT_GT(n_turned(folded), 0U) << by;
     TetMesh mesh = folded;
-    const PlanarUnfolding done = unfold_planes(mesh, in_planes());
+    const PlanarUnfolding done = unfold_planes(mesh, flat_surface());
     EXPECT_EQ(done.n_folded, n_turned(folded)) << by;
     EXPECT_EQ(done.n_left, 0U) << by;
     EXPECT_EQ(n_turned(mesh), 0U) << by;
@@ -103,7 +97,7 @@ TEST(PlanarUnfold, VerticesOnStraightEdgesThatALidHasPassedComeBackBelowIt) {
   for (double to : {6.5, 5.0, 2.25}) {
     const TetMesh before = with_lowered_lid(8), folded = with_lowered_lid(to);
     TetMesh mesh = folded;
-    const PlanarUnfolding done = unfold_planes(mesh, in_planes());
+    const PlanarUnfolding done = unfold_planes(mesh, flat_surface());
     EXPECT_GT(done.n_folded, 0U) << to;
     EXPECT_EQ(done.n_left, 0U) << to;
     std::size_t n_moved = 0;
@@ -138,7 +132,7 @@ TEST(PlanarUnfold, VerticesOnStraightEdgesThatALidHasPassedComeBackBelowIt) {
 
 TEST(PlanarUnfold, AFixedVertexEndsAnEdge) {
   const TetMesh folded = with_lowered_lid(6.5);
-  SurfaceOptions options = in_planes();
+  SurfaceOptions options = flat_surface();
   for (VertexHandle v : folded.vertices())
     if (const Vec3 p = folded.point(v); p.x == 0 && p.y == 0 && p.z == 7) options.fixed_vertices = {v};
   ASSERT_EQ(options.fixed_vertices.size(), 1U);
@@ -157,7 +151,7 @@ TEST(PlanarUnfold, ATiltedWallStaysInItsPlane) {
     mesh.set_point(v, (p.x * x + p.y * y) + p.z * z);
   }
   const TetMesh folded = mesh;
-  const PlanarUnfolding done = unfold_planes(mesh, in_planes());
+  const PlanarUnfolding done = unfold_planes(mesh, flat_surface());
   EXPECT_GT(done.n_folded, 0U);
   EXPECT_EQ(done.n_left, 0U);
   for (VertexHandle v : mesh.vertices()) EXPECT_NEAR(dot(mesh.point(v), z), dot(folded.point(v), z), 1e-14);
@@ -165,7 +159,7 @@ TEST(PlanarUnfold, ATiltedWallStaysInItsPlane) {
 
 TEST(PlanarUnfold, AFoldThatWhatIsHeldLeavesNoRoomStays) {
   const TetMesh folded = with_moved_hole(2);
-  SurfaceOptions options = in_planes();
+  SurfaceOptions options = flat_surface();
   for (VertexHandle v : folded.vertices())
     if (folded.point(v).z == 2) options.fixed_vertices.push_back(v);
   TetMesh mesh = folded;
@@ -187,7 +181,7 @@ TEST(PlanarUnfold, VerticesStayOnTheirSideOfABorderOfLabels) {
     if (std::ranges::all_of(f, is_on_top))
       mesh.labels().faces.set(f, std::ranges::all_of(f, is_near) ? 7 : 8);
   }
-  const PlanarUnfolding done = unfold_planes(mesh, in_planes());
+  const PlanarUnfolding done = unfold_planes(mesh, flat_surface());
   EXPECT_EQ(done.n_left, 0U);
   EXPECT_EQ(n_turned(mesh), 0U);
   std::size_t n_on_seam = 0;
@@ -243,7 +237,7 @@ TEST(PlanarUnfold, ASlitStaysBesideAFoldThatOpens) {
   for (VertexHandle v : folded.vertices())
     if (folded.point(v) == Vec3{7, 2, 1}) folded.set_point(v, {5.6, 2, 1});
   TetMesh mesh = folded;
-  const PlanarUnfolding done = unfold_planes(mesh, in_planes());
+  const PlanarUnfolding done = unfold_planes(mesh, flat_surface());
   EXPECT_GT(done.n_folded, 0U);
   EXPECT_EQ(done.n_left, 0U);
   EXPECT_GT(done.n_moved, 0U);
@@ -260,7 +254,7 @@ TEST(PlanarUnfold, ASlitStaysBesideAFoldThatOpens) {
 
 TEST(PlanarUnfold, AFoldOpensBesideOneThatCannot) {
   TetMesh folded = built(generate::box({8, 8, 2}, {0, 0, 0}, {8, 8, 2}));
-  SurfaceOptions options = in_planes();
+  SurfaceOptions options = flat_surface();
   for (VertexHandle v : folded.vertices()) {
     const Vec3 p = folded.point(v);
     if (p == Vec3{2, 4, 2}) folded.set_point(v, {3.4, 4, 2});
@@ -277,7 +271,7 @@ TEST(PlanarUnfold, AFoldOpensBesideOneThatCannot) {
 
 TEST(PlanarUnfold, OfTwoLidsTheOneThatCannotOpenStaysAsItIs) {
   TetMesh folded = built(generate::box({4, 4, 12}, {0, 0, 0}, {4, 4, 12}));
-  SurfaceOptions options = in_planes();
+  SurfaceOptions options = flat_surface();
   for (VertexHandle v : folded.vertices()) {
     const Vec3 p = folded.point(v);
     if (p.z == 0) folded.set_point(v, {p.x, p.y, 1.5});
@@ -301,12 +295,12 @@ TEST(PlanarUnfold, AStopOnTheWayLeavesWallsThatAreOpenOrAsTheyWere) {
   const TetMesh folded = with_lowered_lid(5);
   std::size_t n_asked = 0;
   TetMesh whole = folded;
-  unfold_planes(whole, in_planes(), {}, [&] { return ++n_asked == 0; });
+  unfold_planes(whole, flat_surface(), {}, [&] { return ++n_asked == 0; });
   ASSERT_GT(n_asked, 20U);
   for (std::size_t last = 1; last < n_asked; last += n_asked / 20) {
     TetMesh mesh = folded;
     std::size_t n = 0;
-    const PlanarUnfolding done = unfold_planes(mesh, in_planes(), {}, [&] { return ++n >= last; });
+    const PlanarUnfolding done = unfold_planes(mesh, flat_surface(), {}, [&] { return ++n >= last; });
     EXPECT_LE(done.n_left, done.n_folded) << last;
     std::size_t n_moved = 0;
     for (VertexHandle v : mesh.vertices()) n_moved += mesh.point(v) == folded.point(v) ? 0 : 1;
@@ -317,10 +311,10 @@ TEST(PlanarUnfold, AStopOnTheWayLeavesWallsThatAreOpenOrAsTheyWere) {
 TEST(PlanarUnfold, DoesNothingWhereNothingMayChangeOrIsFolded) {
   TetMesh frozen = with_moved_hole(2), sound = framed(), stopped = with_moved_hole(2);
   EXPECT_EQ(unfold_planes(frozen, SurfaceOptions{}).n_folded, 0U);
-  const PlanarUnfolding none = unfold_planes(sound, in_planes());
+  const PlanarUnfolding none = unfold_planes(sound, flat_surface());
   EXPECT_EQ(none.n_folded, 0U);
   EXPECT_EQ(none.n_moved, 0U);
-  const PlanarUnfolding ended = unfold_planes(stopped, in_planes(), {}, [] { return true; });
+  const PlanarUnfolding ended = unfold_planes(stopped, flat_surface(), {}, [] { return true; });
   EXPECT_EQ(ended.n_left, ended.n_folded);
   EXPECT_EQ(ended.n_moved, 0U);
 }

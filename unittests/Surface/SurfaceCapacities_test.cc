@@ -16,12 +16,6 @@
 namespace hfr::test {
 namespace {
 
-SurfaceOptions flat() {
-  SurfaceOptions options;
-  options.mode = SurfaceMode::kFlat;
-  return options;
-}
-
 /// Vertices of a half circle from (1, 0, 0) to (-1, 0, 0) with k sides, on the side of positive or negative
 /// y. The last but one stands all but behind its neighbour.
 void append_half_circle(Index k, double side, std::vector<Vec3>& points) {
@@ -46,7 +40,7 @@ TEST(SurfaceCapacities, BoundaryEdgeOf31CellsIsSwappedAndOneOf32LeftAlone) {
     std::vector<Corners> cells;
     for (Index i = 0; i < k; ++i) cells.push_back({0, 1, i + 2, i + 3});
     TetMesh mesh = build(points, cells);
-    const SurfaceMesh surface(mesh, flat());
+    const SurfaceMesh surface(mesh, flat_surface());
     ASSERT_TRUE(surface.may_swap(V(0), V(1)));
     const auto quality = values(mesh);
     const auto plan =
@@ -69,7 +63,7 @@ TEST(SurfaceCapacities, InterfaceEdgeOf31CellsASideIsSwappedAndOneOf32LeftAlone)
       for (Index i = 0; i < n; ++i) cells.push_back({0, 1, i + 2, (i + 1) % n + 2});
       TetMesh mesh = build(points, cells);
       for (Index i = 0; i < n; ++i) mesh.set_region(C(i), i < k ? 1 : 2);
-      const SurfaceMesh surface(mesh, flat());
+      const SurfaceMesh surface(mesh, flat_surface());
       ASSERT_TRUE(surface.may_swap(V(0), V(1)));
       const auto quality = values(mesh);
       const auto plan =
@@ -101,7 +95,7 @@ std::vector<HalfFaceHandle> link_of(const TetMesh& mesh, VertexHandle v) {
 TEST(SurfaceCapacities, VertexOf64FacesMovesAndOneOf65IsLeftAlone) {
   for (const Index n : {Index{63}, Index{64}, Index{65}, Index{300}}) {
     const TetMesh mesh = disc(n, {0.5, 0.2, 0});
-    const SurfaceMesh surface(mesh, flat());
+    const SurfaceMesh surface(mesh, flat_surface());
     const auto link = link_of(mesh, V(0));
     const SurfaceSearch search{&surface};
     const auto by_volume = search(mesh, V(0), link, VolumeLength{}, std::span<const double>(values(mesh)));
@@ -115,7 +109,7 @@ TEST(SurfaceCapacities, VertexOf64FacesMovesAndOneOf65IsLeftAlone) {
 TEST(SurfaceCapacities, VertexOf64FacesIsCollapsedAndOneOf65LeftAlone) {
   for (const Index n : {Index{63}, Index{64}, Index{65}, Index{300}}) {
     TetMesh mesh = disc(n, {1 - 1e-9, 1e-10, 0});
-    SurfaceMesh surface(mesh, flat());
+    SurfaceMesh surface(mesh, flat_surface());
     std::vector<VertexHandle> targets;
     surface.collapse_targets(V(0), targets);
     ASSERT_FALSE(targets.empty());

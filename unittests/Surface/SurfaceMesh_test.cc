@@ -14,15 +14,11 @@
 #include "Operators/Clusters.hh"
 #include "Surface/Features.hh"
 #include "Surface/InputSurface.hh"
+#include "Surface/Meshes.hh"
 
 namespace hfr::test {
 namespace {
 
-SurfaceOptions flat() {
-  SurfaceOptions options;
-  options.mode = SurfaceMode::kFlat;
-  return options;
-}
 SurfaceOptions free_within(double hausdorff) {
   SurfaceOptions options;
   options.mode = SurfaceMode::kFree;
@@ -47,7 +43,7 @@ VertexHandle at(const TetMesh& mesh, Vec3 p) {
 
 TEST(SurfaceMesh, BoxHasCornersEdgesAndFacets) {
   const TetMesh mesh = built(generate::box({3, 3, 3}));
-  for (const SurfaceOptions& options : {flat(), free_within(0.1)}) {
+  for (const SurfaceOptions& options : {flat_surface(), free_within(0.1)}) {
     const SurfaceMesh surface(mesh, options);
     EXPECT_EQ(surface.n_faces(), 6U * 9 * 2);
     EXPECT_EQ(surface.n_feature_edges(), 12U * 3);
@@ -76,7 +72,7 @@ TEST(SurfaceMesh, BumpsWithinReachAreNoFeaturesAndTheRimIs) {
 
 TEST(SurfaceMesh, FacesAndHalfFacesAreLinkedBothWays) {
   const TetMesh mesh = jittered(3, 0.2, 1);
-  SurfaceMesh surface(mesh, flat());
+  SurfaceMesh surface(mesh, flat_surface());
   for (std::size_t f = 0; f < surface.n_faces(); ++f) {
     const HalfFaceHandle h = surface.halfface(mesh, f);
     ASSERT_TRUE(h.is_valid());
@@ -94,7 +90,7 @@ TEST(SurfaceMesh, EdgesOfSeveralFansAreNeitherSplitNorSwapped) {
   std::size_t n_pinched = 0, n_plain = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const TetMesh mesh = torn(seed);
-    const SurfaceMesh surface(mesh, flat());
+    const SurfaceMesh surface(mesh, flat_surface());
     std::map<std::pair<VertexHandle, VertexHandle>, int> n_faces;
     for (HalfFaceHandle h : mesh.boundary_halffaces()) {
       const auto f = mesh.halfface_vertices(h);
@@ -117,7 +113,7 @@ TEST(SurfaceMesh, EdgesOfSeveralFansAreNeitherSplitNorSwapped) {
 
 TEST(SurfaceMesh, OnlyDiagonalsWithinAFacetMayBeSwapped) {
   const TetMesh mesh = built(generate::box({2, 2, 2}));
-  const SurfaceMesh surface(mesh, flat());
+  const SurfaceMesh surface(mesh, flat_surface());
   std::size_t n_diagonals = 0;
   for (EdgeHandle e : mesh.boundary_edges()) {
     const auto [a, b] = mesh.edge_vertices(e);
@@ -133,7 +129,7 @@ TEST(SurfaceMesh, OnlyDiagonalsWithinAFacetMayBeSwapped) {
 
 TEST(SurfaceMesh, CollapsesGoAlongTheSurfaceAndAlongItsEdges) {
   const TetMesh mesh = built(generate::box({4, 4, 4}));
-  SurfaceMesh surface(mesh, flat());
+  SurfaceMesh surface(mesh, flat_surface());
   std::vector<VertexHandle> targets;
   surface.collapse_targets(at(mesh, {0, 0, 0}), targets);
   EXPECT_TRUE(targets.empty()) << "a corner must stay";
@@ -155,7 +151,7 @@ TEST(SurfaceMesh, PatchBordersAreFeatures) {
     const Vec3 sum = mesh.point(f[0]) + mesh.point(f[1]) + mesh.point(f[2]);
     if (sum.z == 0) mesh.labels().faces.set(f, sum.x < 1.5 ? 1 : 2);
   }
-  const SurfaceMesh surface(mesh, flat());
+  const SurfaceMesh surface(mesh, flat_surface());
   EXPECT_EQ(surface.n_feature_edges(), 12U * 4 + 4);
   EXPECT_EQ(surface.motion_constraint(at(mesh, {0.5, 0.5, 0})).kind, SurfaceKind::kCurve);
   EXPECT_EQ(surface.motion_constraint(at(mesh, {0.5, 0, 0})).kind, SurfaceKind::kFixed);
@@ -165,7 +161,7 @@ TEST(SurfaceMesh, WhatTheUserHasLockedStays) {
   TetMesh mesh = built(generate::box({4, 4, 4}));
   const VertexHandle middle = at(mesh, {0.5, 0.5, 0});
   const auto kind_with = [&](auto&& lock) {
-    SurfaceOptions options = flat();
+    SurfaceOptions options = flat_surface();
     lock(options);
     return SurfaceMesh(mesh, options).motion_constraint(middle).kind;
   };
@@ -190,7 +186,7 @@ TEST(SurfaceMesh, WhatTheUserHasLockedStays) {
 
 TEST(SurfaceMesh, InterfaceBelongsToTheSurfaceAndIsSwappedUnlessFixed) {
   TetMesh mesh = built(generate::two_region_box({4, 4, 4}));
-  const SurfaceMesh surface(mesh, flat());
+  const SurfaceMesh surface(mesh, flat_surface());
   EXPECT_EQ(surface.n_faces(), 6U * 16 * 2 + 16 * 2);
   EXPECT_TRUE(surface.in_step(mesh));
   const VertexHandle inside = at(mesh, {0.5, 0.5, 0.5});
@@ -212,13 +208,13 @@ TEST(SurfaceMesh, InterfaceBelongsToTheSurfaceAndIsSwappedUnlessFixed) {
   for (FaceHandle f : mesh.faces())
     if (std::ranges::all_of(mesh.face_vertices(f), [&](VertexHandle v) { return mesh.point(v).x == 0.5; }))
       mesh.set_fixed(f);
-  EXPECT_EQ(n_swappable(SurfaceMesh(mesh, flat())), 0U);
+  EXPECT_EQ(n_swappable(SurfaceMesh(mesh, flat_surface())), 0U);
 }
 
 TEST(SurfaceMesh, PinchedSurfacesAreTakenApart) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const TetMesh mesh = torn(seed);
-    for (const SurfaceOptions& options : {flat(), free_within(0.05)}) {
+    for (const SurfaceOptions& options : {flat_surface(), free_within(0.05)}) {
       const SurfaceMesh surface(mesh, options);
       EXPECT_TRUE(surface.in_step(mesh)) << "seed " << seed;
     }
@@ -271,7 +267,7 @@ TEST(SurfaceMesh, OptionsOutOfRangeAreRefused) {
   const TetMesh mesh = built(generate::box({1, 1, 1}));
   SurfaceOptions options = free_within(-1);
   EXPECT_THROW(SurfaceMesh(mesh, options), InvalidInput);
-  options = flat();
+  options = flat_surface();
   options.feature_angle = 181;
   EXPECT_THROW(SurfaceMesh(mesh, options), InvalidInput);
 }
@@ -443,7 +439,7 @@ void expect_same_answers(SurfaceMesh& plain, SurfaceMesh& seen, const TetMesh& m
 TEST(SurfaceMesh, APartSeesTheSurfaceOfTheWhole) {
   const TetMesh mesh = jittered(4, 0.2, 3);
   const Backwards part(mesh.n_vertices());
-  for (const SurfaceOptions& options : {flat(), free_within(0.05)}) {
+  for (const SurfaceOptions& options : {flat_surface(), free_within(0.05)}) {
     SurfaceMesh plain(mesh, options);
     const auto whole = numbered(mesh, options, part);
     const auto seen = whole->seen_from(part);

@@ -10,16 +10,11 @@
 #include "Remesh/Patch.hh"
 #include "Remesh/PatchSearch.hh"
 #include "Remesh/StageBench.hh"
+#include "Surface/Meshes.hh"
 #include "Surface/SurfaceMesh.hh"
 
 namespace hfr::test {
 namespace {
-
-SurfaceOptions flat() {
-  SurfaceOptions options;
-  options.mode = SurfaceMode::kFlat;
-  return options;
-}
 
 /// The cell with a corner there.
 CellHandle cell_at(const TetMesh& mesh, Vec3 p) {
@@ -42,7 +37,7 @@ bool is_whole(const TetMesh& mesh, VertexHandle v, const Patch& patch) {
 
 TEST(SurfacePart, MayDoWhatTheWholeMayAwayFromTheOtherCells) {
   const TetMesh mesh = built(generate::box({6, 6, 6}));
-  SurfaceMesh whole(mesh, flat());
+  SurfaceMesh whole(mesh, flat_surface());
   // A corner, the middle of an edge, the middle of a side.
   for (const Vec3 place : {Vec3{0, 0, 0}, Vec3{0.5, 0, 0}, Vec3{0.5, 0.5, 0}}) {
     const Patch patch(mesh, cell_at(mesh, place), 2);
@@ -90,7 +85,7 @@ TEST(SurfacePart, MayDoWhatTheWholeMayAwayFromTheOtherCells) {
 
 TEST(SurfacePart, WhatIsLockedPeriodicOrAnInterfaceStays) {
   TetMesh mesh = labelled_box(4, 0.1, 1);
-  SurfaceOptions options = flat();
+  SurfaceOptions options = flat_surface();
   options.fixed_patches = {5};  // z = 0
   SurfaceMesh whole(mesh, options);
   std::size_t n_interface = 0;
@@ -170,7 +165,7 @@ TEST(SurfacePart, SearchChangesTheSurfaceAndKeepsShapeLabelsAndBits) {
     ASSERT_GT(before, 0);
     std::optional<TetMesh> alone;
     for (const int threads : {1, 2, 3, 7}) {
-      const Searched done = searched(first, flat(), threads);
+      const Searched done = searched(first, flat_surface(), threads);
       const TetMesh& mesh = done.mesh;
       EXPECT_EQ(check(mesh), Ok);
       EXPECT_TRUE(done.in_step);
@@ -199,7 +194,7 @@ TEST(SurfacePart, SearchChangesTheSurfaceAndKeepsShapeLabelsAndBits) {
 
 TEST(SurfacePart, SearchLeavesCurvedSurfacesAlone) {
   // Their shape is that of the input, which a patch does not know.
-  SurfaceOptions curved = flat();
+  SurfaceOptions curved = flat_surface();
   curved.mode = SurfaceMode::kFree;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Searched done = searched(box_with_patches(seed), curved, 1);

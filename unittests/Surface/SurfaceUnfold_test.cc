@@ -104,7 +104,7 @@ TEST(SurfaceUnfold, EndsWhenToldToWithWhatFitsSoFar) {
 
 TEST(SurfaceUnfold, RunEndsWhereTheDistanceIsTooSmall) {
   // A vertex of an inverted cell made it less so for ever, ever further away: for minutes.
-  TetMesh mesh = built(generate::cylinder(3, 8, 1, 2, 0, /*wring=*/120));
+  TetMesh mesh = built(generate::cylinder(4, 12, 1, 2, 0, /*wring=*/120));
   ImproveOptions options;
   options.policy = {};
   options.surface.mode = SurfaceMode::kFree;
