@@ -38,7 +38,7 @@ double sum_in_order(Comm& comm, std::span<const Numbered> values, std::uint64_t 
 }
 
 std::size_t PartUnfolding::look() {
-  invalid_ = invalid_cells(parts_.part(), policy_);
+  invalid_ = invalid_cells(parts_.part(), policy_, known_values(parts_.work()));
   std::erase_if(invalid_, [&](CellHandle c) { return !parts_.is_own(c); });
   return static_cast<std::size_t>(parts_.comm().sum(invalid_.size()));
 }
@@ -75,6 +75,7 @@ std::size_t PartUnfolding::take(int layers) {
   std::erase_if(own, [&](VertexHandle v) { return parts_.work().frozen[v.idx()] != 0; });
   const std::uint64_t n = parts_.comm().sum(own.size());
   if (n == 0) return 0;
+  parts_.work().forget_qualities();
   vertices_ = with_others_near(own);
   colours_.emplace(parts_, vertices_, policy_);
   groups_ = colours_->colour_groups();

@@ -34,8 +34,9 @@ void restore(TetMesh& mesh, MeshInParts* parts, MeshCopy copy) {
     mesh.restore(TetMesh(*copy.mesh));
 }
 
-Checkpoint::Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy)
-    : policy_(policy), input_(standing_of(input, found, policy)) {}
+Checkpoint::Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy,
+                       const KnownValues& known)
+    : policy_(policy), input_(standing_of(input, found, policy, known)) {}
 
 Checkpoint::Checkpoint(MeshInParts& parts, par::Policy policy)
     : policy_(policy), parts_(&parts), input_(parts.standing()) {}
@@ -68,12 +69,19 @@ void Checkpoint::keep(TetMesh& mesh, bool valid, Revision revision) {
   kept_revision_ = revision;
 }
 
+void Checkpoint::trust(TetMesh& mesh, Revision revision) {
+  if (!may_trust_ || !kept_ || revision == kept_revision_) return;
+  require_sound(mesh);
+  is_trusted_ = true;
+}
+
 void Checkpoint::put_back(TetMesh& mesh) {
   restore(mesh, parts_, std::exchange(kept_, {}));
   restored_ = true;
 }
 
 void Checkpoint::require_sound(TetMesh& mesh) {
+  if (is_trusted_) return;
   const std::string fault = parts_ ? parts_->fault(kept_.parts) : fault_of(mesh);
   if (fault.empty()) return;
   put_back(mesh);

@@ -34,10 +34,10 @@ void restore(TetMesh& mesh, MeshInParts* parts, MeshCopy copy);
 /// A run that announces nothing makes no copy. One copy is held at a time: its memory is that of the mesh.
 ///
 /// What is kept and what is left in the end is tested for rules that operators have broken since the last
-/// copy. The input is taken to keep the kernel's rules.
+/// copy; see trust(). The input is taken to keep the kernel's rules.
 class Checkpoint {
  public:
-  Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy);
+  Checkpoint(const TetMesh& input, const Survey& found, par::Policy policy, const KnownValues& known = {});
   /// Of a mesh in parts, each of whose ranks has one, and calls all of it at the same time as the others. The
   /// meshes that it is given are parts.
   Checkpoint(MeshInParts& parts, par::Policy policy);
@@ -55,6 +55,14 @@ class Checkpoint {
   /// nothing for a valid mesh that comes from an invalid one, because no stage makes valid cells invalid.
   /// Throws InternalError, with the mesh as it was kept, where a rule has been broken.
   void keep(TetMesh& mesh, bool valid, Revision revision);
+
+  /// Of a mesh that was changed where rules could be broken, and in which none can be from here on: it is
+  /// tested now, and not again until distrust(). Does nothing without a copy, where the mesh is what is kept,
+  /// or before may_trust(). Throws as keep() does.
+  void trust(TetMesh& mesh, Revision revision);
+  void may_trust(bool may) { may_trust_ = may; }
+  void distrust() { is_trusted_ = false; }
+  bool is_trusted() const { return is_trusted_; }
 
   /// At the end of a run, before garbage is collected: where the mesh has become worse than the input, puts
   /// back what was kept; true when it did. Where the smallest angle alone is worse, mend() is called before.
@@ -74,6 +82,7 @@ class Checkpoint {
   std::size_t n_cells(const TetMesh& mesh) const;
   void put_back(TetMesh& mesh);
   /// Throws InternalError, with the mesh as it was kept, where the mesh breaks a rule that the copy keeps.
+  /// Does not look where no rule can be broken.
   void require_sound(TetMesh& mesh);
   /// The first rule that it breaks since the copy was made; empty where it breaks none.
   std::string fault_of(const TetMesh& mesh) const;
@@ -85,6 +94,7 @@ class Checkpoint {
   Standing kept_standing_;
   Revision kept_revision_;
   bool restored_ = false;
+  bool may_trust_ = false, is_trusted_ = false;
 };
 
 }  // namespace hfr

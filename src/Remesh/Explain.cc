@@ -58,12 +58,12 @@ std::size_t bound_met(const Strategy& strategy, std::size_t n_cells, std::size_t
 }  // namespace
 
 void explain(const TetMesh& mesh, const ImproveOptions& options, const Strategy& strategy,
-             std::size_t max_cells_met, Result& result) {
+             std::size_t max_cells_met, const KnownValues& known, Result& result) {
   result.stuck_below =
       strategy.goal ? strategy.goal->degrees : missed_target(strategy, result.after.min_dihedral.min);
   if (result.stuck_below == 0) return;
   std::vector<StuckCell>& stuck = result.stuck;
-  stuck = stuck_cells(mesh, result.stuck_below, result.unfillable_faces, options.policy);
+  stuck = stuck_cells(mesh, result.stuck_below, result.unfillable_faces, options.policy, known);
   const bool frozen = options.surface.mode == SurfaceMode::kFrozen;
   if (!frozen) blame_features(mesh, stuck, result.stuck_below, options.surface, options.policy);
   const StuckReason ended = ended_by(options, result);

@@ -44,10 +44,11 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
   const par::Policy policy = strategy.pass.policy;
   const bool valid = checkpoint.input().is_valid();
   // Most of a run over everything is walking from cell to cell; a goal run touches too little to pay for it.
-  if (!strategy.goal && is_scattered(mesh, policy))
-    order = reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = policy});
   Workspace& work = memory.work;
-  work.begin();
+  if (!strategy.goal && is_scattered(mesh, policy)) {
+    order = reorder(mesh, {.curve = SpaceCurve::kMorton, .vertices = false, .policy = policy});
+    work.follow_order(order.cells);
+  }
   const bool knows_stars = std::exchange(memory.knows_stars, false);
   Run run = {mesh, work, strategy, control, findings, device, nullptr, &checkpoint, strategy.bounds};
   if (!valid) run.keep(valid);
@@ -55,10 +56,10 @@ bool run(TetMesh& mesh, const Parts& parts, GarbageMap& order, bool& has_begun,
   const SurfaceRun surface(mesh, options, !valid, unfolding,
                            [&run_control = control] { return run_control.stopped(); });
   for (PassReport& pass : unfolding) control.add(std::move(pass));
-  if (knows_stars)
-    work.attach_again(mesh, policy);
-  else
-    work.attach(mesh, policy);
+  if (surface.get() && !valid) work.forget_qualities();  // it may have been unfolded
+  if (!knows_stars) work.find_stars(mesh, policy);
+  work.attach_again(mesh, policy);
+  if (!work.has_qualities_of<MinSine2>()) work.set_qualities(mesh, MinSine2{}, policy);
   if (!memory.is_folded || surface.get()) memory.is_folded = !folded_faces(mesh, policy).empty();
   findings.is_folded = *memory.is_folded;
   findings.may_cover_twice = !valid || !std::exchange(memory.covers_once, false);
@@ -91,18 +92,19 @@ GarbageMap tidy(TetMesh& mesh, const ImproveOptions& options, bool changed, cons
 }
 
 /// Fills in what is said of a mesh that is not known to meet the goal.
-void look_for_faults(const TetMesh& mesh, const Survey& found, par::Policy policy, Result& result) {
+void look_for_faults(const TetMesh& mesh, const Survey& found, const KnownValues& known, par::Policy policy,
+                     Result& result) {
   if (found.n_invalid == 0) return;
-  result.invalid_cells = invalid_cells(mesh, policy);
+  result.invalid_cells = invalid_cells(mesh, policy, known);
   result.folded_faces = folded_faces(mesh, policy);
   result.unfillable_faces = unfillable_faces(mesh, result.invalid_cells, result.folded_faces, policy);
 }
 
 /// Of the mesh as it ended, beside what it was.
 void add_statistics(const TetMesh& mesh, const ImproveOptions& options, const Strategy& strategy,
-                    const Findings& findings, Result& result) {
+                    const Findings& findings, const KnownValues& known, Result& result) {
   result.after = result.changed ? statistics(mesh, options.policy) : result.before;
-  explain(mesh, options, strategy, findings.max_cells_met, result);
+  explain(mesh, options, strategy, findings.max_cells_met, known, result);
   for (const std::uint32_t size : star_sizes(mesh, options.policy))
     result.n_large_stars += size > Star::kCapacity ? 1 : 0;
 }
@@ -114,9 +116,14 @@ Result improve_dense(TetMesh& mesh, const ImproveOptions& options, RunMemory& me
   RunControl control(options.time_limit, options.cancel, options.progress);
   const double goal = options.min_dihedral ? dihedral_decision(*options.min_dihedral) : 0.0;
   const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
-  Survey found = memory.found ? *std::exchange(memory.found, std::nullopt) : survey(mesh, options.policy);
+  Workspace& work = memory.work;
+  work.begin();
+  if (!memory.found) work.set_qualities(mesh, MinSine2{}, options.policy);
+  Survey found = memory.found ? *std::exchange(memory.found, std::nullopt)
+                              : survey(mesh, options.policy, known_values(work));
   const Strategy strategy = resolve(options, found, mesh.n_logical_cells());
-  Checkpoint checkpoint(mesh, found, options.policy);
+  Checkpoint checkpoint(mesh, found, options.policy, known_values(work));
+  checkpoint.may_trust(strategy.course == Course::kGoal);  // which has no copy of a mesh that comes in sound
   Findings findings;
   DeviceSession device;
   const bool nothing_to_do = strategy.course == Course::kGoal && meets_goal(found);
@@ -148,16 +155,17 @@ Result improve_dense(TetMesh& mesh, const ImproveOptions& options, RunMemory& me
   result.changed = control.n_changes() > 0;
   const GarbageMap garbage = tidy(mesh, options, result.changed, order);
   fixed.release(mesh, garbage.vertices);
-  if (memory.knows_stars) memory.work.follow(garbage);
+  if (!result.changed && !order.cells.empty()) work.forget_qualities();
+  if (memory.knows_stars) work.follow(garbage);
   if (recorder) result.maps = recorder->maps(order, garbage, options.policy);
   if (!known_to_meet) {
-    if (result.changed) found = survey(mesh, options.policy);
-    look_for_faults(mesh, found, options.policy, result);
+    if (result.changed) found = survey(mesh, options.policy, known_values(work));
+    look_for_faults(mesh, found, known_values(work), options.policy, result);
   }
   result.goal_reached = known_to_meet || meets_goal(found);
   result.stop = control.reason_to_end(options, result.goal_reached);
   result.seconds = control.seconds();
-  if (options.statistics) add_statistics(mesh, options, strategy, findings, result);
+  if (options.statistics) add_statistics(mesh, options, strategy, findings, known_values(work), result);
   return result;
 }
 

@@ -60,11 +60,16 @@ Worklist PassState::changed_since(std::uint32_t since, const Focus& focus) {
 
 bool PassState::checks_links() {
   Findings& findings = run_.findings;
+  Checkpoint* const checkpoint = run_.checkpoint;
+  const bool can_break_rules = n_invalid_ > 0 || findings.is_folded || !run_.work.pinched.empty();
+  if (checkpoint && can_break_rules) checkpoint->distrust();
   if (n_invalid_ > 0) return true;
   if (std::exchange(findings.may_cover_twice, false) && !findings.is_folded) {
     to_host();
     if (n_invalid_ > 0) return true;  // after a device was lost
     findings.is_folded = run_.is_part() ? run_.ranks->covers_twice() : covers_twice(run_.mesh, run_.policy());
+    if (checkpoint && !findings.is_folded && run_.work.pinched.empty())
+      checkpoint->trust(run_.mesh, run_.control.revision());
   }
   return findings.is_folded;
 }

@@ -2,7 +2,6 @@
 #include "Remesh/Patch.hh"
 
 #include <algorithm>
-#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -10,7 +9,6 @@
 #include "HalfFace/TupleMap.hh"
 #include "HalfFace/Writer.hh"
 #include "Operators/Cavity.hh"
-#include "Quality/Metrics.hh"
 
 namespace hfr {
 
@@ -199,20 +197,6 @@ class LabelsOfMesh : public FaceLabels {
   TetMesh& mesh_;
 };
 
-/// Brings what the workspace has of these cells up to date, in the metric of its qualities.
-void measure(const TetMesh& mesh, std::span<const CellHandle> cells, Workspace& work) {
-  const auto in = [&](const auto& metric) {
-    for (CellHandle c : cells) {
-      const auto& v = mesh.cell(c).v;
-      work.quality[c.idx()] =
-          mesh.is_deleted(c) ? std::numeric_limits<double>::infinity()
-                             : metric(mesh.point(v[0]), mesh.point(v[1]), mesh.point(v[2]), mesh.point(v[3]));
-    }
-  };
-  if (work.has_qualities_of<MinSine2>()) in(MinSine2{});
-  if (work.has_qualities_of<MinDihedral>()) in(MinDihedral{});
-}
-
 }  // namespace
 
 void Patch::put_back(TetMesh& whole, const TetMesh& changed) const {
@@ -243,7 +227,7 @@ void Patch::put_back(TetMesh& whole, const TetMesh& changed, Workspace& work) co
   cells.insert(cells.end(), cells_.begin(), cells_.end());  // some of which are none now
   for (CellHandle c : cells) work.pending[c.idx()] = 0xff;
   work.all_touched = true;
-  measure(whole, cells, work);
+  work.renew_qualities(whole, cells, par::Policy{1});
   work.look_for_pinched(whole, vertices);
 }
 

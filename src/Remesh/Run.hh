@@ -68,7 +68,7 @@ struct Run {
   /// Of the whole, as what follows.
   Survey survey() const { return is_part() ? parts()->survey() : hfr::survey(mesh, policy(), known()); }
   Standing standing() const {
-    return is_part() ? parts()->standing() : standing_of(mesh, survey(), policy());
+    return is_part() ? parts()->standing() : standing_of(mesh, survey(), policy(), known());
   }
   std::size_t n_below(double degrees) const { return tally_below(std::span(&degrees, 1)).n_below[0]; }
   AngleTally tally_below(std::span<const double> degrees) const {

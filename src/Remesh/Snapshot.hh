@@ -25,6 +25,7 @@ class Snapshot {
   SurfaceCopy surface_;
   Revision revision_;
   bool may_cover_twice_;  // see Findings
+  bool is_trusted_;       // see Checkpoint
 };
 
 }  // namespace hfr

@@ -17,9 +17,9 @@ bool is_more(double a, double b) { return a > b + kSmallestGain * std::abs(b); }
 
 }  // namespace
 
-Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy) {
+Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy, const KnownValues& known) {
   if (found.n_invalid == 0) return standing_of(found.worst, {});
-  return standing_of(found.worst, volumes_of(mesh, invalid_cells(mesh, policy)));
+  return standing_of(found.worst, volumes_of(mesh, invalid_cells(mesh, policy, known)));
 }
 
 InvalidVolumes volumes_of(const TetMesh& mesh, std::span<const CellHandle> invalid) {

@@ -24,7 +24,8 @@ struct Standing {
 };
 /// Of a mesh in which survey() has found that. Does not depend on the order of the cells. Another pass over
 /// them where some are invalid.
-Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy);
+Standing standing_of(const TetMesh& mesh, const Survey& found, par::Policy policy,
+                     const KnownValues& known = {});
 /// Inverted and flat cells among some.
 struct InvalidVolumes {
   std::size_t n_flat = 0;

@@ -125,12 +125,13 @@ void prove_kept(const TetMesh& mesh, std::span<const std::uint8_t> frozen, std::
 }
 
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
-                                   std::span<const HalfFaceHandle> unfillable, par::Policy policy) {
+                                   std::span<const HalfFaceHandle> unfillable, par::Policy policy,
+                                   const KnownValues& known) {
   const std::vector<std::uint8_t> frozen = constrained_vertices(mesh, policy);
   std::vector<std::uint8_t> on_fold(unfillable.empty() ? 0 : mesh.n_vertices(), 0);
   for (HalfFaceHandle h : unfillable)
     for (VertexHandle v : mesh.halfface_vertices(h)) on_fold[v.idx()] = 1;
-  std::vector<StuckCell> cells = without_proofs(mesh, cells_below(mesh, degrees, policy), policy);
+  std::vector<StuckCell> cells = without_proofs(mesh, cells_below(mesh, degrees, policy, known), policy);
   const bool all_positive = are_positive(cells);
   par::for_each(policy, cells.size(), [&](std::size_t i) {
     StuckCell& stuck = cells[i];

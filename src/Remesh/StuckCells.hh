@@ -9,13 +9,15 @@
 #include "HalfFace/TetMesh.hh"
 #include "Parallel/Parallel.hh"
 #include "Remesh/Result.hh"
+#include "Remesh/Survey.hh"
 
 namespace hfr {
 
 /// Each cell whose smallest dihedral is below `degrees`, ascending, with what is proven to keep it there,
 /// else kNotFound. `unfillable`: those of the boundary faces at the invalid cells.
 std::vector<StuckCell> stuck_cells(const TetMesh& mesh, double degrees,
-                                   std::span<const HalfFaceHandle> unfillable, par::Policy policy = {});
+                                   std::span<const HalfFaceHandle> unfillable, par::Policy policy = {},
+                                   const KnownValues& known = {});
 
 /// These cells with their smallest dihedrals, in this order, and no reason yet but kNotFound.
 std::vector<StuckCell> without_proofs(const TetMesh& mesh, std::span<const CellHandle> cells,

@@ -147,11 +147,17 @@ std::size_t n_below(const TetMesh& mesh, double degrees, par::Policy policy) {
   return tally_below(mesh, std::span(&degrees, 1), policy).n_below[0];
 }
 
-std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy) {
+std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy, const KnownValues& known) {
+  const std::span<const double> values = known.sines.empty() ? known.dihedrals : known.sines;
+  HFR_ASSERT(values.empty() || values.size() == mesh.n_cells());
   return cells_that(mesh, policy, [&](std::size_t begin, std::size_t end, std::vector<CellHandle>& found) {
-    for_decisions(mesh, MinSine2{}, begin, end, [&](std::size_t i, double value) {
+    const auto see = [&](std::size_t i, double value) {
       if (!(value > 0) && is_invalid(mesh, CellHandle(i))) found.push_back(CellHandle(i));
-    });
+    };
+    if (values.empty())
+      for_decisions(mesh, MinSine2{}, begin, end, see);
+    else
+      for (std::size_t i = begin; i < end; ++i) see(i, values[i]);
   });
 }
 

@@ -64,7 +64,7 @@ std::vector<CellHandle> worst_cells_below(const TetMesh& mesh, double degrees, s
 double degrees_with_few_below(const TetMesh& mesh, double degrees, std::size_t n, par::Policy policy,
                               const KnownValues& known = {});
 /// Cells whose volume is not positive beyond rounding, ascending.
-std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy);
+std::vector<CellHandle> invalid_cells(const TetMesh& mesh, par::Policy policy, const KnownValues& known = {});
 
 }  // namespace hfr
 

@@ -36,7 +36,7 @@ class MeshUnfolding : public Unfolding {
       : mesh_(run.mesh), work_(run.work), policy_(run.policy()), effort_(effort) {}
 
   std::size_t look() override {
-    invalid_ = invalid_cells(mesh_, policy_);
+    invalid_ = invalid_cells(mesh_, policy_, known_values(work_));
     return invalid_.size();
   }
 
@@ -136,6 +136,7 @@ class MeshUnfolding : public Unfolding {
       else if (mesh_.point(vertices_[i]) != before_[i])
         ++n_kept;
     }
+    work_.renew_qualities(mesh_, cells_, policy_);
     return n_kept;
   }
 
@@ -236,7 +237,6 @@ std::size_t unfold_by_moving(const Run& run, const UntangleEffort& effort, int i
   std::size_t n_invalid = unfolding->look();
   if (n_invalid > 0) run.findings.may_cover_twice = true;
   run.keep(n_invalid == 0);
-  run.work.forget_qualities();
   Tangle least;
   bool again = false;
   int idle = 0;

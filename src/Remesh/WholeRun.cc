@@ -22,6 +22,8 @@ bool settle(const Run& run, bool known_to_meet) {
     mending.may_add_poor_cells = run.strategy.course == Course::kAnyCost;
     polish_to(mending, run.strategy.mending(), checkpoint.input().worst);
   };
+  const Findings& findings = run.findings;
+  if (findings.is_folded || findings.may_cover_twice || !run.work.pinched.empty()) checkpoint.distrust();
   if (!checkpoint.settle(run.mesh, known_to_meet, mend)) return true;
   run.work.forget_qualities();
   const Survey found = run.survey();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -57,15 +58,21 @@ struct Workspace {
 
   /// Sizes everything for the mesh, all cells pending. Qualities are left to set_qualities().
   void attach(const TetMesh& mesh, par::Policy policy) {
-    star_size = star_sizes(mesh, policy);
-    pinched = pinched_vertices(mesh, star_size, policy);
+    forget_qualities();
+    find_stars(mesh, policy);
     attach_again(mesh, policy);
   }
 
-  /// The same where star_size and pinched are those of the mesh already.
+  /// Of all vertices what goes by the cells round them.
+  void find_stars(const TetMesh& mesh, par::Policy policy) {
+    star_size = star_sizes(mesh, policy);
+    pinched = pinched_vertices(mesh, star_size, policy);
+  }
+
+  /// The same as attach() where star_size and pinched are those of the mesh already, and so are qualities
+  /// that are not forgotten.
   void attach_again(const TetMesh& mesh, par::Policy policy) {
-    forget_qualities();
-    const std::size_t room = mesh.n_cells() + mesh.n_cells() / 16;  // as the mesh has
+    const std::size_t room = room_for(mesh);
     quality.reserve(room);
     claim.reserve(room);
     pending.reserve(room);
@@ -76,11 +83,20 @@ struct Workspace {
     changed.assign(mesh.n_vertices(), clock);
   }
 
-  /// Before the next run, of the mesh after garbage was collected: what goes with vertices alone follows.
+  /// After garbage was collected, before the next run: qualities follow, and what goes with vertices alone.
   void follow(const GarbageMap& garbage) {
     close_gaps(garbage.vertices, star_size);
     close_gaps(garbage.vertices, frozen);
     close_gaps(garbage.vertices, pinched);
+    if (qualities_of != QualitiesOf::kAnother) close_gaps(garbage.cells, quality);
+  }
+
+  /// Qualities follow cells that were given another order: each has gone to `to`.
+  void follow_order(const std::vector<CellHandle>& to) {
+    if (qualities_of == QualitiesOf::kAnother) return;
+    std::vector<double> now(quality.size());
+    for (std::size_t i = 0; i < to.size(); ++i) now[to[i].idx()] = quality[i];
+    quality.swap(now);
   }
 
   /// Brings `pinched` up to date for these vertices, whose star sizes are right.
@@ -105,6 +121,9 @@ struct Workspace {
     for (Index v : par::compact<Index>(policy, star_size.size(), asks)) vertices.push_back(VertexHandle(v));
     look_for_pinched(mesh, vertices);
   }
+
+  /// Slots for the cells of the mesh and those that rounds may put in, as the mesh has.
+  static std::size_t room_for(const TetMesh& mesh) { return mesh.n_cells() + mesh.n_cells() / 16; }
 
   /// Follows the mesh after it has grown.
   void grow(const TetMesh& mesh) {
@@ -132,8 +151,8 @@ struct Workspace {
   }
 
   /// `to`: from collect_garbage(); empty where nothing goes.
-  template <class T>
-  static void close_gaps(const std::vector<VertexHandle>& to, std::vector<T>& values) {
+  template <class H, class T>
+  static void close_gaps(const std::vector<H>& to, std::vector<T>& values) {
     if (values.empty() || to.empty()) return;
     std::size_t n = 0;
     for (std::size_t i = 0; i < to.size(); ++i)
@@ -156,6 +175,8 @@ struct Workspace {
   /// Decision value of every live cell; +infinity in deleted slots.
   template <class Metric>
   void set_qualities(const TetMesh& mesh, const Metric& metric, par::Policy policy) {
+    if (quality.capacity() < mesh.n_cells()) quality.reserve(room_for(mesh));
+    quality.resize(mesh.n_cells());
     par::for_ranges(policy, mesh.n_cells(), [&](std::size_t begin, std::size_t end) {
       for_decisions(mesh, metric, begin, end, [&](std::size_t i, double value) { quality[i] = value; });
     });
@@ -167,6 +188,20 @@ struct Workspace {
     return qualities_of != QualitiesOf::kAnother && qualities_of == kQualitiesOf<Metric>;
   }
   void forget_qualities() { qualities_of = QualitiesOf::kAnother; }
+  /// Brings those of these cells up to date, which others have changed; nothing where they are of a metric
+  /// that is not told apart.
+  void renew_qualities(const TetMesh& mesh, std::span<const CellHandle> cells, par::Policy policy) {
+    const auto in = [&](const auto& metric) {
+      par::for_each(policy, cells.size(), [&](std::size_t i) {
+        const auto& v = mesh.cell(cells[i]).v;
+        quality[cells[i].idx()] = mesh.is_deleted(cells[i]) ? std::numeric_limits<double>::infinity()
+                                                            : metric(mesh.point(v[0]), mesh.point(v[1]),
+                                                                     mesh.point(v[2]), mesh.point(v[3]));
+      });
+    };
+    if (has_qualities_of<MinSine2>()) in(MinSine2{});
+    if (has_qualities_of<MinDihedral>()) in(MinDihedral{});
+  }
 
   template <class Metric>
   static constexpr QualitiesOf kQualitiesOf =

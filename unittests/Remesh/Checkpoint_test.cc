@@ -137,6 +137,37 @@ TEST(Checkpoint, BrokenRuleIsAnInternalErrorAndLeavesWhatWasKept) {
   EXPECT_EQ(io::mesh_hash(mesh), hash);
 }
 
+/// What is trusted has been tested, and is not again until it is no longer trusted.
+TEST(Checkpoint, ATrustedMeshIsTestedOnce) {
+  const auto spoil = [](TetMesh& mesh) { TetMesh::Writer(mesh).cell(C(5)).v[1] = mesh.cell(C(5)).v[0]; };
+  TetMesh mesh = jittered(2, 0.1, 1);
+  Checkpoint checkpoint(mesh, survey(mesh, {}), {});
+  const auto settle = [&] { checkpoint.settle(mesh, /*known_no_worse=*/true, [] {}); };
+  checkpoint.trust(mesh, {1, 1});
+  EXPECT_FALSE(checkpoint.is_trusted()) << "without being allowed to";
+  checkpoint.may_trust(true);
+  checkpoint.trust(mesh, {1, 1});
+  EXPECT_FALSE(checkpoint.is_trusted()) << "without a copy";
+  checkpoint.keep(mesh, true, {});
+  checkpoint.trust(mesh, {});
+  EXPECT_FALSE(checkpoint.is_trusted()) << "by a copy of itself";
+  checkpoint.trust(mesh, {1, 1});
+  EXPECT_TRUE(checkpoint.is_trusted());
+  spoil(mesh);
+  EXPECT_NO_THROW(settle());
+  checkpoint.distrust();
+  EXPECT_THROW(settle(), InternalError);
+
+  TetMesh another = jittered(2, 0.1, 1);
+  const std::uint64_t hash = io::mesh_hash(another);
+  Checkpoint of_another(another, survey(another, {}), {});
+  of_another.may_trust(true);
+  of_another.keep(another, true, {});
+  spoil(another);
+  EXPECT_THROW(of_another.trust(another, {1, 1}), InternalError);
+  EXPECT_EQ(io::mesh_hash(another), hash);
+}
+
 TEST(Checkpoint, CancelAtAnyQuestionLeavesNoWorseMesh) {
   std::size_t n_restored = 0;
   for (const auto& [name, make] : meshes()) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "HalfFace/Reorder.hh"
 #include "Quality/CellQuality.hh"
 #include "Remesh/DamagedMeshes.hh"
 #include "Remesh/Meshes.hh"
+#include "Remesh/Standing.hh"
 
 namespace hfr::test {
 namespace {
@@ -54,6 +56,10 @@ std::vector<double> findings(const TetMesh& mesh, int threads, const KnownValues
     for (CellHandle c : cells_below(mesh, angle, policy, known)) all.push_back(c.idx());
     for (CellHandle c : worst_cells_below(mesh, angle, 7, policy, {}, known)) all.push_back(c.idx());
   }
+  for (CellHandle c : invalid_cells(mesh, policy, known)) all.push_back(c.idx());
+  const Standing standing = standing_of(mesh, survey(mesh, policy, known), policy, known);
+  all.push_back(standing.overlap);
+  all.push_back(static_cast<double>(standing.n_flat));
   return all;
 }
 
@@ -87,6 +93,40 @@ TEST(Survey, ValuesThatAreKnownChangeNothing) {
       EXPECT_TRUE(known_values(work).sines.empty() && known_values(work).dihedrals.empty());
     }
   }
+}
+
+/// Values of cells that others have changed are renewed, and go with the cells when garbage is collected.
+TEST(Survey, KnownValuesFollowTheMesh) {
+  TetMesh mesh = jittered(4, 0.3, 2);
+  Workspace work;
+  work.attach(mesh, {});
+  work.set_qualities(mesh, MinSine2{}, {});
+  Star star;
+  ASSERT_TRUE(mesh.gather_star(V(31), star));
+  const std::vector<CellHandle> moved(star.cells.begin(), star.cells.begin() + star.size);
+  mesh.set_point(V(31), mesh.point(V(31)) + Vec3{0.3, 0.2, 0.1});
+  mesh.delete_cell(moved[1]);
+  const auto is_right = [&] {
+    Workspace anew;
+    anew.attach(mesh, {});
+    anew.set_qualities(mesh, MinSine2{}, {});
+    return anew.quality == work.quality;
+  };
+  EXPECT_FALSE(is_right());
+  work.renew_qualities(mesh, moved, {});
+  EXPECT_TRUE(is_right());
+  for (std::size_t c = 3; c < mesh.n_cells(); c += 5)
+    if (!mesh.is_deleted(C(c))) mesh.delete_cell(C(c));
+  work.follow(mesh.collect_garbage());
+  EXPECT_TRUE(is_right());
+  EXPECT_EQ(work.star_size.size(), mesh.n_vertices());
+  work.follow_order(reorder(mesh, {.curve = SpaceCurve::kHilbert, .vertices = false}).cells);
+  EXPECT_TRUE(is_right());
+  const std::vector<double> known = work.quality;
+  work.forget_qualities();
+  work.renew_qualities(mesh, {{C(0), C(1)}}, {});
+  work.follow_order(std::vector<CellHandle>(mesh.n_cells(), C(0)));
+  EXPECT_EQ(work.quality, known) << "of a metric that is not told apart";
 }
 
 TEST(Survey, InvalidCellsAreTheInvertedAndTheFlatOnes) {

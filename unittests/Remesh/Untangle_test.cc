@@ -284,16 +284,26 @@ TEST(MinCells, CellsStayCloseToTheInputUnlessTheLargestAngleIsAskedFor) {
   EXPECT_GT(fewer_at_any_cost, 0U) << "nothing was held back";
 }
 
-/// Moving leaves the qualities of the workspace behind, whatever was known before.
-TEST(Untangle, ForgetsWhatWasKnownOfCellsThatItMoves) {
-  TetMesh mesh = jittered(5, 0.44, 1);
-  StageBench bench(mesh, serial());
-  Workspace& work = bench.run.work;
-  work.set_qualities(mesh, MinSine2{}, {});
-  ASSERT_TRUE(work.has_qualities_of<MinSine2>());
-  ASSERT_LT(bench.run.survey().worst, 0);
-  ASSERT_TRUE(untangle(bench.run, UntangleEffort{}));
-  EXPECT_FALSE(work.has_qualities_of<MinSine2>());
+/// What is known of cells follows those that are moved.
+TEST(Untangle, KeepsRightWhatWasKnownOfCellsThatItMoves) {
+  for (const double jitter : {0.44, 0.7}) {
+    TetMesh mesh = jittered(5, jitter, 1);
+    StageBench bench(mesh, serial());
+    Workspace& work = bench.run.work;
+    work.set_qualities(mesh, MinSine2{}, {});
+    const std::vector<double> before = work.quality;
+    ASSERT_LT(bench.run.survey().worst, 0);
+    EXPECT_EQ(untangle(bench.run, UntangleEffort{}), jitter < 0.5);
+    if (jitter > 0.5) {  // reconnected in another metric
+      EXPECT_FALSE(work.has_qualities_of<MinSine2>());
+      continue;
+    }
+    ASSERT_TRUE(work.has_qualities_of<MinSine2>());
+    EXPECT_NE(work.quality, before);
+    const std::vector<double> known = work.quality;
+    work.set_qualities(mesh, MinSine2{}, {});
+    EXPECT_EQ(known, work.quality);
+  }
 }
 
 TEST(Untangle, StopsWhenNothingIsInvertedAndTouchesNothingElse) {
