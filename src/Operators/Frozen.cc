@@ -27,36 +27,47 @@ bool is_pinched(const TetMesh& mesh, VertexHandle v, std::uint32_t star_size, St
 
 std::vector<std::uint8_t> pinched_vertices(const TetMesh& mesh, std::span<const std::uint32_t> star_size,
                                            par::Policy policy) {
-  // The first of the cells that connect round a vertex has no neighbour there before it: a vertex with one
-  // such cell has all its cells in one piece, and needs no walk.
+  // The first of the cells that connect round a vertex has no neighbour there before it, and the last one
+  // none behind it: a vertex with one such cell has all its cells in one piece, and needs no walk.
+  enum End : std::uint8_t { kFirst = 1, kLast = 4 };  // and twice as much from the second on
   const CellOrder order(mesh, policy);
-  std::vector<std::uint8_t> n_first(mesh.n_vertices(), 0);
+  std::vector<std::uint8_t> ends(mesh.n_vertices(), 0);
   const bool alone = par::thread_count(policy, mesh.n_cells()) == 1;
-  const auto count = [&](VertexHandle v) {
-    std::uint8_t& n = n_first[v.idx()];
+  const auto note = [&](VertexHandle v, End end) {
+    std::uint8_t& of_vertex = ends[v.idx()];
     if (alone) {
-      n = static_cast<std::uint8_t>(n < 2 ? n + 1 : 2);
+      of_vertex = static_cast<std::uint8_t>(of_vertex | (of_vertex & end) << 1 | end);
       return;
     }
-    const auto shared = par::atomic(n);  // 0 → 1 → 3: more than one
-    const bool again = (shared.fetch_or(1, std::memory_order_relaxed) & 1) != 0;
-    if (again) shared.fetch_or(2, std::memory_order_relaxed);
+    const auto shared = par::atomic(of_vertex);
+    par::before_shared_access();
+    const std::uint8_t was = shared.fetch_or(end, std::memory_order_relaxed);
+    par::before_shared_access();
+    if ((was & end) != 0) shared.fetch_or(static_cast<std::uint8_t>(end << 1), std::memory_order_relaxed);
   };
   par::for_each(policy, mesh.n_cells(), [&](std::size_t i) {
     const CellHandle c(i);
     if (mesh.is_deleted(c)) return;
     const Cell& cell = mesh.cell(c);
-    std::array<bool, 4> is_before{};
-    for (std::size_t k = 0; k < 4; ++k)
-      is_before[k] = cell.mate[k].is_valid() && order.less(cell_of(cell.mate[k]), c);
-    for (std::size_t k = 0; k < 4; ++k)
-      if (!is_before[(k + 1) % 4] && !is_before[(k + 2) % 4] && !is_before[(k + 3) % 4]) count(cell.v[k]);
+    unsigned before = 0, behind = 0;  // by face: a bit where there is a neighbour
+    for (unsigned k = 0; k < 4; ++k) {
+      if (!cell.mate[k].is_valid()) continue;
+      const bool is_before = order.less(cell_of(cell.mate[k]), c);
+      before |= static_cast<unsigned>(is_before) << k;
+      behind |= static_cast<unsigned>(!is_before) << k;
+    }
+    for (unsigned k = 0; k < 4; ++k) {
+      const unsigned across_from_k = 1U << k;  // the one face that v[k] is not on
+      if ((before & ~across_from_k) == 0) note(cell.v[k], kFirst);
+      if ((behind & ~across_from_k) == 0) note(cell.v[k], kLast);
+    }
   });
   std::vector<std::uint8_t> pinched(mesh.n_vertices(), 0);
   const bool any = par::reduce(
       policy, mesh.n_vertices(), false,
       [&](std::size_t i) {
-        const bool asks = n_first[i] > 1 || star_size[i] > Star::kCapacity;
+        const bool is_one_piece = (ends[i] & 2 * kFirst) == 0 || (ends[i] & 2 * kLast) == 0;
+        const bool asks = !is_one_piece || star_size[i] > Star::kCapacity;
         if (!asks) return false;
         Star star;
         pinched[i] = is_pinched(mesh, VertexHandle(i), star_size[i], star) ? 1 : 0;
