@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// VTK's files of a mesh in parts: pieces with an index, and one file.
+// VTK's files of a mesh in parts: pieces with an index. One file is another format of WriteRanges.cc.
 #include <algorithm>
 #include <bit>
-#include <limits>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 
 #include "Distributed/InParts.hh"
 #include "Distributed/OwnItems.hh"
-#include "Distributed/SharedFile.hh"
 #include "HalfFace/Errors.hh"
 #include "IO/MeditPart.hh"
 #include "IO/MeshFile.hh"
@@ -112,184 +109,6 @@ void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels
   out.commit();
 }
 
-std::string names_of(const DistributedMesh& mesh) {
-  io::MeshData named;
-  named.names = mesh.part().labels().names;
-  return io::names_text(named);
-}
-
-/// Where the arrays of a .vtu of raw appended data stand, as io::write() lays them out.
-class VtuLayout {
- public:
-  struct Array {
-    const char* section;
-    std::string_view name;
-    const char* type;
-    std::uint64_t components, n, size;  // numbers, and bytes of each
-    std::uint64_t begin = 0;            // of its bytes in the file
-    bool is_there = true;
-  };
-
-  VtuLayout(std::uint64_t n_points, std::uint64_t n_tets, const OwnLabels& labels, std::string names_given)
-      : n_cells(n_tets),
-        n_faces(labels.n_faces),
-        n_edges(labels.n_edges),
-        names_text(std::move(names_given)) {
-    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
-    const std::uint64_t n_items = n_cells + n_faces + n_edges;
-    const bool narrow = sizeof(Index) == 4 && n_points <= kMost, narrow_ends = n_items <= kMost / 4;
-    names = {"FieldData", io::kVtkNamesArray, "UInt8", 1, names_text.size(), 1, 0, !names_text.empty()};
-    points = {"Points", "Points", "Float64", 3, 3 * n_points, 8};
-    corners = {"Cells", "connectivity", narrow ? "Int32" : "Int64", 1, end_of(n_items), narrow ? 4U : 8U};
-    ends = {"Cells", "offsets", narrow_ends ? "Int32" : "Int64", 1, n_items, narrow_ends ? 4U : 8U};
-    types = {"Cells", "types", "UInt8", 1, n_items, 1};
-    vertex_labels = {"PointData", io::kVtkLabelArray, "Int32", 1, n_points, 4, 0, labels.with_vertex_labels};
-    fixed = {"PointData", io::kVtkFixedArray, "Int32", 1, n_points, 4, 0, (labels.n_fixed > 0)};
-    regions = {"CellData", io::kVtkRegionArray, "Int32", 1, n_items, 4, 0, labels.with_regions};
-    head_ = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"";
-    head_ += std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
-    head_ += "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n";
-    if (names.is_there) put_section("FieldData");
-    head_ += "<Piece NumberOfPoints=\"" + std::to_string(n_points) + "\" NumberOfCells=\"" +
-             std::to_string(n_items) + "\">\n";
-    for (const char* section : {"Points", "Cells", "PointData", "CellData"}) put_section(section);
-    head_ += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-    for (Array* array : arrays()) array->begin += head_.size();
-    end_ += head_.size();
-  }
-
-  /// Corners of the elements before number i: tetrahedra, then faces, then edges.
-  std::uint64_t end_of(std::uint64_t i) const {
-    const std::uint64_t in_cells = std::min(i, n_cells), in_faces = std::min(i - in_cells, n_faces);
-    return 4 * in_cells + 3 * in_faces + 2 * (i - in_cells - in_faces);
-  }
-
-  std::uint64_t n_cells, n_faces, n_edges;
-  std::string names_text;  ///< as io::names_text() has them
-  Array names, points, corners, ends, types, vertex_labels, fixed, regions;
-  /// Those that are there, in the order of the file.
-  std::vector<Array*> arrays() {
-    std::vector<Array*> all = {&names, &points, &corners, &ends, &types, &vertex_labels, &fixed, &regions};
-    std::erase_if(all, [](const Array* array) { return !array->is_there; });
-    return all;
-  }
-  const std::string& head() const { return head_; }
-  std::uint64_t end() const { return end_; }  ///< of the arrays
-  static constexpr std::string_view kTail = "\n</AppendedData>\n</VTKFile>\n";
-
- private:
-  void put_section(std::string_view section) {
-    head_ += "<" + std::string(section) + ">\n";
-    for (Array* array : arrays()) {
-      if (array->section != section) continue;
-      head_ += std::string("<DataArray type=\"") + array->type + "\" Name=\"" + std::string(array->name) +
-               "\" NumberOfComponents=\"" + std::to_string(array->components);
-      if (array == &names) head_ += "\" NumberOfTuples=\"" + std::to_string(array->n);
-      head_ += "\" format=\"appended\" offset=\"" + std::to_string(end_) + "\"/>\n";
-      array->begin = end_ + sizeof(std::uint64_t);
-      end_ = array->begin + array->n * array->size;
-    }
-    head_ += "</" + std::string(section) + ">\n";
-  }
-
-  std::string head_;
-  std::uint64_t end_ = 0;
-};
-
-/// The share of one rank: own points, cells and labels, and of what all know its slice.
-class VtuShare {
- public:
-  VtuShare(DistributedMesh& mesh, const Numbering& numbering, const OwnLabels& labels, VtuLayout& layout,
-           const std::filesystem::path& temporary)
-      : mesh_(mesh),
-        part_(mesh.part()),
-        numbering_(numbering),
-        labels_(labels),
-        layout_(layout),
-        file_(temporary) {}
-
-  void write() {
-    write_vertices();
-    const std::vector<CellHandle> cells = own_cells(mesh_);
-    if (layout_.corners.size == 4)
-      write_corners<std::int32_t>(cells);
-    else
-      write_corners<std::int64_t>(cells);
-    if (labels_.with_regions) write_labels(cells);
-    if (layout_.ends.size == 4)
-      write_ends<std::int32_t>();
-    else
-      write_ends<std::int64_t>();
-    for_slice([&](std::uint64_t i) {
-      const std::uint64_t n = layout_.n_cells;
-      file_.put(layout_.types.begin + i, i < n                     ? io::kVtkTetra
-                                         : i < n + layout_.n_faces ? io::kVtkTriangle
-                                                                   : io::kVtkLine);
-    });
-    if (mesh_.comm().rank() == 0) write_frame();
-    file_.finish();
-  }
-
- private:
-  void write_vertices() {
-    const std::vector<VertexHandle> vertices = own_vertices(mesh_);
-    for (VertexHandle v : vertices)
-      file_.put(layout_.points.begin + sizeof(Vec3) * numbering_(v), part_.point(v));
-    const auto put = [&](const VtuLayout::Array& array, auto&& value) {
-      if (!array.is_there) return;
-      for (VertexHandle v : vertices)
-        file_.put(array.begin + sizeof(std::int32_t) * numbering_(v), static_cast<std::int32_t>(value(v)));
-    };
-    put(layout_.vertex_labels, [&](VertexHandle v) { return part_.labels().vertex(v); });
-    put(layout_.fixed, [&](VertexHandle v) { return part_.is_fixed(v) ? 1 : 0; });
-  }
-  template <class T>
-  void write_corners(const std::vector<CellHandle>& cells) {
-    const auto put = [&](std::uint64_t item, const auto& vertices) {
-      std::array<T, std::tuple_size_v<std::remove_cvref_t<decltype(vertices)>>> corners{};
-      for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = static_cast<T>(numbering_(vertices[k]));
-      file_.put(layout_.corners.begin + sizeof(T) * layout_.end_of(item), corners);
-    };
-    for (CellHandle c : cells) put(numbering_(c), part_.cell(c).v);
-    for (const auto& face : labels_.faces) put(layout_.n_cells + face.number, face.v);
-    for (const auto& edge : labels_.edges) put(layout_.n_cells + layout_.n_faces + edge.number, edge.v);
-  }
-  void write_labels(const std::vector<CellHandle>& cells) {
-    const auto put = [&](std::uint64_t item, int label) {
-      file_.put(layout_.regions.begin + sizeof(std::int32_t) * item, static_cast<std::int32_t>(label));
-    };
-    for (CellHandle c : cells) put(numbering_(c), part_.region(c));
-    for (const auto& face : labels_.faces) put(layout_.n_cells + face.number, face.label);
-    for (const auto& edge : labels_.edges) put(layout_.n_cells + layout_.n_faces + edge.number, edge.label);
-  }
-  template <class T>
-  void write_ends() {
-    for_slice([&](std::uint64_t i) {
-      file_.put(layout_.ends.begin + sizeof(T) * i, static_cast<T>(layout_.end_of(i + 1)));
-    });
-  }
-  template <class Body>
-  void for_slice(Body&& body) {
-    const std::uint64_t n = mesh_.comm().n_ranks(), r = static_cast<std::uint64_t>(mesh_.comm().rank());
-    const std::uint64_t n_items = layout_.types.n;
-    for (std::uint64_t i = r * n_items / n; i < (r + 1) * n_items / n; ++i) body(i);
-  }
-  void write_frame() {
-    file_.put_text(0, layout_.head());
-    for (const VtuLayout::Array* array : layout_.arrays())
-      file_.put(array->begin - sizeof(std::uint64_t), std::uint64_t{array->n * array->size});
-    if (layout_.names.is_there) file_.put_text(layout_.names.begin, layout_.names_text);
-    file_.put_text(layout_.end(), VtuLayout::kTail);
-  }
-
-  DistributedMesh& mesh_;
-  const TetMesh& part_;
-  const Numbering& numbering_;
-  const OwnLabels& labels_;
-  VtuLayout& layout_;
-  OffsetFile file_;
-};
-
 }  // namespace
 
 std::filesystem::path part_path(const std::filesystem::path& path, int rank) {
@@ -319,13 +138,6 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   mesh.comm().sum(0);
 }
 
-void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path) {
-  const Numbering numbering(mesh);
-  const OwnLabels labels(mesh);
-  VtuLayout layout(numbering.n_vertices(), numbering.n_cells(), labels, names_of(mesh));
-  SharedFile file(mesh.comm(), path);
-  VtuShare(mesh, numbering, labels, layout, file.temporary()).write();
-  file.commit();
-}
+void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path) { write_ranges(mesh, path); }
 
 }  // namespace hfr::mpi

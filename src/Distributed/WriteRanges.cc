@@ -54,7 +54,7 @@ struct ElementItem {
 template <class Make, class Take>
 void hand_to_ranges(Comm& comm, const Ranges& ranges, std::size_t n_mine, Make&& make, Take&& take) {
   using Item = decltype(make(std::size_t{}));
-  constexpr std::size_t kAtOnce = 1'000'000;
+  constexpr std::size_t kAtOnce = 100'000;
   std::uint64_t n_came = 0;
   const auto n_turns =
       static_cast<std::size_t>(-comm.min(-static_cast<double>((n_mine + kAtOnce - 1) / kAtOnce)));
@@ -90,7 +90,7 @@ struct Elements {
       corners[at] = item.v;
       labels[at] = item.label;
     });
-    return {n_whole, io::NumberRows(corners), labels};
+    return {n_whole, io::NumberRows(corners), labels, ranges.begin()};
   }
 };
 
@@ -102,6 +102,8 @@ class RangeOfMesh {
     stretch_.processes = {static_cast<std::size_t>(comm_.rank()), comm_.n_ranks(),
                           [this](std::span<const std::byte> mine) { return comm_.all_gather(mine); }};
     stretch_.names = &mesh.part().labels().names;
+    stretch_.with_vertex_labels = labels.with_vertex_labels;
+    stretch_.with_labels = labels.with_regions;
     receive_points(labels);
     stretch_.edges = edges_.receive(comm_, labels.n_edges, labels.edges.size(),
                                     [&](std::size_t i) { return item(labels.edges[i]); });
@@ -149,7 +151,7 @@ class RangeOfMesh {
     stretch_.n_points = numbering_.n_vertices();
     stretch_.points = points_;
     stretch_.vertex_labels = vertex_labels_;
-    stretch_.fixed = {labels.n_fixed, io::NumberRows(fixed_), {}};
+    stretch_.fixed = {labels.n_fixed, io::NumberRows(fixed_), {}, 0};
   }
 
   DistributedMesh& mesh_;
@@ -187,12 +189,6 @@ io::LabelBoxes boxes_of_own(const DistributedMesh& mesh, const OwnLabels& labels
 
 std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
                                       const io::WriteOptions& options) {
-  if (io::lower(path.extension().string()) == ".vtu") {
-    HFR_REQUIRE((options.variant.empty() || options.variant == "appended"),
-                path.string() + ": .vtu in ranges is written as raw appended data alone");
-    write_vtu(mesh, path);
-    return {};
-  }
   io::require_stretches(path, options);
   const Numbering numbering(mesh);
   const OwnLabels labels(mesh);

@@ -12,7 +12,7 @@ namespace {
 
 template <class Items>
 ElementStretch whole(const Items& items, const std::vector<int>& labels) {
-  return {items.size(), NumberRows(items), labels};
+  return {items.size(), NumberRows(items), labels, 0};
 }
 
 template <std::size_t N>
@@ -51,6 +51,11 @@ MeshStretch stretch_of(const MeshData& mesh) {
   stretch.edges = whole(mesh.edges, mesh.edge_labels);
   stretch.triangles = whole(mesh.triangles, mesh.triangle_labels);
   stretch.cells = whole(mesh.cells, mesh.regions);
+  stretch.with_vertex_labels = !mesh.vertex_labels.empty();
+  const auto has_any = [](const std::vector<int>& labels) {
+    return std::ranges::any_of(labels, [](int label) { return label != 0; });
+  };
+  stretch.with_labels = !mesh.regions.empty() || has_any(mesh.triangle_labels) || has_any(mesh.edge_labels);
   stretch.names = &mesh.names;
   return stretch;
 }
@@ -68,13 +73,16 @@ LabelBoxes boxes_of(const MeshData& mesh) {
 void require_stretches(const std::filesystem::path& path, const WriteOptions& options) {
   require_writable_format(path, options);
   const std::string extension = lower(path.extension().string());
-  HFR_REQUIRE((extension == ".mesh" || extension == ".meshb" || extension == ".msh"),
+  HFR_REQUIRE((extension == ".mesh" || extension == ".meshb" || extension == ".msh" || extension == ".vtu"),
               path.string() + ": not written by several processes; known are .mesh, .meshb, .msh and .vtu");
+  HFR_REQUIRE((extension != ".vtu" || options.variant.empty() || options.variant == "appended"),
+              path.string() + ": several processes write .vtu as raw appended data alone");
 }
 
 StretchedFile stretched_file(const std::filesystem::path& path, const MeshStretch& mesh,
                              const WriteOptions& options) {
   const std::string extension = lower(path.extension().string());
+  if (extension == ".vtu") return vtu_stretches(mesh);
   return extension == ".msh" ? gmsh_stretches(path, mesh, options)
                              : medit_stretches(path, mesh, extension == ".meshb");
 }

@@ -60,6 +60,7 @@ struct ElementStretch {
   std::uint64_t total = 0;      ///< of all processes
   NumberRows corners;           ///< of those of this one
   std::span<const int> labels;  ///< one each, or empty
+  std::uint64_t first = 0;      ///< number of the first of this process
 
   int label(std::size_t i) const { return labels.empty() ? 0 : labels[i]; }
 };
@@ -85,8 +86,11 @@ struct MeshStretch {
   Processes processes;
   std::uint64_t first_point = 0, n_points = 0;  ///< the first of this process; all
   std::span<const Vec3> points;
-  std::span<const int> vertex_labels;  ///< one each, or empty
-  ElementStretch fixed, edges, triangles, cells;
+  std::span<const int> vertex_labels;             ///< one each, or empty
+  ElementStretch fixed, edges, triangles, cells;  ///< fixed: numbers of vertices
+  /// Whether any process has labels of vertices; regions of cells, or labels of edges or triangles that are
+  /// not 0.
+  bool with_vertex_labels = false, with_labels = false;
   const std::map<std::pair<int, int>, std::string>* names = nullptr;
   /// Of elements whose points this process knows, whoever writes them; all processes together have all. For
   /// formats that want_boxes().
@@ -105,7 +109,8 @@ struct StretchedFile {
   std::function<void(ByteSink&)> write;
   Notes notes;  ///< one line for each thing that the format cannot hold; the same for all
 };
-/// Throws InvalidInput for other formats than .mesh, .meshb and .msh, and for unknown variants.
+/// Throws InvalidInput for other formats than .mesh, .meshb, .msh and .vtu, and for unknown variants; of .vtu
+/// there is raw appended data alone.
 void require_stretches(const std::filesystem::path& path, const WriteOptions& options);
 /// What write_mesh() writes of a mesh without fields, where require_stretches() has nothing against it. All
 /// processes make one at the same time. Throws ResourceLimit where numbers are too wide.
@@ -115,6 +120,7 @@ StretchedFile stretched_file(const std::filesystem::path& path, const MeshStretc
 bool wants_boxes(const std::filesystem::path& path, const WriteOptions& options);
 
 // By format.
+StretchedFile vtu_stretches(const MeshStretch& mesh);
 StretchedFile medit_stretches(const std::filesystem::path& path, const MeshStretch& mesh, bool is_binary);
 StretchedFile gmsh_stretches(const std::filesystem::path& path, const MeshStretch& mesh,
                              const WriteOptions& options);

@@ -129,7 +129,7 @@ TEST(WriteRanges, ARankThatFailsLeavesTheFileThatWasThere) {
   const SharedFolder folder(world);
   const auto in = folder.path() / "in.vtu";
   if (world.rank() == 0) io::write_mesh(in, labelled(valid_box(4, 0.3, 1), 1, {}));
-  for (const char* const name : {"out.msh", "out.meshb"}) {
+  for (const char* const name : {"out.msh", "out.meshb", "out.vtu"}) {
     const auto out = folder.path() / name;
     const auto run = [&](int bad, std::uint64_t call) -> std::uint64_t {
       world.sum(0);
