@@ -49,11 +49,17 @@ class PartCheck {
  public:
   PartCheck(const DistributedMesh& mesh, const Pinches& known)
       : mesh_(mesh), part_(mesh.part()), known_(known) {}
+  /// Of what has changed since: cells of three vertices or more that `asks` marks, and these vertices.
+  PartCheck(const DistributedMesh& mesh, const Pinches& known, std::vector<std::uint8_t> asks)
+      : mesh_(mesh), part_(mesh.part()), known_(known), asks_(std::move(asks)) {}
 
   Fault run() const {
-    for (std::size_t i = 0; i < part_.n_cells(); ++i)
-      if (!part_.is_deleted(CellHandle(i)))
-        if (Fault fault = look_at(CellHandle(i))) return fault;
+    for (std::size_t i = 0; i < part_.n_cells(); ++i) {
+      const CellHandle c(i);
+      if (asks_.empty()) fetch_neighbours(i + kAhead);
+      if (part_.is_deleted(c) || !is_asked(c)) continue;
+      if (Fault fault = look_at(c)) return fault;
+    }
     const std::vector<VertexHandle> suspects = suspect_vertices();
     if (suspects.empty()) return {};
     const Stars stars(mesh_);
@@ -78,6 +84,23 @@ class PartCheck {
   }
 
  private:
+  static constexpr std::size_t kAhead = 16;
+
+  /// Of a cell whose turn comes soon.
+  void fetch_neighbours(std::size_t i) const {
+    if (i >= part_.n_cells()) return;
+    for (HalfFaceHandle m : part_.cell(CellHandle(i)).mate)
+      if (m.is_valid()) __builtin_prefetch(&part_.cell(cell_of(m)));
+  }
+  /// One that is not there asks, too.
+  bool is_asked(VertexHandle v) const {
+    return asks_.empty() || v.idx() >= asks_.size() || asks_[v.idx()] != 0;
+  }
+  bool is_asked(CellHandle c) const {
+    return asks_.empty() ||
+           std::ranges::count_if(part_.cell(c).v, [&](VertexHandle v) { return is_asked(v); }) >= 3;
+  }
+
   std::string name(CellHandle c) const { return "cell " + std::to_string(mesh_.number(c)); }
   std::string name(VertexHandle v) const { return "vertex " + std::to_string(mesh_.number(v)); }
 
@@ -90,7 +113,7 @@ class PartCheck {
     std::vector<VertexHandle> suspects;
     std::vector<std::uint8_t> place(part_.n_vertices(), 0);
     for (std::size_t i = 0; i < part_.n_vertices(); ++i)
-      if (const VertexHandle v(i); mesh_.is_own(v) && !is_plain(v, n_cells_of[i], place))
+      if (const VertexHandle v(i); mesh_.is_own(v) && is_asked(v) && !is_plain(v, n_cells_of[i], place))
         suspects.push_back(v);
     return suspects;
   }
@@ -288,7 +311,56 @@ class PartCheck {
   const DistributedMesh& mesh_;
   const TetMesh& part_;
   const Pinches& known_;
+  std::vector<std::uint8_t> asks_;  // by vertex; empty where all ask
 };
+
+/// Marks the vertices of cells that were others in the copy, or not in it, as they are and as they were, and
+/// those that were otherwise themselves.
+std::vector<std::uint8_t> vertices_of_changed(const DistributedMesh& mesh, const DistributedMesh& before) {
+  std::vector<std::uint8_t> marks(mesh.part().n_vertices(), 0);
+  const auto mark = [&](VertexHandle v) {
+    if (v.idx() < marks.size()) marks[v.idx()] = 1;
+  };
+  const auto number_of = [](const DistributedMesh& of, VertexHandle v) {
+    return v.idx() < of.part().n_vertices() ? of.number(v) : kNoNumber;
+  };
+  // A cell of the same number stands at the same index, but where the part has been cut anew.
+  const auto same_in = [](const DistributedMesh& other, std::uint64_t number, std::size_t i) {
+    const CellHandle c(i);
+    return i < other.part().n_cells() && other.number(c) == number ? c : other.cell_at(number);
+  };
+  const auto is_same = [&](const DistributedMesh& a, CellHandle x, const DistributedMesh& b, CellHandle y) {
+    if (a.part().is_deleted(x) || b.part().is_deleted(y))
+      return a.part().is_deleted(x) && b.part().is_deleted(y);
+    for (std::size_t k = 0; k < 4; ++k)
+      if (number_of(a, a.part().cell(x).v[k]) != number_of(b, b.part().cell(y).v[k])) return false;
+    return true;
+  };
+  const auto for_changed = [&](const DistributedMesh& of, const DistributedMesh& other, auto&& body) {
+    for (std::size_t i = 0; i < of.part().n_cells(); ++i) {
+      const CellHandle c(i), same = same_in(other, of.number(c), i);
+      if (same.is_valid() && is_same(of, c, other, same)) continue;
+      if (of.part().is_deleted(c)) continue;
+      for (VertexHandle v : of.part().cell(c).v) body(v);
+    }
+  };
+  const auto incident = [](const DistributedMesh& of, VertexHandle v) {
+    const CellHandle c = of.part().incident_cell(v);
+    return c.idx() < of.part().n_cells() ? of.number(c) : kNoNumber;
+  };
+  for (std::size_t i = 0; i < mesh.part().n_vertices(); ++i) {
+    const VertexHandle v(i);
+    const bool same_place = i < before.part().n_vertices() && before.number(v) == mesh.number(v);
+    const VertexHandle was = same_place ? v : before.vertex_at(mesh.number(v));
+    if (!was.is_valid() || mesh.part().is_deleted(v) != before.part().is_deleted(was) ||
+        mesh.work().star_size[v.idx()] != before.work().star_size[was.idx()] ||
+        incident(mesh, v) != incident(before, was))
+      mark(v);
+  }
+  for_changed(mesh, before, mark);
+  for_changed(before, mesh, [&](VertexHandle v) { mark(mesh.vertex_at(number_of(before, v))); });
+  return marks;
+}
 
 /// What is held of a cell or vertex of another rank.
 struct HeldCell {
@@ -343,6 +415,11 @@ int owner_of(const DistributedMesh& mesh, CellHandle c) {
   return mesh.owner(std::min(std::min(v[0], v[1]), std::min(v[2], v[3])));
 }
 
+/// False where a vertex of it is not there.
+bool has_vertices(const TetMesh& part, CellHandle c) {
+  return std::ranges::all_of(part.cell(c).v, [&](VertexHandle v) { return v.idx() < part.n_vertices(); });
+}
+
 /// What this rank holds for others is what they have.
 Fault compare_with_owners(DistributedMesh& mesh) {
   const TetMesh& part = mesh.part();
@@ -352,7 +429,7 @@ Fault compare_with_owners(DistributedMesh& mesh) {
   std::vector<std::uint8_t> has_cell(part.n_vertices(), 0);
   for (std::size_t i = 0; i < part.n_cells(); ++i) {
     const CellHandle c(i);
-    if (part.is_deleted(c)) continue;
+    if (part.is_deleted(c) || !has_vertices(part, c)) continue;  // which look_at() has named
     for (VertexHandle v : part.cell(c).v) has_cell[v.idx()] = 1;
     if (!mesh.is_own(c)) cells[static_cast<std::size_t>(owner_of(mesh, c))].push_back(held(mesh, c));
   }
@@ -374,7 +451,7 @@ Fault compare_with_owners(DistributedMesh& mesh) {
     };
     for (const HeldCell& theirs : in.get_all<HeldCell>()) {
       const CellHandle c = mesh.cell_at(theirs.number);
-      if (!c.is_valid() || part.is_deleted(c) || !mesh.is_own(c)) {
+      if (!c.is_valid() || part.is_deleted(c) || !has_vertices(part, c) || !mesh.is_own(c)) {
         say("cell " + std::to_string(theirs.number));
         continue;
       }
@@ -403,7 +480,7 @@ Fault compare_boundaries(DistributedMesh& mesh) {
   std::vector<Packer> to(mesh.comm().n_ranks());
   for (std::size_t i = 0; i < part.n_cells(); ++i) {
     const CellHandle c(i);
-    if (part.is_deleted(c) || !mesh.is_own(c)) continue;
+    if (part.is_deleted(c) || !has_vertices(part, c) || !mesh.is_own(c)) continue;
     for (int k = 0; k < 4; ++k) {
       const HalfFaceHandle h = halfface_of(c, k);
       if (part.opposite_halfface(h).is_valid()) continue;
@@ -428,10 +505,12 @@ Fault compare_boundaries(DistributedMesh& mesh) {
 
 Pinches pinches(const DistributedMesh& mesh) { return PartCheck(mesh, {}).pinches(); }
 
-PartsCheck check(DistributedMesh& mesh, const Pinches& known) {
+namespace {
+
+/// Collective.
+PartsCheck checked(DistributedMesh& mesh, const PartCheck& part) {
   Comm& comm = mesh.comm();
-  const Comm::InPhase phase(comm, Phase::kTally);
-  Fault fault = PartCheck(mesh, known).run();
+  Fault fault = part.run();
   // What one rank finds is no reason for others to stop where all have to be asked.
   for (const auto& compare : {compare_with_owners, compare_boundaries})
     if (Fault another = compare(mesh); another && !fault) fault = std::move(another);
@@ -444,6 +523,22 @@ PartsCheck check(DistributedMesh& mesh, const Pinches& known) {
   result.message.assign(said.begin(), said.end());
   if (result.is_good) result.rank = 0;
   return result;
+}
+
+}  // namespace
+
+PartsCheck check(DistributedMesh& mesh, const Pinches& known) {
+  const Comm::InPhase phase(mesh.comm(), Phase::kTally);
+  return checked(mesh, PartCheck(mesh, known));
+}
+
+PartsCheck check_changes(DistributedMesh& mesh, const DistributedMesh& before) {
+  const Comm::InPhase phase(mesh.comm(), Phase::kTally);
+  const std::vector<std::uint8_t> marks = vertices_of_changed(mesh, before);
+  const PartsCheck found = checked(mesh, PartCheck(mesh, {}, marks));
+  if (found.is_good) return found;
+  const Pinches known = pinches(before);
+  return checked(mesh, PartCheck(mesh, known, marks));
 }
 
 }  // namespace hfr::mpi

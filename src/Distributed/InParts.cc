@@ -108,9 +108,7 @@ class Residents : public Ranks, public MeshInParts {
     mesh_.put_back(*std::static_pointer_cast<const DistributedMesh>(copy));
   }
   std::string fault(const std::shared_ptr<const void>& copy) override {
-    PartsCheck checked = check(mesh_);
-    if (!checked.is_good)
-      checked = check(mesh_, pinches(*std::static_pointer_cast<const DistributedMesh>(copy)));
+    const PartsCheck checked = check_changes(mesh_, *std::static_pointer_cast<const DistributedMesh>(copy));
     return checked.is_good ? std::string() : checked.message;
   }
 
@@ -160,7 +158,7 @@ bool Residents::covers_twice() {
 Standing Residents::standing() {
   const Survey found = survey();
   if (found.n_invalid == 0) return standing_of(found.worst, {});
-  std::vector<CellHandle> invalid = invalid_cells(mesh_.part(), policy_);
+  std::vector<CellHandle> invalid = invalid_cells(mesh_.part(), policy_, known_values(mesh_.work()));
   std::erase_if(invalid, [&](CellHandle c) { return !mesh_.is_own(c); });
   InvalidVolumes volumes = volumes_of(mesh_.part(), invalid);
   volumes.n_flat = static_cast<std::size_t>(mesh_.comm().sum(volumes.n_flat));
@@ -393,7 +391,10 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options,
   Run run{mesh.part(), mesh.work(), strategy,        control, findings,  device,
           nullptr,     nullptr,     strategy.bounds, false,   &residents};
   std::optional<Checkpoint> checkpoint;
-  const auto keep_checkpoint = [&] { run.checkpoint = &checkpoint.emplace(residents, policy); };
+  const auto keep_checkpoint = [&] {
+    run.checkpoint = &checkpoint.emplace(residents, policy);
+    checkpoint->may_trust(strategy.course == Course::kGoal);
+  };
   std::optional<PartSurfaceRun> surface;
   if (options.surface.mode != SurfaceMode::kFrozen) {
     const bool is_valid = found.n_invalid == 0;
@@ -407,6 +408,7 @@ PartsResult improve(DistributedMesh& mesh, const ImproveOptions& options,
     residents.add_surface(surface->surface());
     run.surface = surface->surface().get();
   }
+  mesh.work().set_qualities(mesh.part(), MinSine2{}, policy);
   findings.is_folded = is_folded(mesh, policy);
   if (options.polish_only && !surface && found.n_invalid == 0 && !findings.is_folded &&
       mesh.work().pinched.empty()) {

@@ -110,6 +110,10 @@ Pinches pinches(const DistributedMesh& mesh);
 /// to the last bit, and faces of the boundary with those of all ranks, since none may be another's mate.
 /// `known`: what was there before, which counts as a fault where there are more groups or fans now.
 PartsCheck check(DistributedMesh& mesh, const Pinches& known = {});
+/// The same since the mesh was `before`, its copy() on each rank: of cells and vertices, those are looked at
+/// that were others then or are next to such, all where the part has been cut anew. What was there before is
+/// no fault.
+PartsCheck check_changes(DistributedMesh& mesh, const DistributedMesh& before);
 
 /// `path`, an index of pieces (.pvtu), and beside it, in a folder of its name, one piece (.vtu, raw appended)
 /// for each rank: its own cells and all their points, each with its "number" in the whole. Numbers have no
@@ -119,8 +123,7 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// The file of a rank: its piece of a .pvtu, in the folder beside that; otherwise "name.7.mesh" for
 /// "name.mesh", as write_medit_parts() calls it.
 std::filesystem::path part_path(const std::filesystem::path& path, int rank);
-/// One .vtu with the bytes that io::write() writes of the whole. Each rank writes its own points and cells at
-/// their offsets in one temporary file, which is renamed in the end: all ranks see one file system.
+/// write_ranges() to a path that ends in .vtu.
 void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// One .vtu, .mesh, .meshb or .msh with the bytes that io::write() writes of the whole, for each number of
 /// ranks. Each rank writes a range of the numbers of points and elements, which is sent to it before, at its

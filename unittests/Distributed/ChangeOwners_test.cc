@@ -66,6 +66,50 @@ TEST(ChangeOwners, WhatIsLabelledStaysSo) {
   }
 }
 
+/// Which cells have changed is found by their numbers where the part has been cut anew.
+TEST(ChangeOwners, AChangedCellIsFoundWhereverItStands) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const int bad = comm.size() - 1;
+  for (const bool moves : {false, true}) {
+    mpi::DistributedMesh parts(comm);
+    mpi::GridOptions grid;
+    grid.cavity.counts = {14, 12, 16};
+    grid.cavity.amplitude = 0;
+    mpi::generate_in_parts(parts, grid);
+    const auto before = parts.copy();
+    if (moves) {  // slices instead of blocks
+      std::vector<int> to(parts.part().n_vertices());
+      for (std::size_t v = 0; v < to.size(); ++v)
+        to[v] = static_cast<int>(parts.number(V(v)) * static_cast<std::uint64_t>(comm.size()) /
+                                 parts.n_vertices());
+      parts.change_owners(to);
+    }
+    EXPECT_TRUE(mpi::check_changes(parts, *before).is_good);
+    const auto own_cell = [&] {  // which no other rank holds, so that none can say that it is another there
+      std::size_t c = 0;
+      while (!std::ranges::all_of(parts.part().cell(C(c)).v,
+                                  [&](VertexHandle v) { return parts.is_own(v) && parts.is_inside(v); }))
+        ++c;
+      return C(c);
+    };
+    const auto change_star_size = [&](std::uint32_t by) {
+      if (comm.rank() == bad) parts.work().star_size[parts.part().cell(own_cell()).v[0].idx()] += by;
+    };
+    change_star_size(1);
+    EXPECT_THAT(mpi::check_changes(parts, *before).message, testing::HasSubstr("another number of cells"));
+    change_star_size(0xffffffffU);
+    EXPECT_TRUE(mpi::check_changes(parts, *before).is_good);
+    if (comm.rank() == bad) {
+      auto& cell = TetMesh::Writer(parts.part()).cell(own_cell());
+      std::swap(cell.v[0], cell.v[1]);
+    }
+    const mpi::PartsCheck found = mpi::check_changes(parts, *before);
+    EXPECT_FALSE(found.is_good) << moves;
+    EXPECT_EQ(found.rank, bad) << moves;
+    EXPECT_THAT(found.message, testing::HasSubstr("see their face in the same order"));
+  }
+}
+
 /// With labels of all kinds, pinched vertices and inverted cells, before a run and after it.
 TEST(ChangeOwners, RunsHaveTheBytesOfSharedMemory) {
   mpi::Comm comm(MPI_COMM_WORLD);

@@ -237,6 +237,19 @@ TEST_F(PinchedParts, MorePinchesThanThereWereAreAFault) {
   EXPECT_TRUE(mpi::check(parts, known).is_good);
   if (!known.vertices.empty()) known.vertices.begin()->second = 1;
   EXPECT_FALSE(mpi::check(parts, known).is_good);
+  // Not where they were there before, in cells that have changed.
+  const auto before = parts.copy();
+  TetMesh& part = parts.part();
+  for (std::size_t c = 0; c < part.n_cells(); ++c) {  // a turn of its corners, so that it is another
+    Cell& cell = TetMesh::Writer(part).cell(C(c));
+    std::rotate(cell.v.begin(), cell.v.begin() + 1, cell.v.begin() + 3);
+    std::rotate(cell.mate.begin(), cell.mate.begin() + 1, cell.mate.begin() + 3);
+  }
+  for (std::size_t c = 0; c < part.n_cells(); ++c)
+    for (HalfFaceHandle& m : TetMesh::Writer(part).cell(C(c)).mate)
+      if (m.is_valid() && corner_of(m) < 3) m = halfface_of(cell_of(m), (corner_of(m) + 2) % 3);
+  EXPECT_FALSE(mpi::check(parts).is_good);
+  EXPECT_TRUE(mpi::check_changes(parts, *before).is_good) << mpi::check(parts, mpi::pinches(*before)).message;
 }
 
 }  // namespace
