@@ -110,9 +110,9 @@ Pinches pinches(const DistributedMesh& mesh);
 /// to the last bit, and faces of the boundary with those of all ranks, since none may be another's mate.
 /// `known`: what was there before, which counts as a fault where there are more groups or fans now.
 PartsCheck check(DistributedMesh& mesh, const Pinches& known = {});
-/// The same since the mesh was `before`, its copy() on each rank: of cells and vertices, those are looked at
-/// that were others then or are next to such, all where the part has been cut anew. What was there before is
-/// no fault.
+/// The same since the mesh was `before`, its copy() on each rank: looks at cells that were others then or not
+/// there, their vertices and their neighbours, and at vertices that had another incident cell or number of
+/// cells. A rank knows what it held then by its numbers. Pinches that were there before are no fault.
 PartsCheck check_changes(DistributedMesh& mesh, const DistributedMesh& before);
 
 /// `path`, an index of pieces (.pvtu), and beside it, in a folder of its name, one piece (.vtu, raw appended)

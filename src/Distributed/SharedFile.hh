@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -41,11 +40,6 @@ class OffsetFile {
   OffsetFile(const OffsetFile&) = delete;
   OffsetFile& operator=(const OffsetFile&) = delete;
 
-  template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void put(std::uint64_t offset, const T& value) {
-    put_text(offset, {reinterpret_cast<const char*>(&value), sizeof value});
-  }
   void put_text(std::uint64_t offset, std::string_view text) {
     if (offset != begin_ + buffer_.size() || buffer_.size() >= kBuffer) {
       flush();

@@ -151,7 +151,7 @@ class RangeOfMesh {
     stretch_.n_points = numbering_.n_vertices();
     stretch_.points = points_;
     stretch_.vertex_labels = vertex_labels_;
-    stretch_.fixed = {labels.n_fixed, io::NumberRows(fixed_), {}, 0};
+    stretch_.fixed = {labels.n_fixed, io::NumberRows(fixed_), {}};
   }
 
   DistributedMesh& mesh_;

@@ -12,7 +12,7 @@ namespace {
 
 template <class Items>
 ElementStretch whole(const Items& items, const std::vector<int>& labels) {
-  return {items.size(), NumberRows(items), labels, 0};
+  return {items.size(), NumberRows(items), labels};
 }
 
 template <std::size_t N>

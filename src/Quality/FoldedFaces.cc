@@ -40,13 +40,12 @@ bool fold_at_edge(Vec3 v, Vec3 a, Vec3 b, Vec3 d) {
 bool fold_at_vertex(Vec3 v, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const int sc = orientation(v, a, b, c);
   const int sd = orientation(v, a, b, d);
-  if (sc * sd > 0) return false;  // the arc from c to d is all on one side
   const Vec3 va = a - v, vb = b - v, vc = c - v, vd = d - v;
   if ((sc == 0 && between(va, vb, vc)) || (sd == 0 && between(va, vb, vd))) return true;
   const int sa = orientation(v, c, d, a);
   const int sb = orientation(v, c, d, b);
   if ((sa == 0 && between(vc, vd, va)) || (sb == 0 && between(vc, vd, vb))) return true;
-  if (sc * sd == 0 || sa * sb >= 0) return false;
+  if (sc * sd >= 0 || sa * sb >= 0) return false;
   // Where the arc from c to d goes through the plane of a and b; the other arc may be on the far side.
   const Vec3 n = cross(va, vb);
   const double hc = dot(n, vc);

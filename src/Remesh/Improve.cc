@@ -118,9 +118,11 @@ Result improve_dense(TetMesh& mesh, const ImproveOptions& options, RunMemory& me
   const auto meets_goal = [&](const Survey& found) { return found.n_invalid == 0 && found.worst >= goal; };
   Workspace& work = memory.work;
   work.begin();
-  if (!memory.found) work.set_qualities(mesh, MinSine2{}, options.policy);
-  Survey found = memory.found ? *std::exchange(memory.found, std::nullopt)
-                              : survey(mesh, options.policy, known_values(work));
+  if (!memory.found) {
+    work.set_qualities(mesh, MinSine2{}, options.policy);
+    memory.found = survey(mesh, options.policy, known_values(work));
+  }
+  Survey found = *std::exchange(memory.found, std::nullopt);
   const Strategy strategy = resolve(options, found, mesh.n_logical_cells());
   Checkpoint checkpoint(mesh, found, options.policy, known_values(work));
   checkpoint.may_trust(strategy.course == Course::kGoal);  // which has no copy of a mesh that comes in sound

@@ -12,6 +12,7 @@
 #include "hfremesh/HalfFace/TetMesh.hh"
 #include "hfremesh/Operators/Operator.hh"
 #include "hfremesh/Parallel/Parallel.hh"
+#include "hfremesh/Quality/CellQuality.hh"
 #include "hfremesh/Quality/Decisions.hh"
 #include "hfremesh/Quality/Metrics.hh"
 
@@ -193,10 +194,8 @@ struct Workspace {
   void renew_qualities(const TetMesh& mesh, std::span<const CellHandle> cells, par::Policy policy) {
     const auto in = [&](const auto& metric) {
       par::for_each(policy, cells.size(), [&](std::size_t i) {
-        const auto& v = mesh.cell(cells[i]).v;
         quality[cells[i].idx()] = mesh.is_deleted(cells[i]) ? std::numeric_limits<double>::infinity()
-                                                            : metric(mesh.point(v[0]), mesh.point(v[1]),
-                                                                     mesh.point(v[2]), mesh.point(v[3]));
+                                                            : hfr::quality(mesh, cells[i], metric);
       });
     };
     if (has_qualities_of<MinSine2>()) in(MinSine2{});

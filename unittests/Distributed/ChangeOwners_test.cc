@@ -85,28 +85,42 @@ TEST(ChangeOwners, AChangedCellIsFoundWhereverItStands) {
       parts.change_owners(to);
     }
     EXPECT_TRUE(mpi::check_changes(parts, *before).is_good);
-    const auto own_cell = [&] {  // which no other rank holds, so that none can say that it is another there
+    // One that no other rank holds, so that none can say that it is another there, and that no vertex names.
+    const auto own_cell = [&] {
+      const auto is_right = [&](CellHandle c) {
+        return std::ranges::all_of(parts.part().cell(c).v, [&](VertexHandle v) {
+          return parts.is_own(v) && parts.is_inside(v) && parts.part().incident_cell(v) != c;
+        });
+      };
       std::size_t c = 0;
-      while (!std::ranges::all_of(parts.part().cell(C(c)).v,
-                                  [&](VertexHandle v) { return parts.is_own(v) && parts.is_inside(v); }))
-        ++c;
+      while (!is_right(C(c))) ++c;
       return C(c);
     };
+    const CellHandle cell = comm.rank() == bad ? own_cell() : CellHandle();
     const auto change_star_size = [&](std::uint32_t by) {
-      if (comm.rank() == bad) parts.work().star_size[parts.part().cell(own_cell()).v[0].idx()] += by;
+      if (cell.is_valid()) parts.work().star_size[parts.part().cell(cell).v[0].idx()] += by;
     };
+    using testing::HasSubstr;
     change_star_size(1);
-    EXPECT_THAT(mpi::check_changes(parts, *before).message, testing::HasSubstr("another number of cells"));
+    EXPECT_THAT(mpi::check_changes(parts, *before).message, HasSubstr("another number of cells"));
     change_star_size(0xffffffffU);
     EXPECT_TRUE(mpi::check_changes(parts, *before).is_good);
-    if (comm.rank() == bad) {
-      auto& cell = TetMesh::Writer(parts.part()).cell(own_cell());
-      std::swap(cell.v[0], cell.v[1]);
+
+    const auto whole = parts.copy();
+    if (cell.is_valid()) parts.part().delete_cell(cell);
+    EXPECT_THAT(mpi::check_changes(parts, *whole).message, HasSubstr("another number of cells"));
+    const auto without = parts.copy();
+    parts.put_back(*whole);
+    if (cell.is_valid()) {
+      auto& v = TetMesh::Writer(parts.part()).cell(cell).v;
+      std::swap(v[0], v[1]);
     }
-    const mpi::PartsCheck found = mpi::check_changes(parts, *before);
-    EXPECT_FALSE(found.is_good) << moves;
-    EXPECT_EQ(found.rank, bad) << moves;
-    EXPECT_THAT(found.message, testing::HasSubstr("see their face in the same order"));
+    for (const auto* copy : {&before, &whole, &without}) {
+      const mpi::PartsCheck found = mpi::check_changes(parts, **copy);
+      EXPECT_FALSE(found.is_good) << moves;
+      EXPECT_EQ(found.rank, bad) << moves;
+      EXPECT_THAT(found.message, HasSubstr("see their face in the same order"));
+    }
   }
 }
 

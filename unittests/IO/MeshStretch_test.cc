@@ -120,7 +120,7 @@ TEST(MeshStretch, OfTwoProcessesOneVtuHasTheBytesOfTheMesh) {
         if (!mesh.vertex_labels.empty())
           stretch.vertex_labels = std::span(mesh.vertex_labels).subspan(stretch.first_point, n_points);
         std::erase_if(mine.fixed_vertices, [&](Index v) { return (v < n) != is_first; });
-        stretch.fixed = {mesh.fixed_vertices.size(), NumberRows(mine.fixed_vertices), {}, 0};
+        stretch.fixed = {mesh.fixed_vertices.size(), NumberRows(mine.fixed_vertices), {}};
         Stretches sink;
         stretched_file(folder / "a.vtu", stretch, {}).write(sink);
         written.push_back(sink.finish());
