@@ -30,12 +30,19 @@ std::vector<std::string> PointsOfFields::notes(const io::MeshData& after) const 
   };
   const auto n = std::count_if(after.points.begin(), after.points.end(), is_new);
   if (n == 0) return {};
-  std::string names;
-  for (const io::Field& field : after.point_fields) names += (names.empty() ? "'" : ", '") + field.name + "'";
-  return {
-      fmt::format("fields of vertices ({}) are attached, not carried over: {} of {} vertices moved with "
-                  "their values, or are new with those of the nearest",
-                  names, grouped(static_cast<std::size_t>(n)), grouped(after.points.size()))};
+  std::vector<std::string> names;
+  for (const io::Field& field : after.point_fields) names.push_back(field.name);
+  return {note_on_values_elsewhere(names, static_cast<std::size_t>(n), after.points.size())};
+}
+
+std::string note_on_values_elsewhere(const std::vector<std::string>& names, std::size_t n_elsewhere,
+                                     std::size_t n_vertices) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "'" : ", '") + name + "'";
+  return fmt::format(
+      "fields of vertices ({}) are attached, not carried over: {} of {} vertices moved with their values, or "
+      "are new with those of the nearest",
+      list, grouped(n_elsewhere), grouped(n_vertices));
 }
 
 void require_quality_array(const std::string& name, const std::string& output,

@@ -24,6 +24,10 @@ class PointsOfFields {
   std::vector<Vec3> points_;  ///< ascending; none where there are no fields
 };
 
+/// The line that says so, of fields with these names.
+std::string note_on_values_elsewhere(const std::vector<std::string>& names, std::size_t n_elsewhere,
+                                     std::size_t n_vertices);
+
 /// Fails with exit code 1 where a field of cells of that name cannot be written to `output`. `name` empty:
 /// none is asked for.
 void require_quality_array(const std::string& name, const std::string& output,

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "ExitCode.hh"
+#include "Fields.hh"
 #include "Files.hh"
 #include "ImproveLine.hh"
 #include "Json.hh"
@@ -280,6 +281,7 @@ class PartsRun {
       figures = result.mine;
       goal_reached = result.goal_reached;
       is_out_of_time = result.stop == Stop::kTimeLimit;
+      note_values_elsewhere(result.after.n_vertices);
     }
     check();
     if (!line_.output.empty()) write();
@@ -437,6 +439,14 @@ class PartsRun {
       say("  {} cells are below {:g} degrees", grouped(result.after.n_below_goal), goal());
     if (result.has_fallen) say("  the smallest angle has fallen; hfremesh would have put the input back");
     return result;
+  }
+
+  void note_values_elsewhere(std::uint64_t n_vertices) {
+    const mpi::AttachedToPoints attached = mpi::attached_to_points(mesh_);
+    if (attached.n_elsewhere == 0) return;
+    const std::string note = note_on_values_elsewhere(attached.names, attached.n_elsewhere, n_vertices);
+    say("{}", note);
+    report_["notes"].push_back(note);
   }
 
   void require_good(ExitCode otherwise, const std::string& what) {

@@ -87,6 +87,11 @@ void DistributedMesh::drop_dead_slots() {
     CellHandle& incident = writer.incident_cell(VertexHandle(v));
     if (incident.is_valid()) incident = to[incident.idx()];
   }
+  if (!mesh_.properties().cells.empty()) {
+    std::vector<Index> places;
+    for (CellHandle c : to) places.push_back(c.idx());
+    for (const auto& p : mesh_.properties().cells) p->permute(places, order.size());
+  }
   writer.resize_cells(order.size());
   for (std::size_t i = 0; i < cells.size(); ++i) writer.cell(CellHandle(i)) = cells[i];
   for (std::size_t i = 0; i < regions.size(); ++i) mesh_.set_region(CellHandle(i), regions[i]);

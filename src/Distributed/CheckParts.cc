@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "Distributed/InParts.hh"
+#include "Distributed/Sources.hh"
 #include "Parallel/DisjointSets.hh"
 
 namespace hfr::mpi {
@@ -366,12 +367,13 @@ std::vector<std::uint8_t> vertices_of_changed(const DistributedMesh& mesh, const
 struct HeldCell {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 4> v{};
+  std::uint64_t source = 0;
   double quality = 0;
   std::int64_t region = 0;
   std::uint64_t labels = 0;  ///< of what hangs on its vertices, edges and faces: a hash
 };
 struct HeldVertex {
-  std::uint64_t number = 0;
+  std::uint64_t number = 0, source = 0;
   Vec3 point;
   /// Where it is near enough that this rank holds all its cells.
   bool is_near = false, is_pinched = false;
@@ -394,14 +396,19 @@ std::uint64_t hash_of_labels(const DistributedMesh& mesh, CellHandle c) {
 }
 
 HeldCell held(const DistributedMesh& mesh, CellHandle c) {
-  HeldCell one{
-      mesh.number(c), {}, mesh.work().quality[c.idx()], mesh.part().region(c), hash_of_labels(mesh, c)};
+  HeldCell one{mesh.number(c),
+               {},
+               sources::of(mesh.part(), c),
+               mesh.work().quality[c.idx()],
+               mesh.part().region(c),
+               hash_of_labels(mesh, c)};
   for (std::size_t k = 0; k < 4; ++k) one.v[k] = mesh.number(mesh.part().cell(c).v[k]);
   return one;
 }
 
 HeldVertex held(const DistributedMesh& mesh, VertexHandle v, bool is_near) {
-  HeldVertex one{mesh.number(v), mesh.part().point(v), is_near, false, 0, kNoNumber};
+  HeldVertex one{mesh.number(v), sources::of(mesh.part(), v), mesh.part().point(v), is_near, false, 0,
+                 kNoNumber};
   if (!is_near) return one;
   const Workspace& work = mesh.work();
   one.is_pinched = !work.pinched.empty() && work.pinched[v.idx()] != 0;
@@ -458,14 +465,16 @@ Fault compare_with_owners(DistributedMesh& mesh) {
       const HeldCell mine = held(mesh, c);
       if (mine.v != theirs.v || mine.quality != theirs.quality || mine.region != theirs.region)
         say("cell " + std::to_string(theirs.number));
+      if (mine.source != theirs.source) say("whose values cell " + std::to_string(theirs.number) + " has");
       if (mine.labels != theirs.labels) say("what is labelled of cell " + std::to_string(theirs.number));
     }
     for (const HeldVertex& theirs : in.get_all<HeldVertex>()) {
       const VertexHandle v = mesh.vertex_at(theirs.number);
       const bool is_same = v.is_valid() && mesh.is_own(v) && !part.is_deleted(v) && [&] {
         const HeldVertex mine = held(mesh, v, theirs.is_near);
-        return mine.point == theirs.point && mine.is_pinched == theirs.is_pinched &&
-               mine.star_size == theirs.star_size && mine.incident == theirs.incident;
+        return mine.point == theirs.point && mine.source == theirs.source &&
+               mine.is_pinched == theirs.is_pinched && mine.star_size == theirs.star_size &&
+               mine.incident == theirs.incident;
       }();
       if (!is_same) say("vertex " + std::to_string(theirs.number));
     }

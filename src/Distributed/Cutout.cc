@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "Distributed/Buffer.hh"
+#include "Distributed/Sources.hh"
 #include "Distributed/Spread.hh"
 #include "HalfFace/Writer.hh"
 
@@ -107,6 +108,7 @@ Cutout::Cutout(const DistributedMesh& parts, std::span<const std::uint64_t> cell
   work_.clock = parts.work().clock;
   work_.floor = parts.work().floor;
   work_.holds_damage = parts.work().holds_damage;
+  if (sources::are_followed(part)) sources::follow(mesh_);
   build(cell_records, taken, !parts.work().pinched.empty());
   labels_.add(mesh_, labels, [this](std::uint64_t n) { return vertex_at(n); });
 }
@@ -119,7 +121,9 @@ void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::
   vertex_index_ = NumberIndex(vertices_.size());
   std::vector<std::uint8_t> is_taken;
   for (const VertexRecord& r : vertices_) {
-    vertex_index_.insert(r.number, mesh_.add_vertex(r.point).idx());
+    const VertexHandle v = mesh_.add_vertex(r.point);
+    vertex_index_.insert(r.number, v.idx());
+    sources::set(mesh_, v, r.source);
     work_.star_size.push_back(r.star_size);
     work_.changed.push_back(r.changed);
     work_.frozen.push_back(r.frozen);
@@ -151,6 +155,7 @@ void Cutout::build(const std::vector<CellRecord>& cells, const std::vector<std::
         writer.set_incident_cell(v, c);
     }
     mesh_.set_region(c, r.region);
+    sources::set(mesh_, c, r.source);
   }
 }
 
@@ -178,6 +183,7 @@ VertexRecord Cutout::record(VertexHandle v) const {
   if (v.idx() < vertices_.size()) r = vertices_[v.idx()];
   r.number = number(v);
   r.incident = number(mesh_.incident_cell(v));
+  r.source = sources::of(mesh_, v);
   r.point = mesh_.point(v);
   r.star_size = work_.star_size[v.idx()];
   r.changed = work_.changed[v.idx()];
@@ -196,6 +202,7 @@ CellRecord Cutout::record(CellHandle c) const {
     const HalfFaceHandle m = cell.mate[k];
     r.mate[k] = m.is_valid() ? 4 * number(cell_of(m)) + static_cast<std::uint64_t>(corner_of(m)) : kNoNumber;
   }
+  r.source = sources::of(mesh_, c);
   r.quality = work_.quality[c.idx()];
   r.region = mesh_.region(c);
   r.pending = work_.pending[c.idx()];

@@ -9,6 +9,7 @@
 #include "Distributed/Cut.hh"
 #include "Distributed/PartMessage.hh"
 #include "Distributed/PartTurns.hh"
+#include "Distributed/Sources.hh"
 #include "HalfFace/Reorder.hh"
 #include "HalfFace/Writer.hh"
 #include "Parallel/Sort.hh"
@@ -74,6 +75,7 @@ void DistributedMesh::build_part(Block& block, par::Policy policy) {
   later_.clear();
   n_sorted_ = cell_number_.size();
   mesh_ = TetMesh();
+  arrays_.reset();
   labels_ = PartLabels();
   mesh_.reserve_vertices(in.point.size());
   for (Vec3 p : in.point) mesh_.add_vertex(p);
@@ -108,6 +110,7 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
   n_vertices_ = n_vertices;
   free_.clear();
   mesh_ = std::move(piece.mesh);
+  arrays_.reset();
   labels_ = PartLabels();
   vertex_number_ = std::move(piece.vertex_number);
   cell_number_ = std::move(piece.cell_number);
@@ -128,6 +131,16 @@ Turned DistributedMesh::assemble(Piece piece, std::uint64_t n_vertices, std::uin
   find_pinched();
   return orient(*this, std::move(piece.turned), inverted);
 }
+
+void DistributedMesh::attach_arrays(std::shared_ptr<const AttachedArrays> arrays) {
+  arrays_ = std::move(arrays);
+  sources::follow(mesh_);
+  for (VertexHandle v : mesh_.vertices()) sources::set(mesh_, v, number(v));
+  for (CellHandle c : mesh_.cells()) sources::set(mesh_, c, number(c));
+}
+
+std::uint64_t DistributedMesh::source(VertexHandle v) const { return sources::of(mesh_, v); }
+std::uint64_t DistributedMesh::source(CellHandle c) const { return sources::of(mesh_, c); }
 
 /// Of vertices further away a part does not hold all cells. Where any rank has a pinched one, all keep bytes.
 void DistributedMesh::find_pinched() {
@@ -239,6 +252,7 @@ auto DistributedMesh::record(VertexHandle v) const -> VertexRecord {
   r.number = number(v);
   const CellHandle c = mesh_.incident_cell(v);
   if (c.is_valid()) r.incident = number(c);
+  r.source = sources::of(mesh_, v);
   r.point = mesh_.point(v);
   r.owner = owner(v);
   r.star_size = work_.star_size[v.idx()];
@@ -259,6 +273,7 @@ auto DistributedMesh::record(CellHandle c) const -> CellRecord {
     const HalfFaceHandle m = cell.mate[k];
     r.mate[k] = m.is_valid() ? face_number(number(cell_of(m)), corner_of(m)) : kNoNumber;
   }
+  r.source = sources::of(mesh_, c);
   r.quality = work_.quality[c.idx()];
   r.region = mesh_.region(c);
   r.pending = work_.pending[c.idx()];
@@ -302,6 +317,7 @@ void DistributedMesh::apply(const Records& records) {
   for (const VertexRecord& r : vertices) {
     const VertexHandle v = vertex_at(r.number);
     mesh_.set_point(v, r.point);  // whoever holds a vertex has its point, and knows whose it is
+    sources::set(mesh_, v, r.source);
     owner_[v.idx()] = r.owner;
     if (!r.of_owner) continue;
     work_.star_size[v.idx()] = r.star_size;
@@ -323,6 +339,7 @@ void DistributedMesh::write_cells(std::span<const CellRecord> cells) {
     const bool is_new = mesh_.is_deleted(c);
     writer.cell(c).v = corners;
     mesh_.set_region(c, r.region);
+    sources::set(mesh_, c, r.source);
     work_.quality[c.idx()] = r.quality;
     work_.pending[c.idx()] = r.pending;
     work_.touch({&c, 1});
@@ -435,6 +452,7 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> fresh) {
     const VertexRecord& r = fresh[k];
     const VertexHandle v = places[k];
     mesh_.set_point(v, r.point);
+    sources::set(mesh_, v, r.source);
     vertex_number_[v.idx()] = r.number;
     owner_[v.idx()] = r.owner;
     work_.star_size[v.idx()] = r.star_size;

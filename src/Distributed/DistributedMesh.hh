@@ -21,6 +21,8 @@
 
 namespace hfr::mpi {
 
+struct AttachedArrays;
+
 namespace detail {
 
 /// What a rank has of a mesh that is cut among the ranks, and comes back to.
@@ -35,6 +37,7 @@ struct PartState {
   std::uint64_t n_slots_ = 0, n_vertices_ = 0;
   std::vector<std::uint64_t> free_;
   LabelOrder face_order_;  // while the labels of faces are followed
+  std::shared_ptr<const AttachedArrays> arrays_;
 };
 
 }  // namespace detail
@@ -95,6 +98,17 @@ class DistributedMesh : private detail::PartState {
   /// first. Returns notes, the same on all ranks. Throws InvalidInput where no cell has such an edge or face.
   /// All take part.
   std::vector<std::string> attach_labels(std::vector<LabelRecord> records);
+  /// After assemble(): arrays of a file, whose rows are those of the vertices and cells by their numbers now.
+  /// From here on operators hand on whose row each has, as they hand on properties: a vertex keeps its row, a
+  /// new one has that of the nearest, and a new cell that of one in whose place it came. For
+  /// readers of files.
+  void attach_arrays(std::shared_ptr<const AttachedArrays> arrays);
+  /// None where nothing is attached.
+  const AttachedArrays* arrays() const { return arrays_.get(); }
+  /// The number of the row; 0 where nothing is attached.
+  std::uint64_t source(VertexHandle v) const;
+  std::uint64_t source(CellHandle c) const;
+
   /// To all ranks that hold a cell with these vertices, and into this part. Each on the rank that owns its
   /// smallest vertex. All take part.
   void hand_out_labels(std::span<const LabelRecord> records);
@@ -214,6 +228,7 @@ class DistributedMesh : private detail::PartState {
   /// What one rank tells another of a vertex, and of a cell.
   struct VertexRecord {
     std::uint64_t number = 0, incident = kNoNumber;
+    std::uint64_t source = 0;  ///< Sources.hh
     Vec3 point;
     std::int32_t owner = 0;
     std::uint32_t star_size = 0, changed = 0;
@@ -222,6 +237,7 @@ class DistributedMesh : private detail::PartState {
   struct CellRecord {
     std::uint64_t number = 0;
     std::array<std::uint64_t, 4> v{}, mate{};  ///< mates as 4·cell + corner
+    std::uint64_t source = 0;                  ///< Sources.hh
     double quality = 0;
     std::int32_t region = 0;
     std::uint8_t pending = 0;

@@ -126,12 +126,12 @@ std::filesystem::path part_path(const std::filesystem::path& path, int rank);
 /// write_ranges() to a path that ends in .vtu.
 void write_vtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// One .vtu, .mesh, .meshb or .msh with the bytes that io::write() writes of the whole, for each number of
-/// ranks. Each rank writes a range of the numbers of points and elements, which is sent to it before, at its
-/// place in one temporary file, which is renamed in the end: all ranks see one file system. What stands in
-/// text is formatted twice, a megabyte at a time: to know how long it is, and to write it. Returns one line
-/// for each thing that the format cannot hold, the same on all ranks. Throws InvalidInput for other formats
-/// and for variants that there are not (of .vtu, "appended" alone is there), IoError where the file cannot
-/// be written.
+/// ranks; of arrays that were read, in .vtu alone. Each rank writes a range of the numbers of points and
+/// elements, which is sent to it before, at its place in one temporary file, which is renamed in the end: all
+/// ranks see one file system. What stands in text is formatted twice, a megabyte at a time: to know how long
+/// it is, and to write it. Returns one line for each thing that the format cannot hold, the same on all
+/// ranks. Throws InvalidInput for other formats and for variants that there are not (of .vtu, "appended"
+/// alone is there), IoError where the file cannot be written.
 std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
                                       const io::WriteOptions& options = {});
 
@@ -139,19 +139,31 @@ std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesyst
 /// several ranks have belong to the one with most of their cells; parts are cut anew where these are uneven,
 /// as when there are more ranks than pieces. Throws InvalidInput where pieces have no "number", numbers have
 /// gaps, or there are other elements than tetrahedra, triangles and edges; IoError where a file is missing.
-/// Labels, names and fixed vertices come along; returns the names of other arrays, which are left out, of the
-/// pieces that this rank has read.
+/// Labels, names and fixed vertices come along, and the arrays that all pieces have, attached as
+/// hfr::improve() has fields: a vertex keeps its values wherever it goes. Of the copies of a point those of
+/// the first piece count. Returns one line for each thing that is left out: arrays that not all pieces have,
+/// on all ranks, and others of the pieces that this rank has read.
 std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem::path& path);
 /// One file, of which each rank reads a range of the points and one of the elements, and none the whole: .vtu
 /// whose arrays are raw appended data, as write_vtu() and io::write() make it; .mesh, .meshb, and .msh as
 /// text of version 2.2 or 4.1, with each entry on a line of its own. Points and elements have the numbers,
-/// and labels the order, that io::read() gives them. Labels, names and fixed vertices come along; other
-/// arrays are left out, and named in what is returned, on all ranks. Throws InvalidInput for other elements
+/// and labels the order, that io::read() gives them. Labels, names and fixed vertices come along; so do the
+/// other arrays of numbers of a .vtu, attached as by read_pvtu(). What is left out is named in what is
+/// returned, on all ranks. Throws InvalidInput for other elements
 /// than tetrahedra, triangles and edges, for files of another form, and for triangles and edges of no
 /// tetrahedron; IoError where the file cannot be read. `at_once`: elements that a rank reads and sends away
 /// before it reads on, about.
 std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesystem::path& path,
                                      std::uint64_t at_once = 250'000);
+
+/// What read_pvtu() and read_ranges() have attached to points: names of arrays, and how many vertices have
+/// the values of another place, since they were moved with them, or are new with those of the nearest. The
+/// same on all ranks.
+struct AttachedToPoints {
+  std::vector<std::string> names;
+  std::uint64_t n_elsewhere = 0;
+};
+AttachedToPoints attached_to_points(DistributedMesh& mesh);
 
 /// The files of ParMmg for a mesh in parts, "name.0.mesh", "name.1.mesh", … for the path "name.mesh": text in
 /// Medit's format that says which triangles or vertices a part shares with others. Any number of them; file i

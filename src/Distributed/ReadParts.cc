@@ -3,6 +3,9 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <map>
+#include <memory>
+#include <set>
 #include <span>
 #include <sstream>
 #include <string>
@@ -10,11 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "Distributed/AttachedArrays.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/Incoming.hh"
 #include "HalfFace/Errors.hh"
 #include "IO/MeshFile.hh"
 #include "IO/VtkGrid.hh"
+#include "IO/Words.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -109,13 +114,28 @@ void add_labels(const std::filesystem::path& path, const io::MeshData& data,
   }
 }
 
-/// Reads a piece. Returns what is left out of it; `names` takes those of its labels.
+/// The arrays of a piece, until all ranks know which ones all pieces have.
+struct PieceArrays {
+  std::size_t number = 0;
+  bool is_empty = false;
+  std::vector<std::uint64_t> points, cells;  // numbers, where there are fields
+  std::vector<Vec3> places;
+  std::vector<io::Field> point_fields, cell_fields;
+};
+
+std::vector<io::Field> without_numbers(std::vector<io::Field> fields) {
+  std::erase_if(fields, [](const io::Field& field) { return field.name == io::kVtkNumberArray; });
+  return fields;
+}
+
+/// Reads a piece. Returns what is left out of it; `names` takes those of its labels, `arrays` its fields.
 std::vector<std::string> read_piece(const std::filesystem::path& path, int rank, Incoming& incoming,
-                                    std::string& names) {
+                                    std::string& names, PieceArrays& arrays) {
   io::MeshData data = io::read_mesh(path);
   names += io::names_text(data);
-  if (data.points.empty() && data.cells.empty()) return {};  // of a rank that had nothing: it names no arrays
-  const auto points = numbers_of(path, data.point_fields), cells = numbers_of(path, data.cell_fields);
+  arrays.is_empty = data.points.empty() && data.cells.empty();
+  if (arrays.is_empty) return {};  // of a rank that had nothing: it names no arrays
+  auto points = numbers_of(path, data.point_fields), cells = numbers_of(path, data.cell_fields);
   for (std::size_t i = 0; i < points.size(); ++i) incoming.add(PointRecord{points[i], data.points[i], rank});
   for (std::size_t i = 0; i < cells.size(); ++i) {
     CornerRecord one{cells[i], {}, data.regions.empty() ? 0 : data.regions[i]};
@@ -126,15 +146,120 @@ std::vector<std::string> read_piece(const std::filesystem::path& path, int rank,
     incoming.add(one);
   }
   add_labels(path, data, points, incoming);
-  std::vector<std::string> notes;
-  const auto note = [&](const std::vector<io::Field>& fields, const char* of) {
-    for (const io::Field& field : fields)
-      if (field.name != io::kVtkNumberArray)
-        notes.push_back("array '" + field.name + "' of " + of + " left out");
-  };
-  note(data.point_fields, "points");
-  note(data.cell_fields, "cells");
-  return notes;
+  arrays.point_fields = without_numbers(std::move(data.point_fields));
+  arrays.cell_fields = without_numbers(std::move(data.cell_fields));
+  if (!arrays.point_fields.empty()) {
+    arrays.points = std::move(points);
+    arrays.places = std::move(data.points);
+  }
+  if (!arrays.cell_fields.empty()) arrays.cells = std::move(cells);
+  return std::move(data.notes);
+}
+
+/// The arrays that each piece has with the same number of components, in the order of the first piece, and a
+/// note on each other. `fields`: of those of this rank.
+class CommonFields {
+ public:
+  using Fields = std::vector<io::Field> PieceArrays::*;
+  /// All take part.
+  CommonFields(Comm& comm, const std::vector<PieceArrays>& mine, Fields fields, const char* of,
+               std::vector<std::string>& notes)
+      : fields_(fields) {
+    std::string text;
+    for (const PieceArrays& piece : mine) {
+      text += std::to_string(piece.number) + " 0 0 \n";
+      for (const io::Field& field : piece.*fields)
+        text += std::to_string(piece.number) + " " + std::to_string(field.components) +
+                (field.integer ? " 1 " : " 0 ") + one_line(field.name) + "\n";
+    }
+    const std::vector<char> said = comm.all_gather(std::span<const char>(text));
+    std::istringstream in(std::string(said.begin(), said.end()));
+    std::map<std::size_t, std::vector<io::ShareField>> by_piece;
+    for (std::string line; std::getline(in, line);) {
+      std::istringstream words(line);
+      std::size_t piece = 0;
+      io::ShareField field;
+      words >> piece >> field.components >> field.integer;
+      words.get();
+      std::getline(words, field.name);
+      std::vector<io::ShareField>& list = by_piece[piece];
+      const bool is_second =
+          std::ranges::any_of(list, [&](const io::ShareField& other) { return other.name == field.name; });
+      if (field.components > 0 && !is_second) list.push_back(std::move(field));
+    }
+    if (by_piece.empty()) return;
+    for (io::ShareField field : by_piece.begin()->second) {
+      const bool have_all = std::ranges::all_of(by_piece, [&](const auto& piece) {
+        return std::ranges::any_of(piece.second, [&](const io::ShareField& other) {
+          const bool is_same = other.name == field.name && other.components == field.components;
+          if (is_same) field.integer = field.integer && other.integer;
+          return is_same;
+        });
+      });
+      if (have_all) shapes_.push_back(std::move(field));
+    }
+    std::set<std::string> lost;
+    for (const auto& [piece, list] : by_piece)
+      for (const io::ShareField& field : list)
+        if (std::ranges::none_of(shapes_, [&](const auto& kept) { return kept.name == field.name; }))
+          lost.insert(field.name);
+    for (const std::string& name : lost)
+      notes.push_back("array '" + io::shown(name) + "' of " + of + " left out: not all pieces have it");
+  }
+
+  /// Of the pieces of this rank, with their numbers.
+  KeptRows rows(Comm& comm, const std::vector<PieceArrays>& mine,
+                std::vector<std::uint64_t> PieceArrays::*numbers, std::uint64_t n) const {
+    NumberedRows some;
+    for (const PieceArrays& piece : mine) {
+      std::vector<const io::Field*> columns;
+      for (const io::ShareField& shape : shapes_)
+        columns.push_back(&*std::ranges::find_if(
+            piece.*fields_, [&](const io::Field& field) { return one_line(field.name) == shape.name; }));
+      for (std::size_t i = 0; i < (piece.*numbers).size(); ++i) {
+        some.numbers.push_back((piece.*numbers)[i]);
+        some.precedence.push_back(piece.number);
+        for (const io::Field* column : columns) {
+          const auto k = static_cast<std::size_t>(column->components);
+          const auto first = column->values.begin() + static_cast<std::ptrdiff_t>(i * k);
+          some.rows.insert(some.rows.end(), first, first + static_cast<std::ptrdiff_t>(k));
+        }
+      }
+    }
+    return rows_in_ranges(comm, shapes_, n, some);
+  }
+  bool empty() const { return shapes_.empty(); }
+
+ private:
+  static std::string one_line(std::string name) {
+    std::ranges::replace(name, '\n', ' ');
+    return name.empty() ? "unnamed" : name;
+  }
+
+  Fields fields_;
+  std::vector<io::ShareField> shapes_;
+};
+
+/// All take part.
+void attach_arrays(DistributedMesh& mesh, const std::vector<PieceArrays>& mine,
+                   std::vector<std::string>& notes) {
+  Comm& comm = mesh.comm();
+  const CommonFields of_points(comm, mine, &PieceArrays::point_fields, "points", notes);
+  const CommonFields of_cells(comm, mine, &PieceArrays::cell_fields, "cells", notes);
+  if (of_points.empty() && of_cells.empty()) return;
+  auto arrays = std::make_shared<AttachedArrays>();
+  arrays->points = of_points.rows(comm, mine, &PieceArrays::points, mesh.n_vertices());
+  arrays->cells = of_cells.rows(comm, mine, &PieceArrays::cells, mesh.n_cells());
+  if (!of_points.empty()) {
+    NumberedRows places;
+    for (const PieceArrays& piece : mine) {
+      places.numbers.insert(places.numbers.end(), piece.points.begin(), piece.points.end());
+      places.precedence.resize(places.numbers.size(), piece.number);
+      for (const Vec3& p : piece.places) places.rows.insert(places.rows.end(), {p.x, p.y, p.z});
+    }
+    arrays->places = rows_in_ranges(comm, {{"", 3, false}}, mesh.n_vertices(), places);
+  }
+  mesh.attach_arrays(std::move(arrays));
 }
 
 }  // namespace
@@ -145,14 +270,20 @@ std::vector<std::string> read_pvtu(DistributedMesh& mesh, const std::filesystem:
   Incoming incoming(mesh.comm());
   std::vector<std::string> notes;
   std::string names;
+  std::vector<PieceArrays> arrays;  // of the pieces of this rank
   const std::size_t n_ranks = mesh.comm().n_ranks();
-  for (auto i = static_cast<std::size_t>(mesh.comm().rank()); i < pieces.size(); i += n_ranks)
-    for (std::string& note : read_piece(pieces[i], mesh.comm().rank(), incoming, names))
+  for (auto i = static_cast<std::size_t>(mesh.comm().rank()); i < pieces.size(); i += n_ranks) {
+    PieceArrays& piece = arrays.emplace_back();
+    piece.number = i;
+    for (std::string& note : read_piece(pieces[i], mesh.comm().rank(), incoming, names, piece))
       if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(std::move(note));
+    if (piece.is_empty) arrays.pop_back();
+  }
   incoming.find_owners();
   incoming.even_out();
   incoming.hand_to_owners(incoming);
   for (std::string& note : incoming.make_parts(mesh, path)) notes.push_back(std::move(note));
+  attach_arrays(mesh, arrays, notes);
   const auto all = mesh.comm().all_gather(std::span<const char>(names.data(), names.size()));
   io::MeshData named;
   io::read_names({all.data(), all.size()}, named);

@@ -11,11 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "Distributed/AttachedArrays.hh"
 #include "Distributed/CurveOwners.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/Incoming.hh"
 #include "HalfFace/Errors.hh"
 #include "IO/MeshShare.hh"
+#include "IO/Words.hh"
 
 namespace hfr::mpi {
 namespace {
@@ -121,7 +123,7 @@ class ShareReader {
   ShareReader(Comm& comm, io::MeshShare& share) : comm_(comm), share_(share) {}
 
   std::vector<PointRecord> points() {
-    const io::SharePoints read = share_.points();
+    io::SharePoints read = share_.points();
     const CurveOwners owner(comm_, read.points.size(), [&](std::size_t i) { return read.points[i]; });
     std::vector<PointRecord> records;
     records.reserve(read.points.size());
@@ -131,6 +133,9 @@ class ShareReader {
       if (read.labels[i] != 0) label_vertex(read.first + i, read.labels[i]);
     for (std::size_t i = 0; i < read.fixed.size(); ++i)
       if (read.fixed[i] != 0) fix(read.first + i);
+    point_rows_ = std::move(read.rows);
+    if (!share_.point_fields().empty())
+      for (const Vec3& p : read.points) places_.insert(places_.end(), {p.x, p.y, p.z});
     return records;
   }
 
@@ -147,7 +152,34 @@ class ShareReader {
     label(items.edges, LabelRecord::Kind::kEdge);
     for (const auto& [v, value] : items.vertex_labels) label_vertex(v, value);
     for (std::uint64_t v : items.fixed) fix(v);
+    n_cells_ += records.size();
+    cell_rows_.insert(cell_rows_.end(), items.cell_rows.begin(), items.cell_rows.end());
+    has_other_values_.resize(share_.cell_fields().size(), 0);
+    for (std::size_t f = 0; f < items.has_other_values.size(); ++f)
+      has_other_values_[f] |= items.has_other_values[f];
     return records;
+  }
+
+  /// Once all cells have been read. Nothing where the file has no arrays. Adds what is lost of them.
+  std::shared_ptr<const AttachedArrays> arrays(std::vector<std::string>& notes) {
+    if (share_.point_fields().empty() && share_.cell_fields().empty()) return nullptr;
+    has_other_values_.resize(share_.cell_fields().size(), 0);
+    comm_.sum(has_other_values_);
+    for (std::size_t f = 0; f < has_other_values_.size(); ++f)
+      if (has_other_values_[f] > 0)
+        notes.push_back("cell field '" + io::shown(share_.cell_fields()[f].name) +
+                        "': only its values on tetrahedra are kept, those on other cells are dropped");
+    const std::span<const std::uint64_t> begins = share_.point_begins();
+    const std::vector<std::uint64_t> begins_of_points(begins.begin(), begins.end());
+    std::vector<std::uint64_t> begins_of_cells = {0};
+    for (std::uint64_t n : comm_.all_gather(std::span<const std::uint64_t>(&n_cells_, 1)))
+      begins_of_cells.push_back(begins_of_cells.back() + n);
+    auto arrays = std::make_shared<AttachedArrays>();
+    arrays->points = KeptRows(comm_, share_.point_fields(), begins_of_points, std::move(point_rows_));
+    arrays->cells = KeptRows(comm_, share_.cell_fields(), begins_of_cells, std::move(cell_rows_));
+    if (!share_.point_fields().empty())
+      arrays->places = KeptRows(comm_, {{"", 3, false}}, begins_of_points, std::move(places_));
+    return arrays;
   }
 
   const std::vector<LabelRecord>& labels() const { return labels_; }
@@ -176,6 +208,9 @@ class ShareReader {
   Comm& comm_;
   io::MeshShare& share_;
   std::vector<LabelRecord> labels_;
+  std::vector<double> point_rows_, cell_rows_, places_;
+  std::vector<std::uint64_t> has_other_values_;
+  std::uint64_t n_cells_ = 0;
 };
 
 }  // namespace
@@ -188,6 +223,8 @@ std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesyste
   const Slices slices(share->point_begins());
   Incoming incoming(comm);
   incoming.set_size(share->n_points(), share->n_cells());
+  std::vector<std::string> notes = share->notes();
+  std::shared_ptr<const AttachedArrays> arrays;
   {
     ShareReader reader(comm, *share);
     Passage passage(comm, slices, reader.points());
@@ -198,9 +235,10 @@ std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesyste
     incoming.reserve_cells(even + even / 4);
     for (std::size_t i = 0; i < n_turns; ++i) passage.send_cells(reader.cells(i), incoming);
     passage.send_labels(reader.labels(), incoming);
+    arrays = reader.arrays(notes);
   }
-  std::vector<std::string> notes = share->notes();
   for (std::string& note : incoming.make_parts(mesh, path)) notes.push_back(std::move(note));
+  if (arrays) mesh.attach_arrays(std::move(arrays));
   mesh.part().labels().names = share->names();
   return notes;
 }

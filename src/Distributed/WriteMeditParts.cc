@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "Distributed/AttachedArrays.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/OwnItems.hh"
 #include "HalfFace/Errors.hh"
@@ -211,6 +212,8 @@ std::vector<std::string> write_medit_parts(DistributedMesh& mesh, const std::fil
   comm.sum(0);  // all are written, or a rank has failed
   file.commit();
   comm.sum(0);
+  if (mesh.arrays())
+    for (std::string& note : mesh.arrays()->notes_on_leaving_out()) notes.push_back(std::move(note));
   const std::filesystem::path next = io::medit_part_path(path, comm.size());
   std::error_code error;
   if (std::filesystem::exists(next, error))

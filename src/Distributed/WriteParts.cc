@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "Distributed/AttachedArrays.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/OwnItems.hh"
 #include "HalfFace/Errors.hh"
@@ -79,16 +80,64 @@ io::MeshData piece_of(const DistributedMesh& mesh, const Numbering& numbering, c
   return data;
 }
 
+/// The type of an array that all pieces have: a piece alone might do with a narrower one.
+struct DeclaredArray {
+  std::string name;
+  const char* type = "";
+  int components = 1;
+};
+/// Widens integers of this piece where another piece needs it. All take part.
+std::vector<DeclaredArray> widened(Comm& comm, std::vector<io::Field>& fields) {
+  std::vector<std::uint64_t> n_wide;
+  for (const io::Field& field : fields)
+    n_wide.push_back(io::integer_width(field) == io::IntegerWidth::k64 ? 1 : 0);
+  comm.sum(n_wide);
+  std::vector<DeclaredArray> declared;
+  for (std::size_t f = 0; f < fields.size(); ++f) {
+    fields[f].wide = n_wide[f] > 0;
+    const char* const integers = fields[f].wide ? "Int64" : "Int32";
+    declared.push_back({fields[f].name, fields[f].integer ? integers : "Float64", fields[f].components});
+  }
+  return declared;
+}
+
+struct AddedArrays {
+  std::vector<DeclaredArray> points, cells;
+};
+/// To the piece, behind what is there. All take part.
+AddedArrays add_arrays(const DistributedMesh& mesh, const OwnLabels& labels, io::MeshData& data) {
+  AddedArrays added;
+  if (!mesh.arrays()) return added;
+  const std::vector<CellHandle> cells = own_cells(mesh);
+  const std::vector<Index> place = places_in_piece(mesh, cells, labels);
+  std::vector<std::uint64_t> points, of_cells;
+  for (std::size_t i = 0; i < place.size(); ++i)
+    if (place[i] != VertexHandle::kInvalid) points.push_back(mesh.source(VertexHandle(i)));
+  for (CellHandle c : cells) of_cells.push_back(mesh.source(c));
+  const auto add = [&](std::vector<io::Field> fields, std::vector<io::Field>& to) {
+    std::vector<DeclaredArray> list = widened(mesh.comm(), fields);
+    to.insert(to.end(), std::make_move_iterator(fields.begin()), std::make_move_iterator(fields.end()));
+    return list;
+  };
+  added.points = add(mesh.arrays()->points.fields_of(mesh.comm(), points), data.point_fields);
+  added.cells = add(mesh.arrays()->cells.fields_of(mesh.comm(), of_cells), data.cell_fields);
+  return added;
+}
+
 std::string piece_name(const std::filesystem::path& path, int rank) {
   const std::string stem = path.stem().string();
   return stem + "/" + stem + "_" + std::to_string(rank) + ".vtu";
 }
 
-void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels& labels) {
+void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels& labels,
+                 const AddedArrays& added) {
   io::OutputFile out(path);
-  const auto declare = [&](const char* type, std::string_view name) {
-    out.text("<PDataArray type=\"").text(type).text("\" Name=\"").text(name);
-    out.text("\" NumberOfComponents=\"1\"/>\n");
+  const auto declare = [&](const char* type, std::string_view name, int components = 1) {
+    out.text("<PDataArray type=\"").text(type).text("\" Name=\"").text(io::xml_escaped(name));
+    out.text("\" NumberOfComponents=\"").number(std::int64_t{components}).text("\"/>\n");
+  };
+  const auto declare_all = [&](const std::vector<DeclaredArray>& arrays) {
+    for (const DeclaredArray& one : arrays) declare(one.type, one.name, one.components);
   };
   out.text("<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"");
   out.text(std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian");
@@ -97,9 +146,11 @@ void write_index(const std::filesystem::path& path, int n_ranks, const OwnLabels
   if (labels.with_vertex_labels) declare("Int32", io::kVtkLabelArray);
   if (labels.n_fixed > 0) declare("Int32", io::kVtkFixedArray);
   declare("Float64", io::kVtkNumberArray);
+  declare_all(added.points);
   out.text("</PPointData>\n<PCellData>\n");
   if (labels.with_regions) declare("Int32", io::kVtkRegionArray);
   declare("Float64", io::kVtkNumberArray);
+  declare_all(added.cells);
   out.text("</PCellData>\n");
   out.text(
       "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n");
@@ -124,8 +175,11 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   std::filesystem::create_directory(piece.parent_path(), error);  // by whoever comes first
   // Pieces that were there before, and are read with the index, go when all new ones are whole.
   const std::filesystem::path fresh = piece.parent_path() / ("." + piece.stem().string() + ".new.vtu");
+  AddedArrays added;
   try {
-    io::write_mesh(fresh, piece_of(mesh, numbering, labels));
+    io::MeshData data = piece_of(mesh, numbering, labels);
+    added = add_arrays(mesh, labels, data);
+    io::write_mesh(fresh, data);
     mesh.comm().sum(0);  // all pieces are there, or a rank has failed
   } catch (...) {
     std::filesystem::remove(fresh, error);
@@ -134,7 +188,7 @@ void write_pvtu(DistributedMesh& mesh, const std::filesystem::path& path) {
   std::filesystem::rename(fresh, piece, error);
   if (error) throw IoError(piece.string() + ": cannot be written: " + error.message());
   mesh.comm().sum(0);
-  if (mesh.comm().rank() == 0) write_index(path, mesh.comm().size(), labels);
+  if (mesh.comm().rank() == 0) write_index(path, mesh.comm().size(), labels, added);
   mesh.comm().sum(0);
 }
 

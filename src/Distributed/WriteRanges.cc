@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "Distributed/AttachedArrays.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/SharedFile.hh"
@@ -38,7 +39,7 @@ class Ranges {
 };
 
 struct PointItem {
-  std::uint64_t number = 0;
+  std::uint64_t number = 0, source = 0;
   Vec3 point;
   std::int32_t label = 0, fixed = 0;
 };
@@ -97,8 +98,10 @@ struct Elements {
 /// What this rank writes: of everything a range of the numbers.
 class RangeOfMesh {
  public:
-  RangeOfMesh(DistributedMesh& mesh, const Numbering& numbering, const OwnLabels& labels)
-      : mesh_(mesh), comm_(mesh.comm()), numbering_(numbering) {
+  /// `arrays`: those that are written, or none.
+  RangeOfMesh(DistributedMesh& mesh, const Numbering& numbering, const OwnLabels& labels,
+              const AttachedArrays* arrays)
+      : mesh_(mesh), comm_(mesh.comm()), numbering_(numbering), arrays_(arrays) {
     stretch_.processes = {static_cast<std::size_t>(comm_.rank()), comm_.n_ranks(),
                           [this](std::span<const std::byte> mine) { return comm_.all_gather(mine); }};
     stretch_.names = &mesh.part().labels().names;
@@ -114,6 +117,7 @@ class RangeOfMesh {
       return item(
           Labelled<4>{numbering(cells[i]), mesh.part().cell(cells[i]).v, mesh.part().region(cells[i])});
     });
+    receive_cell_fields(cells);
   }
   RangeOfMesh(const RangeOfMesh&) = delete;
   RangeOfMesh& operator=(const RangeOfMesh&) = delete;
@@ -133,15 +137,18 @@ class RangeOfMesh {
     points_.resize(ranges.size());
     if (labels.with_vertex_labels) vertex_labels_.resize(ranges.size());
     std::vector<std::uint8_t> is_fixed(ranges.size(), 0);
+    std::vector<std::uint64_t> sources(arrays_ ? ranges.size() : 0);
     const TetMesh& part = mesh_.part();
     hand_to_ranges(
         comm_, ranges, vertices.size(),
         [&](std::size_t i) {
           const VertexHandle v = vertices[i];
-          return PointItem{numbering_(v), part.point(v), part.labels().vertex(v), part.is_fixed(v) ? 1 : 0};
+          return PointItem{numbering_(v), mesh_.source(v), part.point(v), part.labels().vertex(v),
+                           part.is_fixed(v) ? 1 : 0};
         },
         [&](const PointItem& p, std::size_t at) {
           points_[at] = p.point;
+          if (!sources.empty()) sources[at] = p.source;
           if (labels.with_vertex_labels) vertex_labels_[at] = p.label;
           is_fixed[at] = p.fixed != 0 ? 1 : 0;
         });
@@ -152,15 +159,36 @@ class RangeOfMesh {
     stretch_.points = points_;
     stretch_.vertex_labels = vertex_labels_;
     stretch_.fixed = {labels.n_fixed, io::NumberRows(fixed_), {}};
+    if (arrays_) point_fields_ = arrays_->points.fields_of(comm_, sources);
+    stretch_.point_fields = point_fields_;
+  }
+  /// The cells of a range need not be of the parts of its rank.
+  void receive_cell_fields(const std::vector<CellHandle>& cells) {
+    if (!arrays_) return;
+    const Ranges ranges(comm_, numbering_.n_cells());
+    std::vector<std::uint64_t> sources(ranges.size());
+    struct Sourced {
+      std::uint64_t number = 0, source = 0;
+    };
+    hand_to_ranges(
+        comm_, ranges, cells.size(),
+        [&](std::size_t i) {
+          return Sourced{numbering_(cells[i]), mesh_.source(cells[i])};
+        },
+        [&](const Sourced& one, std::size_t at) { sources[at] = one.source; });
+    cell_fields_ = arrays_->cells.fields_of(comm_, sources);
+    stretch_.cell_fields = cell_fields_;
   }
 
   DistributedMesh& mesh_;
   Comm& comm_;
   const Numbering& numbering_;
+  const AttachedArrays* arrays_;
   io::MeshStretch stretch_;
   std::vector<Vec3> points_;
   std::vector<int> vertex_labels_;
   std::vector<std::uint64_t> fixed_;
+  std::vector<io::Field> point_fields_, cell_fields_;
   Elements<2> edges_;
   Elements<3> triangles_;
   Elements<4> cells_;
@@ -192,7 +220,8 @@ std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesyst
   io::require_stretches(path, options);
   const Numbering numbering(mesh);
   const OwnLabels labels(mesh);
-  RangeOfMesh range(mesh, numbering, labels);
+  const bool takes_arrays = io::lower(path.extension().string()) == ".vtu";
+  RangeOfMesh range(mesh, numbering, labels, takes_arrays ? mesh.arrays() : nullptr);
   if (io::wants_boxes(path, options)) range.stretch().boxes = boxes_of_own(mesh, labels);
   const io::StretchedFile stretched = io::stretched_file(path, range.stretch(), options);
   io::StretchLengths lengths;
@@ -205,7 +234,10 @@ std::vector<std::string> write_ranges(DistributedMesh& mesh, const std::filesyst
   sink.finish();
   file.finish();
   shared.commit();
-  return stretched.notes;
+  std::vector<std::string> notes = stretched.notes;
+  if (mesh.arrays() && !takes_arrays)
+    for (std::string& note : mesh.arrays()->notes_on_leaving_out()) notes.push_back(std::move(note));
+  return notes;
 }
 
 }  // namespace hfr::mpi

@@ -145,6 +145,11 @@ void TetMesh::Writer::open_gaps(std::span<const VertexHandle> to, std::size_t n)
   hfr::open_gaps(to, n, Vec3{}, mesh.points_);
   hfr::open_gaps(to, n, CellHandle(), mesh.incident_cell_);
   hfr::open_gaps(to, n, std::uint8_t{0}, mesh.vertex_status_);
+  if (!mesh.properties_.vertices.empty()) {
+    std::vector<Index> places;
+    for (VertexHandle v : to) places.push_back(v.idx());
+    for (const auto& p : mesh.properties_.vertices) p->permute(places, n);
+  }
   for (Cell& cell : mesh.cells_)
     for (VertexHandle& v : cell.v)
       if (v.is_valid()) v = to[v.idx()];

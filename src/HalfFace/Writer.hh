@@ -51,7 +51,8 @@ class TetMesh::Writer {
   /// New cells are deleted ones, not on the free list.
   void resize_cells(std::size_t n) { mesh_.resize_cells(n); }
   /// Vertex i becomes to[i], which ascend, of n: those between are new ones without cells, at the origin. All
-  /// that names vertices follows, but for properties, of which the mesh must have none. O(mesh), in place.
+  /// that hangs on vertices or names them follows, but for properties of edges and faces, of which the mesh
+  /// must have none. O(mesh).
   void open_gaps(std::span<const VertexHandle> to, std::size_t n);
   /// Deleted cells that wait for reuse, in the order in which they are to be taken (from the back).
   std::vector<CellHandle>& free_cells() { return mesh_.free_cells_; }

@@ -19,6 +19,7 @@ struct Field {
   int components = 1;          ///< 1 scalar, 3 vector, 6 symmetric tensor (xx yy zz xy yz xz), 9 tensor
   bool integer = false;        ///< the file stored integers: write them as such where the format can
   std::vector<double> values;  ///< components per item, item by item
+  bool wide = false;           ///< integers take 64 bits even where these would do with 32
 };
 
 /// What a mesh file holds, as plain arrays, before any connectivity is built. All indices are 0-based.

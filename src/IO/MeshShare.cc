@@ -35,6 +35,8 @@ class VtuShare : public MeshShare {
     for (std::size_t r = 0; r < rank_; ++r) next_ += all[r];
     for (const VtuSlices::Kinds& kinds : all) n_cells_ += kinds.cells;
     names_ = file_.names();
+    point_fields_ = file_.point_fields();
+    cell_fields_ = file_.cell_fields();
     notes_ = file_.notes();
   }
 
@@ -45,6 +47,7 @@ class VtuShare : public MeshShare {
     points.points = file_.points(points.first, end);
     points.labels = file_.vertex_labels(points.first, end);
     points.fixed = file_.fixed(points.first, end);
+    points.rows = file_.point_rows(points.first, end);
     return points;
   }
   std::size_t n_portions() const override {

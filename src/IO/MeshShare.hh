@@ -36,12 +36,20 @@ struct Processes {
   }
 };
 
+/// A user's array, without its values.
+struct ShareField {
+  std::string name;
+  int components = 1;
+  bool integer = false;  ///< of the file
+};
+
 /// Points with numbers that follow on one another.
 struct SharePoints {
   std::uint64_t first = 0;
   std::vector<Vec3> points;
   std::vector<std::int32_t> labels;  ///< one each, or empty
   std::vector<std::uint8_t> fixed;   ///< 1: never moved nor removed; one each, or empty
+  std::vector<double> rows;          ///< of each all components of all MeshShare::point_fields()
 };
 
 /// Elements of N corners, with numbers among their kind that follow on one another.
@@ -58,6 +66,9 @@ struct ShareItems {
   ShareElements<2> edges;
   std::vector<std::pair<std::uint64_t, std::int32_t>> vertex_labels;  ///< vertex → label, in file order
   std::vector<std::uint64_t> fixed;                                   ///< vertices
+  std::vector<double> cell_rows;  ///< of each cell all components of all MeshShare::cell_fields()
+  /// One for each of these fields: whether a triangle or an edge has another value of it than 0. Or empty.
+  std::vector<std::uint8_t> has_other_values;
 };
 
 /// What this process reads of a file. All processes make one at the same time. All functions throw
@@ -72,6 +83,9 @@ class MeshShare {
   std::span<const std::uint64_t> point_begins() const { return begins_; }
   /// (dimension, label) → name, as MeshData has them.
   const std::map<std::pair<int, int>, std::string>& names() const { return names_; }
+  /// Arrays that are read; no two of the same name.
+  const std::vector<ShareField>& point_fields() const { return point_fields_; }
+  const std::vector<ShareField>& cell_fields() const { return cell_fields_; }
   /// One line each: what the file has that is not read, or read as something else. The same for all.
   const std::vector<std::string>& notes() const { return notes_; }
 
@@ -84,6 +98,7 @@ class MeshShare {
   std::vector<std::uint64_t> begins_;
   std::uint64_t n_cells_ = 0;
   std::map<std::pair<int, int>, std::string> names_;
+  std::vector<ShareField> point_fields_, cell_fields_;
   std::vector<std::string> notes_;
 };
 

@@ -57,6 +57,8 @@ MeshStretch stretch_of(const MeshData& mesh) {
   };
   stretch.with_labels = !mesh.regions.empty() || has_any(mesh.triangle_labels) || has_any(mesh.edge_labels);
   stretch.names = &mesh.names;
+  stretch.point_fields = mesh.point_fields;
+  stretch.cell_fields = mesh.cell_fields;
   return stretch;
 }
 

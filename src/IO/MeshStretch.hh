@@ -92,6 +92,9 @@ struct MeshStretch {
   /// not 0.
   bool with_vertex_labels = false, with_labels = false;
   const std::map<std::pair<int, int>, std::string>* names = nullptr;
+  /// With the values of the points and cells of this process; the same arrays on all. Others than .vtu leave
+  /// them out.
+  std::span<const Field> point_fields, cell_fields;
   /// Of elements whose points this process knows, whoever writes them; all processes together have all. For
   /// formats that want_boxes().
   LabelBoxes boxes;
@@ -112,8 +115,8 @@ struct StretchedFile {
 /// Throws InvalidInput for other formats than .mesh, .meshb, .msh and .vtu, and for unknown variants; of .vtu
 /// there is raw appended data alone.
 void require_stretches(const std::filesystem::path& path, const WriteOptions& options);
-/// What write_mesh() writes of a mesh without fields, where require_stretches() has nothing against it. All
-/// processes make one at the same time. Throws ResourceLimit where numbers are too wide.
+/// What write_mesh() writes of a mesh, where require_stretches() has nothing against it; fields in .vtu
+/// alone. All processes make one at the same time. Throws ResourceLimit where numbers are too wide.
 StretchedFile stretched_file(const std::filesystem::path& path, const MeshStretch& mesh,
                              const WriteOptions& options);
 /// Whether the format needs MeshStretch::boxes.

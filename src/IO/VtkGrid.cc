@@ -437,12 +437,22 @@ std::vector<std::string> notes_on_names(const MeshData& mesh) {
   return notes;
 }
 
+std::vector<std::string> notes_on_vtu_names(const MeshData& mesh) {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' '; };
+  std::vector<std::string> notes = notes_on_names(mesh);
+  for (const auto* const fields : {&mesh.point_fields, &mesh.cell_fields})
+    for (const Field& field : *fields)
+      if (std::any_of(field.name.begin(), field.name.end(), is_control))
+        notes.push_back("control characters in the name of a field are written as blanks");
+  return notes;
+}
+
 IntegerWidth integer_width(const Field& field) {
   constexpr double kLow32 = std::numeric_limits<std::int32_t>::min();
   constexpr double kHigh32 = std::numeric_limits<std::int32_t>::max();
   constexpr double kLimit64 = 9223372036854775808.0;  // 2^63
   if (!field.integer) return IntegerWidth::kNone;
-  IntegerWidth width = IntegerWidth::k32;
+  IntegerWidth width = field.wide ? IntegerWidth::k64 : IntegerWidth::k32;
   for (const double v : field.values) {
     if (!(v >= -kLimit64 && v < kLimit64) || v != std::trunc(v)) return IntegerWidth::kNone;
     if (v < kLow32 || v > kHigh32) width = IntegerWidth::k64;

@@ -72,6 +72,8 @@ std::vector<std::int32_t> vtk_vertex_labels(const MeshData& mesh);
 std::vector<std::int32_t> vtk_fixed(const MeshData& mesh);
 /// A line for each field under the very name of one of these arrays.
 std::vector<std::string> notes_on_names(const MeshData& mesh);
+/// The same, and what becomes of names in XML.
+std::vector<std::string> notes_on_vtu_names(const MeshData& mesh);
 
 /// How the values of an integer field can be written: as 32-bit or 64-bit integers, or, when some are none,
 /// as doubles.

@@ -129,14 +129,38 @@ class VtuSlices::Header {
     if (labels) file_.vertex_labels_ = integers(*labels);
     if (fixed) file_.fixed_ = integers(*fixed);
     if (regions) file_.regions_ = integers(*regions);
-    const auto note_others = [&](const XMLElement* arrays, const char* of) {
+    const auto read_others = [&](const XMLElement* arrays, const char* of,
+                                 std::span<const std::string_view> names, const XMLElement* taken,
+                                 std::vector<Array>& others) {
+      const auto end =
+          taken ? std::ranges::find(names, lower(std::string(attribute(*taken, "Name")))) : names.end();
       for (const XMLElement* e = arrays ? arrays->FirstChildElement() : nullptr; e;
            e = e->NextSiblingElement())
-        if (e != labels && e != fixed && e != regions)
-          file_.notes_.push_back("array '" + shown(attribute(*e, "Name")) + "' of " + of + " left out");
+        if (e != labels && e != fixed && e != regions) add_other(*e, of, {names.begin(), end}, others);
     };
-    note_others(of_points, "points");
-    note_others(of_cells, "cells");
+    read_others(of_points, "points", kVtkPointLabelNames, labels, file_.point_arrays_);
+    read_others(of_cells, "cells", kVtkCellLabelNames, regions, file_.cell_arrays_);
+  }
+  /// `label_names`: of what would be labels rather than those that were found. In shared memory these may be
+  /// reals that are all whole, which is for the values to say.
+  void add_other(const XMLElement& element, const char* of, std::span<const std::string_view> label_names,
+                 std::vector<Array>& others) {
+    const std::string name(attribute(element, "Name"));
+    const auto type = vtu_number_type(attribute(element, "type"));
+    const bool may_be_labels =
+        type && !is_integer(*type) && number_attribute(element, "NumberOfComponents").value_or(1) <= 1 &&
+        (lower(name) == kVtkFixedArray || std::ranges::find(label_names, lower(name)) != label_names.end());
+    if (!type || attribute(element, "format") != "appended" || name == kVtkNumberArray || may_be_labels) {
+      file_.notes_.push_back("array '" + shown(name) + "' of " + of + " left out");
+      return;
+    }
+    Array found = array(element);
+    if (found.components > kMostComponents) file_.fail("array '" + shown(name) + "': too many components");
+    if (name.empty()) found.name = "unnamed";
+    if (std::ranges::any_of(others, [&](const Array& other) { return other.name == found.name; }))
+      file_.notes_.push_back("a second array '" + shown(found.name) + "' of " + of + " left out");
+    else
+      others.push_back(std::move(found));
   }
   void read_names(const XMLElement& data) {
     for (const XMLElement* e = data.FirstChildElement("DataArray"); e;
@@ -156,6 +180,7 @@ class VtuSlices::Header {
   }
 
   static constexpr std::uint64_t kMostNames = std::uint64_t{1} << 24;
+  static constexpr std::uint64_t kMostComponents = std::uint64_t{1} << 20;
 
   VtuSlices& file_;
   std::uint64_t first_byte_;  // of appended data
@@ -171,6 +196,50 @@ VtuSlices::VtuSlices(const std::filesystem::path& path) : in_(path) {
   if (regions_.components > 0) require_length(regions_, n_items_);
   if (vertex_labels_.components > 0) require_length(vertex_labels_, n_points_);
   if (fixed_.components > 0) require_length(fixed_, n_points_);
+  for (const Array& array : point_arrays_) require_length(array, n_points_);
+  for (const Array& array : cell_arrays_) require_length(array, n_items_);
+}
+
+std::vector<ShareField> VtuSlices::shapes(const std::vector<Array>& arrays) {
+  std::vector<ShareField> shapes;
+  for (const Array& array : arrays)
+    shapes.push_back({array.name, static_cast<int>(array.components), is_integer(array.type)});
+  return shapes;
+}
+
+/// Of each of these points or elements all components of all arrays.
+std::vector<double> VtuSlices::rows(const std::vector<Array>& arrays, std::uint64_t begin,
+                                    std::uint64_t end) {
+  std::size_t width = 0, first = 0;
+  for (const Array& array : arrays) width += static_cast<std::size_t>(array.components);
+  std::vector<double> rows(width * (end - begin));
+  for (const Array& array : arrays) {
+    const auto n = static_cast<std::size_t>(array.components);
+    const std::vector<double> values = numbers<double>(array, begin, end);
+    for (std::size_t i = 0; i < values.size() / n; ++i)
+      std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(i * n), n,
+                  rows.begin() + static_cast<std::ptrdiff_t>(i * width + first));
+    first += n;
+  }
+  return rows;
+}
+
+/// Those of the tetrahedra, and whether others have values.
+void VtuSlices::take_rows(std::uint64_t begin, const std::vector<std::uint8_t>& types, ShareItems& items) {
+  if (cell_arrays_.empty()) return;
+  const std::vector<double> all = rows(cell_arrays_, begin, begin + types.size());
+  const std::size_t width = all.size() / types.size();
+  items.has_other_values.assign(cell_arrays_.size(), 0);
+  for (std::size_t i = 0; i < types.size(); ++i) {
+    auto row = all.begin() + static_cast<std::ptrdiff_t>(i * width);
+    if (types[i] == kVtkTetra) {
+      items.cell_rows.insert(items.cell_rows.end(), row, row + static_cast<std::ptrdiff_t>(width));
+      continue;
+    }
+    for (std::size_t a = 0; a < cell_arrays_.size(); ++a)
+      for (std::uint64_t k = 0; k < cell_arrays_[a].components; ++k)
+        if (*row++ != 0.0) items.has_other_values[a] = 1;
+  }
 }
 
 /// Up to the underscore with which appended data begin.
@@ -304,6 +373,7 @@ ShareItems VtuSlices::items(std::uint64_t begin, std::uint64_t end) {
     if (types[i] == kVtkTriangle) take(items.triangles, begin + i, &corners[at], labels[i]);
     if (types[i] == kVtkLine) take(items.edges, begin + i, &corners[at], labels[i]);
   }
+  take_rows(begin, types, items);
   return items;
 }
 

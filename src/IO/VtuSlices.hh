@@ -30,13 +30,19 @@ class VtuSlices {
   /// Tetrahedra, triangles and lines.
   std::uint64_t n_items() const { return n_items_; }
   const std::map<std::pair<int, int>, std::string>& names() const { return names_; }
-  /// What the file has beside points, elements, their labels and names.
+  /// The other arrays of numbers; no two of the same name.
+  std::vector<ShareField> point_fields() const { return shapes(point_arrays_); }
+  std::vector<ShareField> cell_fields() const { return shapes(cell_arrays_); }
+  /// What the file has beside all these.
   const std::vector<std::string>& notes() const { return notes_; }
 
   // Those with the numbers begin … end-1.
   std::vector<Vec3> points(std::uint64_t begin, std::uint64_t end);
   std::vector<std::int32_t> vertex_labels(std::uint64_t begin, std::uint64_t end);  ///< empty: none has one
   std::vector<std::uint8_t> fixed(std::uint64_t begin, std::uint64_t end);          ///< empty: none is
+  std::vector<double> point_rows(std::uint64_t begin, std::uint64_t end) {
+    return rows(point_arrays_, begin, end);
+  }
   struct Kinds {
     std::uint64_t cells = 0, triangles = 0, edges = 0;
     Kinds& operator+=(const Kinds& o) {
@@ -57,6 +63,8 @@ class VtuSlices {
   };
   class Header;
 
+  static std::vector<ShareField> shapes(const std::vector<Array>& arrays);
+
   [[noreturn]] void fail(const std::string& message) const { in_.fail(message); }
   std::string head();
   std::uint64_t announced(const Array& array);
@@ -65,6 +73,8 @@ class VtuSlices {
   std::vector<T> numbers(const Array& array, std::uint64_t begin, std::uint64_t end);
   std::vector<std::int32_t> labels(const Array& array, const char* of, std::uint64_t begin,
                                    std::uint64_t end);
+  std::vector<double> rows(const std::vector<Array>& arrays, std::uint64_t begin, std::uint64_t end);
+  void take_rows(std::uint64_t begin, const std::vector<std::uint8_t>& types, ShareItems& items);
   std::vector<std::uint8_t> types(std::uint64_t begin, std::uint64_t end);
   std::vector<std::uint64_t> ends(std::uint64_t begin, std::uint64_t end);
   template <std::size_t N>
@@ -75,6 +85,7 @@ class VtuSlices {
   VtuCoding coding_;
   std::uint64_t n_points_ = 0, n_items_ = 0;
   Array points_, corners_, ends_, types_, regions_, vertex_labels_, fixed_;
+  std::vector<Array> point_arrays_, cell_arrays_;
   std::map<std::pair<int, int>, std::string> names_;
   std::vector<std::string> notes_;
 };

@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One .vtu of raw appended data, as WriteVtu.cc lays it out, of which each of several processes writes a
 // stretch of every array: few long ones, wherever their cells stand.
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <ranges>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "IO/MeshStretch.hh"
+#include "IO/OutputFile.hh"
 #include "IO/VtkGrid.hh"
+#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -25,6 +32,8 @@ class VtuStretches {
     MeshData named;
     named.names = *mesh.names;
     names_ = names_text(named);
+    look_at(mesh.point_fields, point_facts_);
+    look_at(mesh.cell_fields, cell_facts_);
     list_arrays();
     lay_out();
   }
@@ -97,20 +106,82 @@ class VtuStretches {
                            for (std::size_t i = 0; i < kind.elements.corners.size(); ++i) out.raw(kind.type);
                          });
                        }});
-    if (mesh_.with_vertex_labels)
+    if (mesh_.with_vertex_labels ||
+        would_be_labels(mesh_.point_fields, point_facts_, kVtkLabelArray, kVtkPointLabelNames))
       arrays_.push_back({"PointData", kVtkLabelArray, "Int32", 1, mesh_.n_points, 4, [this](ByteSink& out) {
-                           for (int label : mesh_.vertex_labels) out.raw(std::int32_t{label});
+                           const auto& labels = mesh_.vertex_labels;
+                           for (std::size_t i = 0; i < mesh_.points.size(); ++i)
+                             out.raw(std::int32_t{labels.empty() ? 0 : labels[i]});
                          }});
-    if (mesh_.fixed.total > 0)
+    if (mesh_.fixed.total > 0 ||
+        would_be_labels(mesh_.point_fields, point_facts_, kVtkFixedArray, {{kVtkFixedArray}}))
       arrays_.push_back({"PointData", kVtkFixedArray, "Int32", 1, mesh_.n_points, 4,
                          [this](ByteSink& out) { put_fixed(out); }});
-    if (mesh_.with_labels)
+    for (std::size_t i = 0; i < mesh_.point_fields.size(); ++i)
+      add_field("PointData", mesh_.point_fields[i], point_facts_[i].width, mesh_.n_points);
+    if (mesh_.with_labels ||
+        would_be_labels(mesh_.cell_fields, cell_facts_, kVtkRegionArray, kVtkCellLabelNames))
       arrays_.push_back({"CellData", kVtkRegionArray, "Int32", 1, n_items, 4, [this](ByteSink& out) {
                            for_kinds(out, [&](const Kind& kind, std::uint64_t) {
                              for (std::size_t i = 0; i < kind.elements.corners.size(); ++i)
                                out.raw(std::int32_t{kind.elements.label(i)});
                            });
                          }});
+    for (std::size_t i = 0; i < mesh_.cell_fields.size(); ++i)
+      add_field("CellData", mesh_.cell_fields[i], cell_facts_[i].width, n_items);
+  }
+
+  /// What the values of all processes say of a field.
+  struct Facts {
+    IntegerWidth width = IntegerWidth::k32;
+    bool is_whole = true;
+  };
+  void look_at(std::span<const Field> fields, std::vector<Facts>& facts) const {
+    const auto is_whole = [](double v) { return v == std::trunc(v); };
+    for (const Field& field : fields)
+      facts.push_back({integer_width(field), std::ranges::all_of(field.values, is_whole)});
+    if (facts.empty()) return;
+    const std::vector<Facts> all = mesh_.processes.gather(std::span<const Facts>(facts));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Facts& one = facts[i % facts.size()];
+      one.width = std::max(one.width, all[i].width);
+      one.is_whole = one.is_whole && all[i].is_whole;
+    }
+  }
+  /// Whether a reader would take a field for labels, where no array of labels comes before it.
+  static bool would_be_labels(std::span<const Field> fields, const std::vector<Facts>& facts,
+                              std::string_view array, std::span<const std::string_view> names) {
+    bool any = false;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (fields[i].name == array) return false;
+      any = any || (fields[i].components == 1 && facts[i].is_whole &&
+                    std::ranges::find(names, lower(fields[i].name)) != names.end());
+    }
+    return any;
+  }
+  void add_field(const char* section, const Field& field, IntegerWidth width, std::uint64_t n) {
+    if (width == IntegerWidth::k32) return add_values<std::int32_t>(section, "Int32", field, n);
+    if (width == IntegerWidth::k64) return add_values<std::int64_t>(section, "Int64", field, n);
+    add_values<double>(section, "Float64", field, n);
+  }
+  /// Elements that are no cells have zeros.
+  template <class T>
+  void add_values(const char* section, const char* type, const Field& field, std::uint64_t n) {
+    const auto put_values = [&field](ByteSink& out) {
+      for (double value : field.values) out.raw(static_cast<T>(value));
+    };
+    const auto components = static_cast<std::uint64_t>(field.components);
+    std::function<void(ByteSink&)> put = put_values;
+    if (section == std::string_view("CellData"))
+      put = [this, put_values, components](ByteSink& out) {
+        for_kinds(out, [&](const Kind& kind, std::uint64_t) {
+          if (kind.type == kVtkTetra) return put_values(out);
+          for (std::uint64_t i = 0; i < components * kind.elements.corners.size(); ++i) out.raw(T{0});
+        });
+      };
+    arrays_.push_back(
+        {section, names_of_fields_.emplace_back(field.name.empty() ? "unnamed" : xml_escaped(field.name)),
+         type, components, components * n, sizeof(T), std::move(put)});
   }
   template <class T>
   void add_corners(const char* type, std::uint64_t n) {
@@ -168,14 +239,25 @@ class VtuStretches {
 
   const MeshStretch& mesh_;
   std::string names_, head_;
-  std::vector<Array> arrays_;  // in the order of the file
+  std::vector<Facts> point_facts_, cell_facts_;
+  std::deque<std::string> names_of_fields_;  // which views are of
+  std::vector<Array> arrays_;                // in the order of the file
 };
+
+std::vector<Field> without_values(std::span<const Field> fields) {
+  std::vector<Field> shapes;
+  for (const Field& field : fields) shapes.push_back({field.name, field.components, field.integer, {}});
+  return shapes;
+}
 
 }  // namespace
 
 StretchedFile vtu_stretches(const MeshStretch& mesh) {
   const auto file = std::make_shared<VtuStretches>(mesh);
-  return {[file](ByteSink& out) { file->write(out); }, {}};
+  MeshData named;
+  named.point_fields = without_values(mesh.point_fields);
+  named.cell_fields = without_values(mesh.cell_fields);
+  return {[file](ByteSink& out) { file->write(out); }, notes_on_vtu_names(named)};
 }
 
 }  // namespace hfr::io

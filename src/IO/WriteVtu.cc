@@ -26,8 +26,6 @@ Variant variant_of(const std::string& name) {
   return name == "zlib" ? Variant::kZlib : Variant::kAppended;
 }
 
-bool is_control(char c) { return static_cast<unsigned char>(c) < ' '; }
-
 template <class T>
 constexpr NumberType number_type() {
   if constexpr (std::is_same_v<T, double>) return NumberType::kFloat64;
@@ -315,12 +313,7 @@ Notes VtuWriter::write() {
   put_appended();
   out_.text("</VTKFile>\n");
   out_.commit();
-  Notes notes = notes_on_names(mesh_);
-  for (const auto* const fields : {&mesh_.point_fields, &mesh_.cell_fields})
-    for (const Field& field : *fields)
-      if (std::any_of(field.name.begin(), field.name.end(), is_control))
-        notes.push_back("control characters in the name of a field are written as blanks");
-  return notes;
+  return notes_on_vtu_names(mesh_);
 }
 
 }  // namespace

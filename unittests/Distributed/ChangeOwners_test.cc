@@ -156,12 +156,7 @@ TEST(ChangeOwners, ARunWithoutAGoalReordersAsIfNothingHadBeen) {
   mpi::Comm comm(MPI_COMM_WORLD);
   const SharedFolder folder(comm);
   const auto path = folder.path() / "in.vtu";
-  if (comm.rank() == 0) {
-    generate::Arrays box = generate::jittered_box({17, 17, 17}, 0.1, 3);
-    std::mt19937_64 engine(7);
-    std::shuffle(box.cells.begin(), box.cells.end(), engine);
-    io::write(path, build(box.points, box.cells));
-  }
+  if (comm.rank() == 0) io::write(path, scattered_box(17));
   comm.sum(0);
   ImproveOptions options;
   options.policy = {};

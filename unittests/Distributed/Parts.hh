@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <exception>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,14 @@ inline TetMesh torn(Index n, double jitter, double keep, std::uint64_t seed) {
   for (std::size_t i = 0; i < box.cells.size(); ++i)
     if (generate::random_unit(seed, i) < keep) kept.push_back(box.cells[i]);
   return build(box.points, kept);
+}
+
+/// Whose cells stand in memory in an order that has nothing to do with where they lie.
+inline TetMesh scattered_box(Index n) {
+  generate::Arrays box = generate::jittered_box({n, n, n}, 0.1, 3);
+  std::mt19937_64 engine(7);
+  std::shuffle(box.cells.begin(), box.cells.end(), engine);
+  return build(box.points, box.cells);
 }
 
 /// The whole as the parts have it, from `whole` as it was cut, with all that gather() has to bring spoilt.

@@ -67,6 +67,8 @@ TEST(Writer, WhatNamesVerticesFollowsWhereOthersComeBetween) {
   mesh.labels().faces.set({corners[0], corners[1], corners[2]}, 4);
   mesh.labels().edges.set({corners[2], corners[3]}, 5);
   mesh.set_fixed(V(2));
+  auto index = mesh.request_vertex_property<int>("index", -1);
+  for (std::size_t i = 0; i < n; ++i) index[V(i)] = static_cast<int>(i);
   // One before all, two in the middle, one at the end; then nothing before the last one.
   for (const std::vector<std::size_t>& gaps : {std::vector<std::size_t>{0, 6, 7, n + 3}, {n - 1}, {n}}) {
     TetMesh wider = mesh;
@@ -77,15 +79,18 @@ TEST(Writer, WhatNamesVerticesFollowsWhereOthersComeBetween) {
     TetMesh::Writer(wider).open_gaps(to, n + gaps.size());
     EXPECT_TRUE(check(wider)) << check(wider);
     ASSERT_EQ(wider.n_vertices(), n + gaps.size());
+    const auto moved = *wider.get_vertex_property<int>("index");
     for (std::size_t i = 0; i < n; ++i) {
       EXPECT_EQ(wider.point(to[i]), mesh.point(V(i)));
       EXPECT_EQ(wider.incident_cell(to[i]), mesh.incident_cell(V(i)));
       EXPECT_EQ(wider.labels().vertex(to[i]), i == 5 ? 3 : 0);
       EXPECT_EQ(wider.is_fixed(to[i]), i == 2);
+      EXPECT_EQ(moved[to[i]], static_cast<int>(i));
     }
     for (std::size_t gap : gaps) {
       EXPECT_FALSE(wider.incident_cell(V(gap)).is_valid());
       EXPECT_FALSE(wider.is_fixed(V(gap)));
+      EXPECT_EQ(moved[V(gap)], -1);
       EXPECT_EQ(wider.labels().vertex(V(gap)), 0);
     }
     const auto now = [&](int k) { return to[corners[static_cast<std::size_t>(k)].idx()]; };

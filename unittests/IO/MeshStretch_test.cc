@@ -79,6 +79,34 @@ TEST(MeshStretch, OfOneProcessTheBytesAreThoseOfTheMesh) {
   EXPECT_GT(n_bytes, 10'000U);
 }
 
+/// Values of cells stand before zeros of triangles and edges; a field that would be read as labels has some
+/// before it.
+TEST(MeshStretch, AVtuHasFields) {
+  const TemporaryFolder folder;
+  for (const bool like_labels : {false, true}) {
+    MeshData mesh = samples::full();
+    mesh.regions.clear();
+    mesh.triangle_labels.assign(mesh.triangles.size(), 0);
+    mesh.edge_labels.assign(mesh.edges.size(), 0);
+    mesh.vertex_labels.clear();
+    const std::size_t n = mesh.points.size(), m = mesh.cells.size();
+    mesh.point_fields = {{"a<b", 2, false, std::vector<double>(2 * n, 0.1)},
+                         {like_labels ? "labels" : "wide", 1, true, std::vector<double>(n, 5e9)}};
+    mesh.cell_fields = {{like_labels ? "material" : "x", 1, true, std::vector<double>(m, 3)},
+                        {"half", 1, true, std::vector<double>(m, 0.5)}};
+    const Notes notes = write_mesh(folder / "a.vtu", mesh, {});
+    const MeshStretch stretch = stretch_of(mesh);
+    Stretches sink;
+    const StretchedFile file = stretched_file(folder / "a.vtu", stretch, {});
+    file.write(sink);
+    std::string all;
+    for (const std::string& one : sink.finish()) all += one;
+    EXPECT_TRUE(all == bytes_of(folder / "a.vtu")) << like_labels;
+    EXPECT_EQ(file.notes, notes);
+    EXPECT_EQ(all.find("Name=\"region\"") != std::string::npos, like_labels);
+  }
+}
+
 template <std::size_t N>
 void share_out(std::vector<std::array<Index, N>>& items, std::vector<int>& labels, bool is_first,
                std::size_t n, ElementStretch& stretch, std::uint64_t total) {

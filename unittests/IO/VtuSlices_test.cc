@@ -19,6 +19,7 @@
 #include "HalfFace/Errors.hh"
 #include "HalfFace/Generate.hh"
 #include "HalfFace/TetMesh.hh"
+#include "IO/MeshDataSamples.hh"
 #include "IO/ReadWrite.hh"
 #include "ScratchFolder.hh"
 
@@ -199,7 +200,7 @@ TEST(VtuSlices, NumbersOfAnyKindAndByteOrder) {
     }
 }
 
-TEST(VtuSlices, OtherArraysAreNamed) {
+TEST(VtuSlices, OtherArraysAreFields) {
   const ScratchFolder folder;
   const auto path = folder.path() / "a.vtu";
   TetMesh mesh = meshed();
@@ -207,7 +208,13 @@ TEST(VtuSlices, OtherArraysAreNamed) {
   for (std::size_t i = 0; i < mesh.n_vertices(); ++i) height[VertexHandle(i)] = static_cast<double>(i);
   io::write(path, mesh);
   io::VtuSlices file(path);
-  EXPECT_THAT(file.notes(), testing::ElementsAre("array 'height' of points left out"));
+  EXPECT_THAT(file.notes(), testing::IsEmpty());
+  ASSERT_EQ(file.point_fields().size(), 1U);
+  EXPECT_EQ(file.point_fields()[0].name, "height");
+  EXPECT_EQ(file.point_fields()[0].components, 1);
+  EXPECT_FALSE(file.point_fields()[0].integer);
+  EXPECT_THAT(file.point_rows(1, 3), testing::ElementsAre(1, 2));
+  EXPECT_THAT(file.cell_fields(), testing::IsEmpty());
 }
 
 TEST(VtuSlices, OfTwoArraysOfOneNameTheFirstHoldsTheLabels) {
@@ -228,7 +235,72 @@ TEST(VtuSlices, OfTwoArraysOfOneNameTheFirstHoldsTheLabels) {
   EXPECT_TRUE(io::read(path).is_fixed(VertexHandle(1)));
   io::VtuSlices file(path);
   EXPECT_EQ(file.fixed(0, 4), (std::vector<std::uint8_t>{0, 1, 0, 0}));
-  EXPECT_THAT(file.notes(), testing::ElementsAre("array 'fixed' of points left out"));
+  ASSERT_EQ(file.point_fields().size(), 1U) << "as in shared memory";
+  EXPECT_EQ(file.point_fields()[0].name, "fixed");
+  EXPECT_THAT(file.point_rows(0, 4), testing::ElementsAre(0, 0, 1, 0));
+}
+
+/// Rows hold all components of all arrays; of cells alone, while what others have is said.
+TEST(VtuSlices, RowsAreOfTetrahedra) {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "a.vtu";
+  io::MeshData mesh = io::samples::full();
+  const std::size_t n = mesh.cells.size();
+  mesh.cell_fields = {{"a", 1, true, {}}, {"b", 2, false, {}}};
+  for (std::size_t i = 0; i < n; ++i) {
+    mesh.cell_fields[0].values.push_back(static_cast<double>(i));
+    mesh.cell_fields[1].values.insert(mesh.cell_fields[1].values.end(), {0.5, -static_cast<double>(i)});
+  }
+  io::write_mesh(path, mesh);
+  io::VtuSlices file(path);
+  ASSERT_EQ(file.cell_fields().size(), 2U);
+  EXPECT_TRUE(file.cell_fields()[0].integer);
+  EXPECT_EQ(file.cell_fields()[1].components, 2);
+  const io::ShareItems all = file.items(0, file.n_items());
+  ASSERT_EQ(all.cell_rows.size(), 3 * n);
+  EXPECT_EQ(all.cell_rows[3 * (n - 1)], static_cast<double>(n - 1));
+  EXPECT_EQ(all.cell_rows[3 * (n - 1) + 2], -static_cast<double>(n - 1));
+  EXPECT_THAT(all.has_other_values, testing::ElementsAre(0, 0));
+}
+
+/// Reals of one component under the name of labels may be such in shared memory, where none come before them.
+TEST(VtuSlices, ArraysThatAreNoFieldsAreNamed) {
+  const ScratchFolder folder;
+  const auto path = folder.path() / "a.vtu";
+  for (const bool has_labels : {false, true}) {
+    Appended data(false, true);
+    const std::string points =
+        data.array<float>("Points", "Float32", 3, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
+    const std::string corners = data.array<std::int64_t>("connectivity", "Int64", 1, {0, 1, 2, 3, 0, 1, 2});
+    const std::string ends = data.array<std::int64_t>("offsets", "Int64", 1, {4, 7});
+    const std::string types = data.array<std::uint8_t>("types", "UInt8", 1, {10, 5});
+    std::string arrays = data.array<double>("material", "Float64", 1, {0.5, 0.5}) +
+                         data.array<double>("attribute", "Float64", 2, {1, 2, 3, 4}) +
+                         data.array<double>("number", "Float64", 1, {0, 0}) +
+                         data.array<double>("attribute", "Float64", 1, {7, 0}) +
+                         "<DataArray type=\"Float64\" Name=\"text\" format=\"ascii\">1 2</DataArray>";
+    if (has_labels) arrays += data.array<std::int32_t>("region", "Int32", 1, {4, 5});
+    std::ofstream(path, std::ios::binary) << data.file(
+        "<Piece NumberOfPoints=\"4\" NumberOfCells=\"2\">\n<Points>" + points + "</Points>\n<Cells>" +
+        corners + ends + types + "</Cells>\n<CellData>" + arrays + "</CellData>\n</Piece>\n");
+    io::VtuSlices file(path);
+    std::vector<std::string> names;
+    for (const io::ShareField& field : file.cell_fields()) names.push_back(field.name);
+    const io::ShareItems items = file.items(0, 2);
+    if (has_labels) {
+      EXPECT_THAT(names, testing::ElementsAre("material", "attribute"));
+      EXPECT_THAT(file.notes(), testing::ElementsAre("array 'number' of cells left out",
+                                                     "a second array 'attribute' of cells left out",
+                                                     "array 'text' of cells left out"));
+      EXPECT_THAT(items.cell_rows, testing::ElementsAre(0.5, 1, 2));
+      EXPECT_THAT(items.has_other_values, testing::ElementsAre(1, 1));
+    } else {
+      EXPECT_THAT(names, testing::ElementsAre("attribute"));
+      EXPECT_THAT(file.notes(), testing::ElementsAre(
+                                    "array 'material' of cells left out", "array 'number' of cells left out",
+                                    "array 'attribute' of cells left out", "array 'text' of cells left out"));
+    }
+  }
 }
 
 TEST(VtuSlices, LabelsAndNamesOfAllKinds) {
