@@ -452,7 +452,6 @@ void DistributedMesh::insert_vertices(std::span<const VertexRecord> fresh) {
     const VertexRecord& r = fresh[k];
     const VertexHandle v = places[k];
     mesh_.set_point(v, r.point);
-    sources::set(mesh_, v, r.source);
     vertex_number_[v.idx()] = r.number;
     owner_[v.idx()] = r.owner;
     work_.star_size[v.idx()] = r.star_size;

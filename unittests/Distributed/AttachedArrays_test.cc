@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 
 #include "Distributed/CellOrder.hh"
@@ -172,6 +173,30 @@ TEST(AttachedArrays, OnlyWhatAllPiecesHaveIsRead) {
   ASSERT_EQ(fields.size(), 1U);
   EXPECT_THAT(fields[0].values, testing::ElementsAre(10, 11, 12, 13, 14))
       << "of the first piece that has them";
+}
+
+/// As the reader for shared memory says of them.
+TEST(AttachedArrays, ValuesOfOtherElementsThanCellsAreNamed) {
+  mpi::Comm comm(MPI_COMM_WORLD);
+  const SharedFolder folder(comm);
+  const auto path = folder.path() / "in.vtu";
+  io::MeshData data = io::disassemble(valid_box(2, 0, 1));
+  data.triangles = {{data.cells[0][0], data.cells[0][1], data.cells[0][2]}};
+  data.triangle_labels = {7};
+  data.cell_fields = {{"heat", 1, false, std::vector<double>(data.cells.size(), 1.5)}};
+  if (comm.rank() == 0) {
+    io::write_mesh(path, data);
+    std::string bytes = bytes_of(path);  // a triangle's value is 0, and the last thing before the end
+    const double value = 2.5;
+    std::memcpy(bytes.data() + bytes.find("\n</AppendedData>") - sizeof(value), &value, sizeof(value));
+    std::ofstream(path, std::ios::binary) << bytes;
+  }
+  comm.sum(0);
+  mpi::DistributedMesh parts(comm);
+  const std::vector<std::string> notes = mpi::read_ranges(parts, path);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_THAT(notes[0], testing::HasSubstr("cell field 'heat': only its values on tetrahedra are kept"));
+  EXPECT_EQ(notes, io::read_mesh(path).notes);
 }
 
 /// Whose values a cell and a vertex have is the same on all ranks that hold them.
