@@ -97,10 +97,7 @@ TEST(AttachedArrays, StayWithCellsThatGetOtherNumbers) {
   const auto path = folder.path() / "in.vtu";
   if (comm.rank() == 0) io::write_mesh(path, with_arrays(io::disassemble(scattered_box(17)), 3));
   comm.sum(0);
-  ImproveOptions options;
-  options.policy = {};
-  options.iterations = 1;
-  options.passes_only = true;
+  const ImproveOptions options = one_iteration();
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, path);
   EXPECT_TRUE(mpi::is_scattered(parts)) << "the test shows nothing";

@@ -158,10 +158,7 @@ TEST(ChangeOwners, ARunWithoutAGoalReordersAsIfNothingHadBeen) {
   const auto path = folder.path() / "in.vtu";
   if (comm.rank() == 0) io::write(path, scattered_box(17));
   comm.sum(0);
-  ImproveOptions options;
-  options.policy = {};
-  options.iterations = 1;
-  options.passes_only = true;
+  const ImproveOptions options = one_iteration();
   mpi::DistributedMesh parts(comm);
   mpi::read_ranges(parts, path);
   EXPECT_TRUE(mpi::is_scattered(parts)) << "the test shows nothing";

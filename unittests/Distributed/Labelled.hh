@@ -50,6 +50,15 @@ inline Density density_of(std::uint64_t seed) {
   }
 }
 
+/// Of each stage, without the searches for the last few cells.
+inline ImproveOptions one_iteration() {
+  ImproveOptions options;
+  options.policy = {};
+  options.iterations = 1;
+  options.passes_only = true;
+  return options;
+}
+
 inline ImproveOptions polish_towards(double degrees) {
   ImproveOptions options;
   options.min_dihedral = degrees;
