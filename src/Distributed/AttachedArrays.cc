@@ -30,11 +30,10 @@ bool can_be_integers(const io::ShareField& field) {
 
 }  // namespace
 
-KeptRows::KeptRows(Comm& comm, std::vector<io::ShareField> fields, std::vector<std::uint64_t> begins,
-                   std::vector<double> rows)
+KeptRows::KeptRows(Comm& comm, std::vector<io::ShareField> fields, Slices slices, std::vector<double> rows)
     : fields_(std::move(fields)),
       width_(width_of(fields_)),
-      begins_(std::move(begins)),
+      slices_(std::move(slices)),
       rows_(std::move(rows)) {
   std::vector<std::uint64_t> n_others(fields_.size(), 0);  // values that are no integers
   std::size_t first = 0;
@@ -61,10 +60,8 @@ std::vector<io::Field> KeptRows::fields_of(Comm& comm, std::span<const std::uint
   };
   std::vector<Row> wanted;
   wanted.reserve(sources.size());
-  for (std::uint64_t number : sources)
-    wanted.push_back(
-        {number, static_cast<std::size_t>(std::ranges::upper_bound(begins_, number) - begins_.begin()) - 1});
-  const std::uint64_t begin = begins_[static_cast<std::size_t>(comm.rank())];
+  for (std::uint64_t number : sources) wanted.push_back({number, slices_.rank_of(number)});
+  const std::uint64_t begin = slices_.begin(comm.rank());
   const std::vector<double> rows =
       ask_owners<double>(comm, wanted, width_, [&](std::uint64_t number, std::vector<double>& values) {
         const auto row = rows_.begin() + static_cast<std::ptrdiff_t>((number - begin) * width_);
@@ -117,11 +114,10 @@ std::vector<std::string> AttachedArrays::notes_on_leaving_out() const {
 KeptRows rows_in_ranges(Comm& comm, std::vector<io::ShareField> fields, std::uint64_t n,
                         const NumberedRows& mine) {
   const std::size_t width = width_of(fields), n_ranks = comm.n_ranks();
-  std::vector<std::uint64_t> begins;
-  for (std::uint64_t r = 0; r <= n_ranks; ++r) begins.push_back((r * n + n_ranks - 1) / n_ranks);
+  Slices slices = Slices::even(n_ranks, n);
   std::vector<NumberedRows> to(n_ranks);
   for (std::size_t i = 0; i < mine.numbers.size(); ++i) {
-    NumberedRows& some = to[static_cast<std::size_t>(mine.numbers[i] * n_ranks / n)];
+    NumberedRows& some = to[slices.rank_of(mine.numbers[i])];
     some.numbers.push_back(mine.numbers[i]);
     some.precedence.push_back(mine.precedence[i]);
     const auto row = mine.rows.begin() + static_cast<std::ptrdiff_t>(i * width);
@@ -134,8 +130,8 @@ KeptRows rows_in_ranges(Comm& comm, std::vector<io::ShareField> fields, std::uin
     packed[r].put_all(to[r].precedence);
     packed[r].put_all(std::exchange(to[r].rows, {}));
   }
-  const auto rank = static_cast<std::size_t>(comm.rank());
-  const std::uint64_t begin = begins[rank], size = begins[rank + 1] - begin;
+  const std::uint64_t begin = slices.begin(comm.rank());
+  const std::size_t size = slices.size(comm.rank());
   std::vector<double> rows(width * size, 0.0);
   std::vector<std::uint64_t> from(size, kNoNumber);
   for (const Comm::Message& message : comm.exchange(packed)) {
@@ -150,7 +146,7 @@ KeptRows rows_in_ranges(Comm& comm, std::vector<io::ShareField> fields, std::uin
                   rows.begin() + static_cast<std::ptrdiff_t>(at * width));
     }
   }
-  return KeptRows(comm, std::move(fields), std::move(begins), std::move(rows));
+  return KeptRows(comm, std::move(fields), std::move(slices), std::move(rows));
 }
 
 }  // namespace hfr::mpi

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "Distributed/Comm.hh"
+#include "Distributed/Slices.hh"
 #include "IO/MeshData.hh"
 #include "IO/MeshShare.hh"
 
@@ -20,10 +21,9 @@ namespace hfr::mpi {
 class KeptRows {
  public:
   KeptRows() = default;
-  /// Whether integers stay such is for the values of all ranks to say. `begins`: of the ranges of ranks, and
-  /// the end of the last one; `rows`: of this rank's. All take part.
-  KeptRows(Comm& comm, std::vector<io::ShareField> fields, std::vector<std::uint64_t> begins,
-           std::vector<double> rows);
+  /// Whether integers stay such is for the values of all ranks to say. `rows`: of this rank's slice. All take
+  /// part.
+  KeptRows(Comm& comm, std::vector<io::ShareField> fields, Slices slices, std::vector<double> rows);
 
   const std::vector<io::ShareField>& fields() const { return fields_; }
   /// The fields of items that have the rows of these numbers. All take part.
@@ -32,7 +32,7 @@ class KeptRows {
  private:
   std::vector<io::ShareField> fields_;
   std::size_t width_ = 0;  // of a row
-  std::vector<std::uint64_t> begins_;
+  Slices slices_;
   std::vector<double> rows_;
 };
 

@@ -101,7 +101,7 @@ class DistributedMesh : private detail::PartState {
   /// After assemble(): arrays of a file, whose rows are those of the vertices and cells by their numbers now.
   /// From here on operators hand on whose row each has, as they hand on properties: a vertex keeps its row, a
   /// new one has that of the nearest, and a new cell that of one in whose place it came. For
-  /// readers of files.
+  /// readers of files: Distributed/AttachedArrays.hh is no public header.
   void attach_arrays(std::shared_ptr<const AttachedArrays> arrays);
   /// None where nothing is attached.
   const AttachedArrays* arrays() const { return arrays_.get(); }

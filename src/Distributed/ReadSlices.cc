@@ -15,28 +15,13 @@
 #include "Distributed/CurveOwners.hh"
 #include "Distributed/InParts.hh"
 #include "Distributed/Incoming.hh"
+#include "Distributed/Slices.hh"
 #include "HalfFace/Errors.hh"
 #include "IO/MeshShare.hh"
 #include "IO/Words.hh"
 
 namespace hfr::mpi {
 namespace {
-
-/// Ranges of the numbers of points, one a rank.
-class Slices {
- public:
-  explicit Slices(std::span<const std::uint64_t> begins) : begins_(begins) {}
-  std::uint64_t begin(std::uint64_t rank) const { return begins_[rank]; }
-  /// Of a number that there is. A range may be empty.
-  std::size_t rank_of(std::uint64_t number) const {
-    return static_cast<std::size_t>(std::upper_bound(begins_.begin(), begins_.end(), number) -
-                                    begins_.begin()) -
-           1;
-  }
-
- private:
-  std::span<const std::uint64_t> begins_;
-};
 
 /// Cells on their way: a range of them at a time goes to the owners of its vertices, whose points and owners
 /// this rank learns from those that have read them.
@@ -57,7 +42,7 @@ class Passage {
     std::vector<std::vector<LabelRecord>> to(comm_.n_ranks());
     for (const LabelRecord& r : labels) to[slices_.rank_of(r.smallest_vertex())].push_back(r);
     std::vector<std::vector<LabelRecord>> on(comm_.n_ranks());
-    const std::uint64_t first = slices_.begin(static_cast<std::uint64_t>(comm_.rank()));
+    const std::uint64_t first = slices_.begin(comm_.rank());
     exchange_labels(to, [&](const LabelRecord& r) {
       on[static_cast<std::size_t>(points_[r.smallest_vertex() - first].owner)].push_back(r);
     });
@@ -80,7 +65,7 @@ class Passage {
       if (!numbers.empty()) questions[r].put_all(std::exchange(numbers, {}));
     }
     std::vector<std::vector<PointRecord>> answers(comm_.n_ranks());
-    const std::uint64_t first = slices_.begin(static_cast<std::uint64_t>(comm_.rank()));
+    const std::uint64_t first = slices_.begin(comm_.rank());
     for (const Comm::Message& message : comm_.exchange(questions))
       for (std::uint64_t number : Unpacker(message.bytes).get_all<std::uint64_t>())
         answers[static_cast<std::size_t>(message.from)].push_back(points_[number - first]);
@@ -160,8 +145,9 @@ class ShareReader {
     return records;
   }
 
-  /// Once all cells have been read. Nothing where the file has no arrays. Adds what is lost of them.
-  std::shared_ptr<const AttachedArrays> arrays(std::vector<std::string>& notes) {
+  /// Once all cells have been read; `points`: which this rank and others have read. Nothing where the file
+  /// has no arrays. Adds what is lost of them.
+  std::shared_ptr<const AttachedArrays> arrays(const Slices& points, std::vector<std::string>& notes) {
     if (share_.point_fields().empty() && share_.cell_fields().empty()) return nullptr;
     has_other_values_.resize(share_.cell_fields().size(), 0);
     comm_.sum(has_other_values_);
@@ -169,16 +155,15 @@ class ShareReader {
       if (has_other_values_[f] > 0)
         notes.push_back("cell field '" + io::shown(share_.cell_fields()[f].name) +
                         "': only its values on tetrahedra are kept, those on other cells are dropped");
-    const std::span<const std::uint64_t> begins = share_.point_begins();
-    const std::vector<std::uint64_t> begins_of_points(begins.begin(), begins.end());
     std::vector<std::uint64_t> begins_of_cells = {0};
     for (std::uint64_t n : comm_.all_gather(std::span<const std::uint64_t>(&n_cells_, 1)))
       begins_of_cells.push_back(begins_of_cells.back() + n);
     auto arrays = std::make_shared<AttachedArrays>();
-    arrays->points = KeptRows(comm_, share_.point_fields(), begins_of_points, std::move(point_rows_));
-    arrays->cells = KeptRows(comm_, share_.cell_fields(), begins_of_cells, std::move(cell_rows_));
+    arrays->points = KeptRows(comm_, share_.point_fields(), points, std::move(point_rows_));
+    arrays->cells =
+        KeptRows(comm_, share_.cell_fields(), Slices(std::move(begins_of_cells)), std::move(cell_rows_));
     if (!share_.point_fields().empty())
-      arrays->places = KeptRows(comm_, {{"", 3, false}}, begins_of_points, std::move(places_));
+      arrays->places = KeptRows(comm_, {{"", 3, false}}, points, std::move(places_));
     return arrays;
   }
 
@@ -220,7 +205,8 @@ std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesyste
   Comm& comm = mesh.comm();
   const Comm::InPhase phase(comm, Phase::kHandOut);
   const std::unique_ptr<io::MeshShare> share = io::open_share(path, processes(comm), at_once);
-  const Slices slices(share->point_begins());
+  const std::span<const std::uint64_t> begins = share->point_begins();
+  const Slices slices({begins.begin(), begins.end()});
   Incoming incoming(comm);
   incoming.set_size(share->n_points(), share->n_cells());
   std::vector<std::string> notes = share->notes();
@@ -235,7 +221,7 @@ std::vector<std::string> read_ranges(DistributedMesh& mesh, const std::filesyste
     incoming.reserve_cells(even + even / 4);
     for (std::size_t i = 0; i < n_turns; ++i) passage.send_cells(reader.cells(i), incoming);
     passage.send_labels(reader.labels(), incoming);
-    arrays = reader.arrays(notes);
+    arrays = reader.arrays(slices, notes);
   }
   for (std::string& note : incoming.make_parts(mesh, path)) notes.push_back(std::move(note));
   if (arrays) mesh.attach_arrays(std::move(arrays));

@@ -19,22 +19,30 @@ inline void follow(TetMesh& mesh) {
   mesh.request_cell_property<std::uint64_t>(kName);
 }
 inline bool are_followed(const TetMesh& mesh) {
-  return !mesh.properties().cells.empty() && mesh.get_cell_property<std::uint64_t>(kName).has_value();
+  return mesh.get_cell_property<std::uint64_t>(kName).has_value();
 }
 
-/// 0 where none are followed.
-inline std::uint64_t of(const TetMesh& mesh, VertexHandle v) {
-  return are_followed(mesh) ? (*mesh.get_vertex_property<std::uint64_t>(kName))[v] : 0;
+namespace detail {
+
+inline auto numbers(auto& mesh, VertexHandle) {
+  return mesh.template get_vertex_property<std::uint64_t>(kName);
 }
-inline std::uint64_t of(const TetMesh& mesh, CellHandle c) {
-  return are_followed(mesh) ? (*mesh.get_cell_property<std::uint64_t>(kName))[c] : 0;
+inline auto numbers(auto& mesh, CellHandle) { return mesh.template get_cell_property<std::uint64_t>(kName); }
+
+}  // namespace detail
+
+/// Of a vertex or a cell; 0 where none are followed.
+template <class Handle>
+std::uint64_t of(const TetMesh& mesh, Handle h) {
+  if (mesh.properties().cells.empty()) return 0;  // as most are
+  const auto numbers = detail::numbers(mesh, h);
+  return numbers ? (*numbers)[h] : 0;
 }
 /// Nothing is done where none are followed.
-inline void set(TetMesh& mesh, VertexHandle v, std::uint64_t number) {
-  if (are_followed(mesh)) (*mesh.get_vertex_property<std::uint64_t>(kName))[v] = number;
-}
-inline void set(TetMesh& mesh, CellHandle c, std::uint64_t number) {
-  if (are_followed(mesh)) (*mesh.get_cell_property<std::uint64_t>(kName))[c] = number;
+template <class Handle>
+void set(TetMesh& mesh, Handle h, std::uint64_t number) {
+  if (mesh.properties().cells.empty()) return;
+  if (auto numbers = detail::numbers(mesh, h)) (*numbers)[h] = number;
 }
 
 }  // namespace hfr::mpi::sources

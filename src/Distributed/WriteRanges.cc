@@ -13,30 +13,13 @@
 #include "Distributed/InParts.hh"
 #include "Distributed/OwnItems.hh"
 #include "Distributed/SharedFile.hh"
+#include "Distributed/Slices.hh"
 #include "HalfFace/Errors.hh"
 #include "IO/MeshStretch.hh"
 #include "IO/Words.hh"
 
 namespace hfr::mpi {
 namespace {
-
-/// Even ranges of the numbers below n, one a rank.
-class Ranges {
- public:
-  Ranges(Comm& comm, std::uint64_t n) : n_(n), n_ranks_(comm.n_ranks()) {
-    const auto rank = static_cast<std::uint64_t>(comm.rank());
-    begin_ = begin(rank);
-    size_ = begin(rank + 1) - begin_;
-  }
-  std::uint64_t begin() const { return begin_; }  ///< of this rank's
-  std::uint64_t size() const { return size_; }
-  std::size_t rank_of(std::uint64_t number) const { return static_cast<std::size_t>(number * n_ranks_ / n_); }
-
- private:
-  std::uint64_t begin(std::uint64_t rank) const { return (rank * n_ + n_ranks_ - 1) / n_ranks_; }
-
-  std::uint64_t n_, n_ranks_, begin_ = 0, size_ = 0;
-};
 
 struct PointItem {
   std::uint64_t number = 0, source = 0;
@@ -53,7 +36,7 @@ struct ElementItem {
 /// Each item to the rank of its number, so many at a time. make(i): item i of this rank; take(item, place in
 /// the range). All take part.
 template <class Make, class Take>
-void hand_to_ranges(Comm& comm, const Ranges& ranges, std::size_t n_mine, Make&& make, Take&& take) {
+void hand_to_ranges(Comm& comm, const Slices& slices, std::size_t n_mine, Make&& make, Take&& take) {
   using Item = decltype(make(std::size_t{}));
   constexpr std::size_t kAtOnce = 100'000;
   std::uint64_t n_came = 0;
@@ -63,18 +46,18 @@ void hand_to_ranges(Comm& comm, const Ranges& ranges, std::size_t n_mine, Make&&
     std::vector<std::vector<Item>> to(comm.n_ranks());
     for (std::size_t i = turn * kAtOnce; i < std::min((turn + 1) * kAtOnce, n_mine); ++i) {
       const Item item = make(i);
-      to[ranges.rank_of(item.number)].push_back(item);
+      to[slices.rank_of(item.number)].push_back(item);
     }
     std::vector<Packer> packed(comm.n_ranks());
     for (std::size_t r = 0; r < to.size(); ++r)
       if (!to[r].empty()) packed[r].put_all(std::exchange(to[r], {}));
     for (const Comm::Message& message : comm.exchange(packed))
       for (const Item& item : Unpacker(message.bytes).get_all<Item>()) {
-        take(item, static_cast<std::size_t>(item.number - ranges.begin()));
+        take(item, static_cast<std::size_t>(item.number - slices.begin(comm.rank())));
         ++n_came;
       }
   }
-  if (n_came != ranges.size()) throw InternalError("a range of numbers to write has gaps");
+  if (n_came != slices.size(comm.rank())) throw InternalError("a range of numbers to write has gaps");
 }
 
 template <std::size_t N>
@@ -84,14 +67,14 @@ struct Elements {
 
   template <class Make>
   io::ElementStretch receive(Comm& comm, std::uint64_t n_whole, std::size_t n_mine, Make&& make) {
-    const Ranges ranges(comm, n_whole);
-    corners.resize(ranges.size());
-    labels.resize(ranges.size());
-    hand_to_ranges(comm, ranges, n_mine, make, [&](const ElementItem<N>& item, std::size_t at) {
+    const Slices slices = Slices::even(comm.n_ranks(), n_whole);
+    corners.resize(slices.size(comm.rank()));
+    labels.resize(slices.size(comm.rank()));
+    hand_to_ranges(comm, slices, n_mine, make, [&](const ElementItem<N>& item, std::size_t at) {
       corners[at] = item.v;
       labels[at] = item.label;
     });
-    return {n_whole, io::NumberRows(corners), labels, ranges.begin()};
+    return {n_whole, io::NumberRows(corners), labels, slices.begin(comm.rank())};
   }
 };
 
@@ -133,14 +116,16 @@ class RangeOfMesh {
   }
   void receive_points(const OwnLabels& labels) {
     const std::vector<VertexHandle> vertices = own_vertices(mesh_);
-    const Ranges ranges(comm_, numbering_.n_vertices());
-    points_.resize(ranges.size());
-    if (labels.with_vertex_labels) vertex_labels_.resize(ranges.size());
-    std::vector<std::uint8_t> is_fixed(ranges.size(), 0);
-    std::vector<std::uint64_t> sources(arrays_ ? ranges.size() : 0);
+    const Slices slices = Slices::even(comm_.n_ranks(), numbering_.n_vertices());
+    const std::uint64_t first = slices.begin(comm_.rank());
+    const std::size_t n = slices.size(comm_.rank());
+    points_.resize(n);
+    if (labels.with_vertex_labels) vertex_labels_.resize(n);
+    std::vector<std::uint8_t> is_fixed(n, 0);
+    std::vector<std::uint64_t> sources(arrays_ ? n : 0);
     const TetMesh& part = mesh_.part();
     hand_to_ranges(
-        comm_, ranges, vertices.size(),
+        comm_, slices, vertices.size(),
         [&](std::size_t i) {
           const VertexHandle v = vertices[i];
           return PointItem{numbering_(v), mesh_.source(v), part.point(v), part.labels().vertex(v),
@@ -153,8 +138,8 @@ class RangeOfMesh {
           is_fixed[at] = p.fixed != 0 ? 1 : 0;
         });
     for (std::size_t i = 0; i < is_fixed.size(); ++i)
-      if (is_fixed[i] != 0) fixed_.push_back(ranges.begin() + i);
-    stretch_.first_point = ranges.begin();
+      if (is_fixed[i] != 0) fixed_.push_back(first + i);
+    stretch_.first_point = first;
     stretch_.n_points = numbering_.n_vertices();
     stretch_.points = points_;
     stretch_.vertex_labels = vertex_labels_;
@@ -165,13 +150,13 @@ class RangeOfMesh {
   /// The cells of a range need not be of the parts of its rank.
   void receive_cell_fields(const std::vector<CellHandle>& cells) {
     if (!arrays_) return;
-    const Ranges ranges(comm_, numbering_.n_cells());
-    std::vector<std::uint64_t> sources(ranges.size());
+    const Slices slices = Slices::even(comm_.n_ranks(), numbering_.n_cells());
+    std::vector<std::uint64_t> sources(slices.size(comm_.rank()));
     struct Sourced {
       std::uint64_t number = 0, source = 0;
     };
     hand_to_ranges(
-        comm_, ranges, cells.size(),
+        comm_, slices, cells.size(),
         [&](std::size_t i) {
           return Sourced{numbering_(cells[i]), mesh_.source(cells[i])};
         },

@@ -342,18 +342,11 @@ void GridConverter::drop_middle_nodes() {
                         counted(n_before - mesh_.points.size(), "middle node") + " dropped");
 }
 
-/// Labels that are all 0, where a field would be taken for labels without them; else nothing. Not in front of
-/// a field of the very same name.
+/// Labels that are all 0, where a field would be taken for labels without them; else nothing.
 std::vector<std::int32_t> zeros_before(const std::vector<Field>& fields, std::string_view array,
                                        std::span<const std::string_view> names, std::size_t n) {
-  const auto is_whole = [](double v) { return v == std::trunc(v); };
-  bool taken = false;
-  for (const Field& field : fields) {
-    if (field.name == array) return {};
-    taken = taken || (field.components == 1 && std::ranges::find(names, lower(field.name)) != names.end() &&
-                      std::ranges::all_of(field.values, is_whole));
-  }
-  return std::vector<std::int32_t>(taken ? n : 0);
+  const auto are_whole = [&](std::size_t i) { return has_whole_values(fields[i]); };
+  return std::vector<std::int32_t>(would_be_labels(fields, array, names, are_whole) ? n : 0);
 }
 
 }  // namespace
@@ -445,6 +438,22 @@ std::vector<std::string> notes_on_vtu_names(const MeshData& mesh) {
       if (std::any_of(field.name.begin(), field.name.end(), is_control))
         notes.push_back("control characters in the name of a field are written as blanks");
   return notes;
+}
+
+bool has_whole_values(const Field& field) {
+  return std::ranges::all_of(field.values, [](double v) { return v == std::trunc(v); });
+}
+
+bool would_be_labels(std::span<const Field> fields, std::string_view array,
+                     std::span<const std::string_view> names,
+                     const std::function<bool(std::size_t)>& are_whole) {
+  bool any = false;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (fields[i].name == array) return false;
+    any = any || (fields[i].components == 1 &&
+                  std::ranges::find(names, lower(fields[i].name)) != names.end() && are_whole(i));
+  }
+  return any;
 }
 
 IntegerWidth integer_width(const Field& field) {

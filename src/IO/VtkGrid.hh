@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,6 +75,14 @@ std::vector<std::int32_t> vtk_fixed(const MeshData& mesh);
 std::vector<std::string> notes_on_names(const MeshData& mesh);
 /// The same, and what becomes of names in XML.
 std::vector<std::string> notes_on_vtu_names(const MeshData& mesh);
+
+bool has_whole_values(const Field& field);
+/// Whether a reader would take one of these fields for labels, where no array of labels comes before them: it
+/// has one of the names, and `are_whole(i)` says so of its values. Not where a field has the very name of the
+/// array of labels, which would then be there twice.
+bool would_be_labels(std::span<const Field> fields, std::string_view array,
+                     std::span<const std::string_view> names,
+                     const std::function<bool(std::size_t)>& are_whole);
 
 /// How the values of an integer field can be written: as 32-bit or 64-bit integers, or, when some are none,
 /// as doubles.

@@ -4,13 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
@@ -20,7 +18,6 @@
 #include "IO/MeshStretch.hh"
 #include "IO/OutputFile.hh"
 #include "IO/VtkGrid.hh"
-#include "IO/Words.hh"
 
 namespace hfr::io {
 namespace {
@@ -107,20 +104,20 @@ class VtuStretches {
                          });
                        }});
     if (mesh_.with_vertex_labels ||
-        would_be_labels(mesh_.point_fields, point_facts_, kVtkLabelArray, kVtkPointLabelNames))
+        is_read_as_labels(mesh_.point_fields, point_facts_, kVtkLabelArray, kVtkPointLabelNames))
       arrays_.push_back({"PointData", kVtkLabelArray, "Int32", 1, mesh_.n_points, 4, [this](ByteSink& out) {
                            const auto& labels = mesh_.vertex_labels;
                            for (std::size_t i = 0; i < mesh_.points.size(); ++i)
                              out.raw(std::int32_t{labels.empty() ? 0 : labels[i]});
                          }});
     if (mesh_.fixed.total > 0 ||
-        would_be_labels(mesh_.point_fields, point_facts_, kVtkFixedArray, {{kVtkFixedArray}}))
+        is_read_as_labels(mesh_.point_fields, point_facts_, kVtkFixedArray, {{kVtkFixedArray}}))
       arrays_.push_back({"PointData", kVtkFixedArray, "Int32", 1, mesh_.n_points, 4,
                          [this](ByteSink& out) { put_fixed(out); }});
     for (std::size_t i = 0; i < mesh_.point_fields.size(); ++i)
       add_field("PointData", mesh_.point_fields[i], point_facts_[i].width, mesh_.n_points);
     if (mesh_.with_labels ||
-        would_be_labels(mesh_.cell_fields, cell_facts_, kVtkRegionArray, kVtkCellLabelNames))
+        is_read_as_labels(mesh_.cell_fields, cell_facts_, kVtkRegionArray, kVtkCellLabelNames))
       arrays_.push_back({"CellData", kVtkRegionArray, "Int32", 1, n_items, 4, [this](ByteSink& out) {
                            for_kinds(out, [&](const Kind& kind, std::uint64_t) {
                              for (std::size_t i = 0; i < kind.elements.corners.size(); ++i)
@@ -137,9 +134,7 @@ class VtuStretches {
     bool is_whole = true;
   };
   void look_at(std::span<const Field> fields, std::vector<Facts>& facts) const {
-    const auto is_whole = [](double v) { return v == std::trunc(v); };
-    for (const Field& field : fields)
-      facts.push_back({integer_width(field), std::ranges::all_of(field.values, is_whole)});
+    for (const Field& field : fields) facts.push_back({integer_width(field), has_whole_values(field)});
     if (facts.empty()) return;
     const std::vector<Facts> all = mesh_.processes.gather(std::span<const Facts>(facts));
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -148,16 +143,9 @@ class VtuStretches {
       one.is_whole = one.is_whole && all[i].is_whole;
     }
   }
-  /// Whether a reader would take a field for labels, where no array of labels comes before it.
-  static bool would_be_labels(std::span<const Field> fields, const std::vector<Facts>& facts,
-                              std::string_view array, std::span<const std::string_view> names) {
-    bool any = false;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (fields[i].name == array) return false;
-      any = any || (fields[i].components == 1 && facts[i].is_whole &&
-                    std::ranges::find(names, lower(fields[i].name)) != names.end());
-    }
-    return any;
+  static bool is_read_as_labels(std::span<const Field> fields, const std::vector<Facts>& facts,
+                                std::string_view array, std::span<const std::string_view> names) {
+    return would_be_labels(fields, array, names, [&](std::size_t k) { return facts[k].is_whole; });
   }
   void add_field(const char* section, const Field& field, IntegerWidth width, std::uint64_t n) {
     if (width == IntegerWidth::k32) return add_values<std::int32_t>(section, "Int32", field, n);
