@@ -39,8 +39,9 @@ class TextSections {
         rank_(processes.rank),
         n_processes_(processes.n) {
     const auto& marks = text_.marks();
-    if (marks.empty() || marks[0].line != 0 || marks[0].word != "MeshVersionFormatted")
-      text_.fail("not a Medit file: no MeshVersionFormatted");
+    const bool has_first = !marks.empty() && marks[0].line == 0;
+    if (!has_first || marks[0].word != "MeshVersionFormatted")
+      text_.fail(medit::no_medit_file(has_first ? marks[0].word : ""));
     read_alone(0, 1, 4);
     for (std::size_t i = 1; i < marks.size() && !has_end_; ++i) {
       const medit::Heading heading = medit::heading_of(marks[i].word);

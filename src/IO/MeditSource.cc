@@ -129,6 +129,13 @@ std::string too_few_entries(std::string_view name, std::int64_t announced, std::
          std::to_string(found);
 }
 
+std::string no_medit_file(std::string_view word) {
+  // MFEM's own format has the same suffix.
+  if (word == "MFEM")
+    return "a mesh of MFEM's own format cannot be read: save it with Mesh::PrintVTK or PrintVTU";
+  return "not a Medit file: no MeshVersionFormatted";
+}
+
 bool is_binary(const InputFile& file) {
   const std::string_view bytes = file.bytes();
   return bytes.starts_with(std::string_view("\1\0\0\0", 4)) ||
@@ -138,7 +145,8 @@ bool is_binary(const InputFile& file) {
 // ---------------------------------------------------------------------------------------------------- ASCII
 
 AsciiSource::AsciiSource(const InputFile& file) : text_(file.bytes(), file.path().string(), '#') {
-  if (text_.peek_word() != "MeshVersionFormatted") text_.fail("not a Medit file: no MeshVersionFormatted");
+  const std::string_view first = text_.peek_word();
+  if (first != "MeshVersionFormatted") text_.fail(no_medit_file(first));
   text_.word();
   text_.integer_in(1, 4, "version");
 }

@@ -115,6 +115,9 @@ class BinarySource {
 /// What a section that breaks off is refused with.
 std::string too_few_entries(std::string_view name, std::int64_t announced, std::size_t found);
 
+/// What is wrong with a file that begins with `word` and not with MeshVersionFormatted.
+std::string no_medit_file(std::string_view word);
+
 /// Is this a binary file, whatever it is called?
 bool is_binary(const InputFile& file);
 

@@ -252,8 +252,11 @@ void LegacyReader::skip_metadata() {
 }
 
 void LegacyReader::read_header() {
-  if (!lower(scan_.text().substr(0, 22)).starts_with("# vtk datafile version"))
+  if (!lower(scan_.text().substr(0, 22)).starts_with("# vtk datafile version")) {
+    if (scan_.text().starts_with("<?xml") || scan_.text().starts_with("<VTKFile"))
+      scan_.fail("this is a VTK XML file: name it .vtu");
     scan_.fail("this is no legacy VTK file: the first line must be '# vtk DataFile Version x.y'");
+  }
   scan_.rest_of_line();
   scan_.rest_of_line();  // the title, free text
   const std::string_view coding = scan_.rest_of_line();

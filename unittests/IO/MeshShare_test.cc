@@ -102,6 +102,7 @@ TEST(MeshShare, MeditFilesThatCannotBeReadInRangesSayWhy) {
   EXPECT_EQ(found(good), "");
   EXPECT_EQ(found(""), "the file is empty");
   EXPECT_THAT(found("x\n"), HasSubstr("not a Medit file"));
+  EXPECT_THAT(found("MFEM mesh v1.0\n"), HasSubstr("a mesh of MFEM's own format"));
   EXPECT_THAT(found("MeshVersionFormatted 2\nDimension 2\n"), HasSubstr("number of entries 2"));
   EXPECT_THAT(found("MeshVersionFormatted 2\nDimension 3\n" + kMeditCell), HasSubstr("no Vertices"));
   EXPECT_THAT(found(points), HasSubstr("it has no cells"));

@@ -303,6 +303,8 @@ TEST(Vtk, WhatIsBrokenIsNamedWithItsLine) {
   EXPECT_EQ(message(good + "CELL_DATA 4\n"), ":13: CELL_DATA has 4 entries for 3 cells");
   EXPECT_EQ(message(good + "NONSENSE 4\n"), ":13: unknown keyword 'nonsense'");
   EXPECT_EQ(message(replaced(good, "# vtk", "# atk")).substr(0, 31), ":1: this is no legacy VTK file:");
+  EXPECT_EQ(message("<VTKFile type=\"UnstructuredGrid\">\n"), ":1: this is a VTK XML file: name it .vtu");
+  EXPECT_EQ(message("<?xml version=\"1.0\"?>\n"), ":1: this is a VTK XML file: name it .vtu");
   EXPECT_EQ(message(good.substr(0, good.find("CELL_TYPES"))),
             ":11: the file ends too early: there are no CELL_TYPES");
 }
