@@ -21,6 +21,10 @@ constexpr std::array<TargetAngle, 23> kTargetsAtAnyCost = {
 constexpr std::size_t kLeastOfHundred = 81;
 constexpr std::size_t kMostOfHundred = 119;
 
+/// Degrees that runs with a surface that may change its shape are for: beyond, what is dear is left for the
+/// end, and patches are not searched.
+constexpr double kFreeUpTo = 20;
+
 /// The questions that the options are asked, each in one place.
 class Asked {
  public:
@@ -104,7 +108,7 @@ PolishEffort polish_effort(const Asked& asked, bool any_cost) {
   PolishEffort polish;
   polish.iterations = asked.iterations_or(polish.iterations);
   if (asked.is_free()) {
-    polish.many = 200;
+    polish.many = kManyCells;
     polish.least_fewer = 10;
   }
   if (any_cost)
@@ -118,8 +122,8 @@ PolishEffort polish_effort(const Asked& asked, bool any_cost) {
 ThroughoutEffort throughout_effort(const PolishEffort& polish) {
   ThroughoutEffort effort;
   effort.polish = polish;
-  effort.polish.many = 200;
-  effort.polish.least_fewer = 50;
+  effort.polish.many = kManyCells;
+  effort.polish.least_fewer = kOneInFew;
   effort.polish.gain = 1.1;
   effort.polish.dig_share = 1;
   effort.polish.seeds_of_vertex = 32;
@@ -142,10 +146,10 @@ BulkEffort bulk_effort(const Asked& asked) {
   return bulk;
 }
 
-/// With a surface that may change its shape, what many cells suffer from can be mended, too. Beyond the angle
-/// that such runs are for, that is dear on the way; what was left out is looked at in the end.
+/// With a surface that may change its shape, what many cells suffer from can be mended, too. Beyond kFreeUpTo
+/// that is dear on the way; what was left out is looked at in the end.
 double largest_share(const Asked& asked, double degrees) {
-  constexpr double kFreeUpTo = 20, kUpToThere = 0.35, kBeyond = 0.2;
+  constexpr double kUpToThere = 0.35, kBeyond = 0.2;
   if (!asked.is_free()) return kManyShare;
   return degrees > kFreeUpTo ? kBeyond : kUpToThere;
 }
@@ -187,7 +191,7 @@ LastCellsEffort last_cells_effort(const Asked& asked) {
   const PatchEffort& effort = asked.is_frozen() ? kLittleEffort : kSurfaceEffort;
   if (asked.has_goal() && asked.is_flat()) last.patches_first = {effort};
   last.patches = {effort, kLastEffort};
-  if (asked.is_free()) last.patches_up_to = 20;
+  if (asked.is_free()) last.patches_up_to = kFreeUpTo;
   return last;
 }
 

@@ -45,6 +45,8 @@ inline constexpr auto kOneInFew = static_cast<std::size_t>(1 / kFewShare);
 inline constexpr auto kAllButFew = static_cast<std::size_t>(100 - 100 * kFewShare);
 /// Cells so few that whatever may help is tried on each of them.
 inline constexpr std::size_t kFewCells = 64;
+/// Poor cells so many that it does not count when some of them get better by little.
+inline constexpr std::size_t kManyCells = 200;
 /// Factor by which a worst decision value or angle has to rise to count as a gain, and where that has to
 /// make up for new cells or another search.
 inline constexpr double kRise = 1.002, kLargeRise = 1.02;
