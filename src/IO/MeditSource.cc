@@ -130,9 +130,8 @@ std::string too_few_entries(std::string_view name, std::int64_t announced, std::
 }
 
 std::string no_medit_file(std::string_view word) {
-  // MFEM's own format has the same suffix.
-  if (word == "MFEM")
-    return "a mesh of MFEM's own format cannot be read: save it with Mesh::PrintVTK or PrintVTU";
+  // MFEM's own format has the same suffix. What its PrintVTU writes has points of its own for each cell.
+  if (word == "MFEM") return "a mesh of MFEM's own format cannot be read: save it with Mesh::PrintVTK";
   return "not a Medit file: no MeshVersionFormatted";
 }
 

@@ -123,7 +123,7 @@ ThroughoutEffort throughout_effort(const PolishEffort& polish) {
   ThroughoutEffort effort;
   effort.polish = polish;
   effort.polish.many = kManyCells;
-  effort.polish.least_fewer = kOneInFew;
+  effort.polish.least_fewer = 50;
   effort.polish.gain = 1.1;
   effort.polish.dig_share = 1;
   effort.polish.seeds_of_vertex = 32;

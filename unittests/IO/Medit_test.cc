@@ -115,7 +115,7 @@ TEST(Medit, BrokenTextIsRefusedWithItsLine) {
   EXPECT_EQ(message(""), "a.mesh: the file is empty");
   EXPECT_EQ(message("solid x\n"), "a.mesh:1: not a Medit file: no MeshVersionFormatted");
   EXPECT_EQ(message("MFEM mesh v1.0\n\ndimension\n3\n"),
-            "a.mesh:1: a mesh of MFEM's own format cannot be read: save it with Mesh::PrintVTK or PrintVTU");
+            "a.mesh:1: a mesh of MFEM's own format cannot be read: save it with Mesh::PrintVTK");
   EXPECT_EQ(message("MeshVersionFormatted 2\nDimension 2\n"),
             "a.mesh:2: dimension 2 is out of range (3 to 3)");
   EXPECT_EQ(message(file_of("Tetrahedra 1\n1 2 3 6 0\nEnd\n")),
